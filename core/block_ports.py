@@ -56,15 +56,15 @@ BlockOperation = RapidOperation | LineOperation | ArcOperation | ThreadOperation
 class BlockState(NamedTuple):
     """The state of a block controller and its block queue at one instant.
 
-    ``start_refusal`` is the reason why no motion can start, for example because modes are still being
+    ``start_refusal_reason`` is the reason why no motion can start, for example because modes are still being
     verified. It is empty if motion can start.
     """
 
-    last_done_ticket: int  # every ticket up to this one has been moved to its end
+    last_completed_ticket: int  # every ticket up to this one has been moved to its end
     active_ticket: int  # the ticket that is being moved, 0 unknown or none
     is_at_rest: bool  # nothing moves, and nothing is left in the controller
     is_in_feed_hold: bool  # at rest inside its queue: ``resume`` continues
-    start_refusal: str = ""
+    start_refusal_reason: str = ""
 
 
 class BlockController(Protocol):
@@ -72,16 +72,16 @@ class BlockController(Protocol):
 
     No method waits. ``capabilities`` contains the supported functions, as names from
     ``core.interpreter.shared.machine_requirements``. A program that needs any other function is rejected
-    before it starts. ``max_lead_s`` is the longest motion in seconds that may be queued after the active
-    block. If the connection to TurnDesk is lost, the controller still executes this motion.
+    before it starts. ``max_queued_motion_s`` is the longest motion in seconds that may be queued after the
+    active block. If the connection to TurnDesk is lost, the controller still executes this motion.
     """
 
-    max_lead_s: float
+    max_queued_motion_s: float
     css_max_rpm: (
         float  # rpm up to which the spindle can follow the radius: 0 while it is not laid out for that
     )
 
-    def prepare_css(self, max_rpm: float) -> None:
+    def announce_css_max_rpm(self, max_rpm: float) -> None:
         """Announce the highest spindle speed in rpm that constant surface speed (CSS) may require.
 
         The driver can then select a speed range. ``max_rpm`` is 0 if the spindle speed is constant. This
@@ -89,7 +89,7 @@ class BlockController(Protocol):
         """
         ...
 
-    def get_max_line_speed(self, x_component: float, z_component: float) -> float:
+    def get_max_directional_speed(self, x_component: float, z_component: float) -> float:
         """Return the highest speed along a straight line in this direction, in mm/s.
 
         At this speed no axis exceeds the limits of the controller and of the machine file.
@@ -112,7 +112,7 @@ class BlockController(Protocol):
         """Return the last reported state from memory, without waiting."""
         ...
 
-    def hold_on_path(self) -> None:
+    def stop_on_path(self) -> None:
         """Stop on the path (feed hold). A threading pass is completed first."""
         ...
 
@@ -140,7 +140,7 @@ class BlockController(Protocol):
         """
         ...
 
-    def move_by_step(self, axis: str, target: float, speed: float) -> None:
+    def move_to_target(self, axis: str, target: float, speed: float) -> None:
         """Move an axis to ``target``, starting and ending at rest.
 
         Raises DriverError if the move cannot be started.

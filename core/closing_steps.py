@@ -21,7 +21,7 @@ It returns whether the step has ended.
 """
 
 
-def wait_for_end(_name: str, end_event: threading.Event, seconds: float) -> bool:
+def wait_for_step_end(_name: str, end_event: threading.Event, seconds: float) -> bool:
     """Wait in real time for at most ``seconds`` for a step to end; return whether it has ended."""
     return end_event.wait(seconds)
 
@@ -34,12 +34,12 @@ class ClosingStep(NamedTuple):
     timeout_s: float = DEFAULT_LIMIT_S
 
 
-def close_in_order(steps: Iterable[ClosingStep], wait: WaitFunction = wait_for_end) -> list[str]:
+def run_steps_in_order(steps: Iterable[ClosingStep], wait: WaitFunction = wait_for_step_end) -> list[str]:
     """Run the steps one after another; return the names of the steps that failed or timed out."""
     return [step.name for step in steps if not _RunningStep(step).wait_for_success(step.timeout_s, wait)]
 
 
-def close_together(steps: Iterable[ClosingStep], wait: WaitFunction = wait_for_end) -> list[str]:
+def run_steps_in_parallel(steps: Iterable[ClosingStep], wait: WaitFunction = wait_for_step_end) -> list[str]:
     """Run all steps at the same time; return the names of the steps that failed or timed out.
 
     If several steps hang, the total wait is the longest time limit, not the sum of the limits.

@@ -158,7 +158,7 @@ class TrippingDriverHost(Protocol):
         ...
 
 
-class UnknownPart(StrEnum):
+class UnknownMachinePart(StrEnum):
     """Part of the machine whose state is unknown because its connection is lost or silent."""
 
     AXES = "slides"
@@ -167,4 +167,4 @@ class UnknownPart(StrEnum):
     INPUTS = "inputs"
 
 
-ALL_UNKNOWN_PARTS = frozenset(UnknownPart)
+ALL_UNKNOWN_PARTS = frozenset(UnknownMachinePart)

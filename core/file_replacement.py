@@ -43,7 +43,7 @@ def write_atomically(path: Path, data: bytes) -> None:
         raise
 
 
-def place_folder(finished: Path, folder: Path) -> None:
+def move_folder_into_place(finished: Path, folder: Path) -> None:
     """Rename a completely written folder to ``folder`` and sync its contents and name to the disk.
 
     ``folder`` must be missing or empty. Raises OSError if syncing or renaming fails.

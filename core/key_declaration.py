@@ -48,19 +48,19 @@ _MULTIPLIER = {FileUnit.C_AXIS_RPM: 6.0, FileUnit.C_AXIS_RPM_PER_SECOND: 6.0, Fi
 LENGTH_UNITS = frozenset((FileUnit.LENGTH, FileUnit.FEED, FileUnit.ACCELERATION))
 
 
-def convert_to_model(value: float, unit: FileUnit, is_inch: bool) -> float:
+def convert_to_model_unit(value: float, unit: FileUnit, is_inch: bool) -> float:
     """Convert a number from the unit of the machine file to the unit of the model."""
     length = value * MM_PER_INCH if is_inch and unit in LENGTH_UNITS else value
     return length * _MULTIPLIER.get(unit, 1.0) / _DIVISOR.get(unit, 1.0)
 
 
-def convert_to_file(value: float, unit: FileUnit, is_inch: bool) -> float:
+def convert_to_file_unit(value: float, unit: FileUnit, is_inch: bool) -> float:
     """Convert a number from the unit of the model to the unit of the machine file."""
     number = value * _DIVISOR.get(unit, 1.0) / _MULTIPLIER.get(unit, 1.0)
     return number / MM_PER_INCH if is_inch and unit in LENGTH_UNITS else number
 
 
-def make_unit_text(unit: FileUnit, is_inch: bool) -> str:
+def format_unit(unit: FileUnit, is_inch: bool) -> str:
     """Return the text of a unit with a leading space; the unit of a length is in or mm.
 
     The result is an empty string for numbers without a unit.
@@ -71,7 +71,7 @@ def make_unit_text(unit: FileUnit, is_inch: bool) -> str:
 
 def format_value(value: float, unit: FileUnit, is_inch: bool) -> str:
     """Return a number of the model as text, converted to the unit of the machine file."""
-    return f"{convert_to_file(value, unit, is_inch):.6g}{make_unit_text(unit, is_inch)}"
+    return f"{convert_to_file_unit(value, unit, is_inch):.6g}{format_unit(unit, is_inch)}"
 
 
 Pair = tuple[float, float]

@@ -12,6 +12,6 @@ def make_anchor(title: str) -> str:
     return re.sub(r"[^\w\- ]", "", plain.lower()).replace(" ", "-")
 
 
-def make_contents(titles: Iterable[str]) -> str:
+def make_table_of_contents(titles: Iterable[str]) -> str:
     """Return a list of links to the headings of a page, one line each."""
     return "".join(f"- [{title}](#{make_anchor(title)})\n" for title in titles)

@@ -8,7 +8,7 @@ are ``Final``, so mypy rejects assignments to them.
 from __future__ import annotations
 
 
-class PlainValue:
+class ValueObject:
     """A value that equals another value of the same class if all attributes in ``__slots__`` are equal."""
 
     __slots__: tuple[str, ...] = ()

@@ -21,7 +21,7 @@ BoolArray = npt.NDArray[np.bool_]
 Fault = faults.Fault
 FaultCode = faults.FaultCode
 DriverError = faults.DriverError
-UnknownPart = faults.UnknownPart
+UnknownPart = faults.UnknownMachinePart
 ALL_UNKNOWN_PARTS = faults.ALL_UNKNOWN_PARTS
 
 
@@ -48,7 +48,7 @@ class MotionSegments(NamedTuple):
     accelerations: FloatArray
 
     @classmethod
-    def make_rest(cls, start_time_s: float, position: Sequence[float] | FloatArray) -> MotionSegments:
+    def make_standstill(cls, start_time_s: float, position: Sequence[float] | FloatArray) -> MotionSegments:
         """Return segments that hold this position from ``start_time_s`` on.
 
         Splicing these segments into the queue discards all motion that was queued after this time.
@@ -98,7 +98,7 @@ class SampleSource(Protocol):
 
     sample_rate_hz: float  # samples a second while something moves
 
-    def take(self, max_rows: int = 8192) -> FloatArray:
+    def take_samples(self, max_rows: int = 8192) -> FloatArray:
         """Return and remove the samples since the last call, as an array (n, 5 + 3 axes), oldest first.
 
         A call returns at most ``max_rows`` rows. If samples are not read in time, the oldest ones are lost.
@@ -259,7 +259,7 @@ class GearState(NamedTuple):
     revolutions per second, positive in the direction of the cam.
     """
 
-    revolutions: float
+    cam_revolutions: float
     lag_revolutions: float
     speed: float
 
@@ -342,7 +342,7 @@ class StationState:
     spindle_load: float | None = None  # percent, if the machine has such an input
 
 
-class Station(Protocol):
+class OperatorStation(Protocol):
     """Interface of the operator station, with its buttons, potentiometers and switches."""
 
     def read_state(self) -> StationState:
@@ -388,7 +388,7 @@ class WakeupSignal(Protocol):
     a wakeup.
     """
 
-    def is_settled(self) -> bool:
+    def can_rely_on_wakeups(self) -> bool:
         """Return whether the driver announces every further change with a wakeup.
 
         The executor calls this function only while the machine is at rest.
@@ -427,7 +427,7 @@ class MachinePorts:
     axes: AxisSink
     spindle: Spindle
     io: DigitalIO
-    station: Station
+    station: OperatorStation
     warnings: Sequence[str] = ()
     gear: SpindleGear | None = None  # None: threads follow the spindle by setpoints in time
     lock: SpindleCAxis | None = None  # None if C has a separate drive or does not change over

@@ -21,11 +21,11 @@ class Outline:
 class Dimension:
     """A dimension from ``start`` to ``end``, drawn at ``line_distance`` from these points.
 
-    If ``end`` is None, the dimension is a number at ``start``. ``field_word`` is the label of the input
+    If ``end`` is None, the dimension is a number at ``start``. ``field_label`` is the label of the input
     field with the value. ``prefix`` is a symbol in front of the number.
     """
 
-    field_word: str
+    field_label: str
     start: Point
     end: Point | None = None
     line_distance: float = 0.0

@@ -15,8 +15,8 @@ from core.key_declaration import (
     KeyValue,
     Pair,
     ValueKind,
-    convert_to_file,
-    convert_to_model,
+    convert_to_file_unit,
+    convert_to_model_unit,
     format_value,
     get_declared_keys,
 )
@@ -67,7 +67,7 @@ _NUMERIC = frozenset(
 
 
 @dataclass(frozen=True, slots=True)
-class TableReference:
+class TableDescription:
     """Description of a table for the reference page of the machine file.
 
     ``heading`` is the table's name in the file, with … in place of a name that the machine owner chooses.
@@ -190,7 +190,7 @@ def find_unknown_keys(table: Mapping[str, object], known: list[str], path: str) 
     return found
 
 
-def read_table(
+def read_table_values(
     table: object, keys: KeySchema, path: str, values: FileValues, children: tuple[str, ...] = ()
 ) -> list[FileFinding]:
     """Store all valid values of ``table`` in ``values`` under ``path``; return the findings.
@@ -291,7 +291,7 @@ def _problem(raw: object, field: KeyField, is_inch: bool | None) -> str:
     # A bound in inches is not an exact binary number.
     low, high = field.minimum - 1e-9 * abs(field.minimum), field.maximum + 1e-9 * abs(field.maximum)
     parts = _parts(raw)
-    inside = all(low <= convert_to_model(part, field.unit, bool(is_inch)) <= high for part in parts)
+    inside = all(low <= convert_to_model_unit(part, field.unit, bool(is_inch)) <= high for part in parts)
     ordered = field.kind in {ValueKind.TRIPLE, ValueKind.NUMBERS} or parts == sorted(set(parts))
     return "" if inside and ordered else _expected(field, is_inch)
 
@@ -301,7 +301,7 @@ def _converted(raw: object, field: KeyField, inch: bool) -> KeyValue:
         return raw
     if field.kind is ValueKind.WORDS and isinstance(raw, list):
         return " ".join(word.strip() for word in raw)
-    numbers = [convert_to_model(part, field.unit, inch) for part in _parts(raw)]
+    numbers = [convert_to_model_unit(part, field.unit, inch) for part in _parts(raw)]
     if field.kind is ValueKind.INTEGER:
         return int(numbers[0])
     if field.kind is ValueKind.TRIPLE:
@@ -319,7 +319,7 @@ def _expected(field: KeyField, inch: bool | None) -> str:
         )
     if field.kind not in _NUMERIC or (inch is None and field.unit in LENGTH_UNITS):
         return str(field.kind.value)
-    low = f"{convert_to_file(field.minimum, field.unit, bool(inch)):.6g}"
+    low = f"{convert_to_file_unit(field.minimum, field.unit, bool(inch)):.6g}"
     return f"{field.kind.value}, {low}…{format_value(field.maximum, field.unit, bool(inch))}"
 
 
@@ -338,7 +338,7 @@ class MachineFileReading:
     """A machine file that is being read, with the values that drivers and their rules need."""
 
     parsed_data: Mapping[str, object]
-    values: FileValues
+    file_values: FileValues
     axes: tuple[str, ...]  # axes of the machine
     terminals: Mapping[str, str]  # terminals of inputs and outputs, by path such as io.in.start
     tables: tuple[str, ...]  # paths of the driver tables in the file
@@ -354,7 +354,7 @@ class MachineFileReading:
     def find_wired_pots(self) -> dict[str, str]:
         """Return the terminals of the wired potentiometers and handwheels by path."""
         paths = (f"io.analog.{name}.at" for name in self.list_table_keys("io.analog"))
-        said = {path: self.values.text(path) for path in paths if self.values.has_values(path)}
+        said = {path: self.file_values.text(path) for path in paths if self.file_values.has_values(path)}
         return {
             path.removesuffix(".at"): at
             for path, at in said.items()
@@ -398,11 +398,11 @@ class DriverTable:
     serial_port_key: str = ""
     _: KW_ONLY
     purpose: str
-    sub_tables: tuple[TableReference, ...] = ()
+    sub_tables: tuple[TableDescription, ...] = ()
 
     def make_model(self, file: MachineFileReading) -> object:
         """Return the dataclass object with the values of the table."""
-        return file.values.make_model(self.key_class, self.path, **self.read_other_values(file))
+        return file.file_values.make_model(self.key_class, self.path, **self.read_other_values(file))
 
 
 @dataclass(frozen=True, slots=True)
@@ -442,14 +442,14 @@ def make_table_finding(path: str, raw: object) -> FileFinding:
 def read_named_tables(raw: object, keys: KeySchema, path: str, values: FileValues) -> list[FileFinding]:
     """Read every nested table of a table in which the machine owner chooses the names.
 
-    Each nested table is read with ``read_table``.
+    Each nested table is read with ``read_table_values``.
     """
     if not isinstance(raw, dict):
         return [make_table_finding(path, raw)]
     return [
         found
         for name, entry in raw.items()
-        for found in read_table(entry, keys, join_path(path, name), values)
+        for found in read_table_values(entry, keys, join_path(path, name), values)
     ]
 
 
@@ -466,8 +466,8 @@ def read_axes_and_spindle(
     if isinstance(named, dict):
         yield from find_unknown_keys(named, list(file.axes), path)
         named = {name: entry for name, entry in named.items() if name in file.axes}
-    yield from read_named_tables({} if named is None else named, kind, path, file.values)
+    yield from read_named_tables({} if named is None else named, kind, path, file.file_values)
     if turns is None or isinstance(turns, dict):
-        yield from read_table(turns or {}, spindle_kind, spindle_path, file.values)
+        yield from read_table_values(turns or {}, spindle_kind, spindle_path, file.file_values)
     else:
         yield make_table_finding(spindle_path, turns)

@@ -27,27 +27,27 @@ FIRST_NAMED_TOOL = 32_768
 """First number for tools whose name is not in the tool table."""
 
 
-class NamedTool(int):
+class NamedToolNumber(int):
     """Number of a tool or cutting edge that a program calls by a name that is not in the tool table."""
 
     name: str
 
-    def __new__(cls, number: int, name: str) -> NamedTool:
+    def __new__(cls, number: int, name: str) -> NamedToolNumber:
         """Create the number of a tool or cutting edge together with the name that the program calls."""
         made = super().__new__(cls, number)
         made.name = name
         return made
 
-    def __reduce__(self) -> tuple[type[NamedTool], tuple[int, str]]:
-        return NamedTool, (int(self), self.name)
+    def __reduce__(self) -> tuple[type[NamedToolNumber], tuple[int, str]]:
+        return NamedToolNumber, (int(self), self.name)
 
 
 def _like(key: int, number: int) -> int:
     """Return ``number`` with the tool name of ``key``, or unchanged if ``key`` has no tool name."""
-    return NamedTool(number, key.name) if isinstance(key, NamedTool) else number
+    return NamedToolNumber(number, key.name) if isinstance(key, NamedToolNumber) else number
 
 
-def make_row_number(tool: int, edge: int) -> int:
+def make_edge_row_number(tool: int, edge: int) -> int:
     """Return the row number of a cutting edge; the row number of D1 is the tool number."""
     return tool if edge <= 1 else _like(tool, edge * _STEP + tool)
 
@@ -67,7 +67,7 @@ def format_edge_suffix(key: int) -> str:
 
     The text contains D only for cutting edges D2 to D9.
     """
-    number = f'="{key.name}"' if isinstance(key, NamedTool) else f"{get_tool_number(key)}"
+    number = f'="{key.name}"' if isinstance(key, NamedToolNumber) else f"{get_tool_number(key)}"
     return number if key < _STEP else f"{number} D{get_edge_number(key)}"
 
 

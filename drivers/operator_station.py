@@ -14,7 +14,7 @@ from collections.abc import Callable, Mapping
 from contextlib import AbstractContextManager
 from typing import Protocol
 
-from core.ports import Clock, Station, StationState
+from core.ports import Clock, OperatorStation, StationState
 
 
 class TwoHandRelay:
@@ -32,7 +32,7 @@ class TwoHandRelay:
         self._on_from = -1.0
         self._on_until = -1.0
 
-    def press_palm(self, palm: str, now_s: float) -> None:
+    def press_palm_button(self, palm: str, now_s: float) -> None:
         """Press the palm button ``palm``, "left" or "right", at time ``now_s`` in seconds."""
         if self._down[palm] is not None:
             return
@@ -44,7 +44,7 @@ class TwoHandRelay:
             self._on_from, self._on_until = now_s, float("inf")
         self._armed = False
 
-    def release_palm(self, palm: str, now_s: float) -> None:
+    def release_palm_button(self, palm: str, now_s: float) -> None:
         """Release a palm button and turn the relay output off.
 
         If the minimum pulse has not ended yet, the output turns off at the end of this pulse.
@@ -55,11 +55,11 @@ class TwoHandRelay:
         if all(since is None for since in self._down.values()):
             self._armed = True
 
-    def is_on(self, now: float) -> bool:
+    def is_output_on(self, now: float) -> bool:
         """Return whether the relay output is on at time ``now``."""
         return self._on_from <= now < self._on_until
 
-    def will_turn_off(self, now: float) -> bool:
+    def will_output_turn_off(self, now: float) -> bool:
         """Return whether the output is on and will turn off when its minimum pulse ends."""
         return now < self._on_until < float("inf")
 
@@ -82,7 +82,7 @@ class PanelState:
         self._silent_since = 0.0
         self._random = random.Random(seed)
 
-    def set_feed_hold(self, pressed: bool, now: float) -> None:
+    def set_feed_hold_button(self, pressed: bool, now: float) -> None:
         """Press or release the feed hold button.
 
         The station reports the button as pressed for at least one minimum pulse.
@@ -91,12 +91,12 @@ class PanelState:
         if pressed:
             self._hold_until = now + self._pulse
 
-    def is_settled(self, now: float) -> bool:
+    def is_state_constant(self, now: float) -> bool:
         """Return whether the reported state will not change until the operator acts."""
-        pulse = now < self._hold_until or self.relay.will_turn_off(now)
+        pulse = now < self._hold_until or self.relay.will_output_turn_off(now)
         return self._silent is None and not self.noise_amplitude and not pulse
 
-    def set_disconnected(self, disconnected: bool, now: float) -> None:
+    def set_cable_disconnected(self, disconnected: bool, now: float) -> None:
         """Disconnect the cable of the station if ``disconnected`` is true, otherwise reconnect it."""
         self._silent = self.state(now) if disconnected else None
         self._silent_since = now
@@ -112,7 +112,7 @@ class PanelState:
             return dataclasses.replace(self._silent, estop=estop, start=False, age=age)
         return StationState(
             estop=self.estop,
-            start=self.relay.is_on(now),
+            start=self.relay.is_output_on(now),
             hold=self._hold_down or now < self._hold_until,
             spindle_auto=self.spindle_auto,
             spindle_pot=self._noisy(self.spindle_pot, 1.0),
@@ -164,12 +164,12 @@ class StationControls:
     def press_hold(self) -> None:
         """Press the feed hold button."""
         with self._lock:
-            self._panel.set_feed_hold(True, self._clock.now())
+            self._panel.set_feed_hold_button(True, self._clock.now())
 
     def release_hold(self) -> None:
         """Release the feed hold button."""
         with self._lock:
-            self._panel.set_feed_hold(False, self._clock.now())
+            self._panel.set_feed_hold_button(False, self._clock.now())
 
     def set_spindle_auto(self, is_auto: bool) -> None:
         """Set the spindle switch to AUTO if ``is_auto`` is true, otherwise to OFF."""
@@ -195,13 +195,13 @@ class StationControls:
         with self._lock:
             relay, now = self._panel.relay, self._clock.now()
             if down:
-                relay.press_palm(which, now)
+                relay.press_palm_button(which, now)
             else:
-                relay.release_palm(which, now)
+                relay.release_palm_button(which, now)
 
 
 class OnScreenStation(StationControls):
-    """``core.ports.Station`` that combines an on-screen panel with wired inputs.
+    """``core.ports.OperatorStation`` that combines an on-screen panel with wired inputs.
 
     Any thread may call the methods. ``inputs`` returns the states of the wired inputs. A wired E-stop,
     start or hold input has the same effect as the on-screen button. ``wired`` is an optional station that
@@ -209,7 +209,7 @@ class OnScreenStation(StationControls):
     """
 
     def __init__(
-        self, clock: Clock, inputs: Callable[[], Mapping[str, bool]], wired: Station | None = None
+        self, clock: Clock, inputs: Callable[[], Mapping[str, bool]], wired: OperatorStation | None = None
     ) -> None:
         super().__init__(PanelState(_WINDOW, _PULSE, seed=0), threading.Lock(), clock)
         self._inputs = inputs
@@ -284,7 +284,7 @@ def build_station_state(
     pot, load = pots.get("spindle_pot"), pots.get("spindle_load")
     auto = inputs.get(pot.switch_input, True) if pot is not None and pot.switch_input else True
 
-    def override(name: str) -> float:
+    def calculate_override(name: str) -> float:
         return _scaled(pots[name], min(max(read_pot(name), 0.0), 1.0)) if name in pots else 1.0
 
     return StationState(
@@ -292,8 +292,8 @@ def build_station_state(
         start=inputs.get("start", False),
         hold=inputs.get("hold", False),
         spindle_auto=inputs.get("spindle_auto", auto),
-        spindle_pot=override("spindle_pot"),
-        feed_pot=override("feed_pot"),
+        spindle_pot=calculate_override("spindle_pot"),
+        feed_pot=calculate_override("feed_pot"),
         handwheel=handwheel,
         age=age_s,
         # Percent; negative values are noise of an idle motor.
@@ -311,10 +311,10 @@ def _scaled(pot: PotSettings, fraction: float) -> float:
 def _posted_action(name: str) -> Callable[..., None]:
     """Return a method that sends its own name and arguments to another process without waiting."""
 
-    def use(self: PostedControls, *values: object) -> None:
+    def post_values(self: PostedControls, *values: object) -> None:
         self.post_action(name, *values)
 
-    return use
+    return post_values
 
 
 class PostedControls(ABC):

@@ -27,7 +27,7 @@ def require_no_fault(fault: str) -> None:
         )
 
 
-def require_power(fault: str, is_powered: bool) -> None:
+def require_drive_power(fault: str, is_powered: bool) -> None:
     """Raise DriverError if a fault is active or the drives are off, because no axis may then move."""
     if fault:
         raise DriverError("{fault}; clear the fault first", get_fault_code(fault, "axis"), fault=fault)
@@ -44,7 +44,7 @@ def require_no_homing(axis: str) -> None:
         raise DriverError("{name} is homing; wait until homing is complete", reason="homing", name=axis)
 
 
-def require_axis(axis: str, axes: Container[str]) -> None:
+def require_existing_axis(axis: str, axes: Container[str]) -> None:
     """Raise DriverError if ``axis`` is not one of ``axes``."""
     if axis not in axes:
         raise DriverError("axis {axis} does not exist", reason="no-axis", axis=f"{axis!r}")
@@ -85,7 +85,7 @@ def require_stopped_spindle(is_turning: bool) -> None:
         )
 
 
-def require_free_drive(is_enabled: bool, is_turning: bool) -> None:
+def require_free_spindle_drive(is_enabled: bool, is_turning: bool) -> None:
     """Raise DriverError if the spindle drive cannot become the C axis.
 
     This is the case if the drives of the axes are off (``is_enabled`` is False) or the spindle is turning.
@@ -125,7 +125,7 @@ def require_output_allowed(name: str, is_on: bool, problem: str) -> None:
 # --- Touch of a probe.
 
 
-class FirstTouchInput:
+class FirstTouchLatch:
     """Probe input (``core.ports.TouchInput``) that latches the axis positions at the first touch.
 
     Calling ``arm_latch`` permits the next latching.
@@ -155,7 +155,7 @@ class FirstTouchInput:
 LOG_ROWS = 8192  # Rows, which cover eight seconds at 1 ms for a delayed control.
 
 
-class SampleLog:
+class SampleRingBuffer:
     """Ring buffer of sample rows in the format of ``core.ports.SampleSource``."""
 
     def __init__(self, axis_count: int, capacity: int = LOG_ROWS) -> None:

@@ -10,7 +10,7 @@ from contextlib import suppress
 _CURRENT, _FUTURE, _ON_FAULT = 1, 2, 4  # MCL_CURRENT, MCL_FUTURE and MCL_ONFAULT of mlockall(2)
 
 
-def request_scheduling(policy: str, priority: int) -> str:
+def request_scheduling_policy(policy: str, priority: int) -> str:
     """Request a scheduling policy of sched(7), such as ``SCHED_FIFO``, for this process.
 
     Return the reason why the system rejects the request, or an empty string if it grants the policy.

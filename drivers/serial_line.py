@@ -63,11 +63,11 @@ class FlowControlTransport(SerialTransport, Protocol):
     """Serial line with flow control and a count of damaged characters."""
 
     @property
-    def damaged_count(self) -> int:
+    def damaged_character_count(self) -> int:
         """Return the number of characters with a parity or framing error since the line was opened."""
         ...
 
-    def send_available(self, data: bytes) -> int:
+    def send_available_bytes(self, data: bytes) -> int:
         """Send as many bytes as the line accepts now, and return the number of bytes sent, possibly 0."""
         ...
 
@@ -78,7 +78,7 @@ class FlowControlTransport(SerialTransport, Protocol):
         """
         ...
 
-    def count_unsent(self) -> int:
+    def count_unsent_bytes(self) -> int:
         """Return the number of accepted bytes that have not been transmitted yet."""
         ...
 

@@ -60,17 +60,17 @@ if sys.platform != "win32":
 _OPEN_ERRORS: tuple[type[Exception], ...] = (*_FAILURES, ValueError)
 
 
-class PortInfo(NamedTuple):
+class SerialPortInfo(NamedTuple):
     """Device name and description of a serial port of this computer."""
 
     device_name: str
     description: str
 
 
-def list_ports() -> list[PortInfo]:
+def list_serial_ports() -> list[SerialPortInfo]:
     """Return the serial ports of this computer, sorted by name."""
     return sorted(
-        PortInfo(port.device, "" if port.description in {None, "n/a"} else port.description)
+        SerialPortInfo(port.device, "" if port.description in {None, "n/a"} else port.description)
         for port in comports()
     )
 
@@ -120,7 +120,7 @@ class SerialPort:
             enable_parity_marks(handle, check_parity=settings.parity != "N")
 
     @property
-    def damaged_count(self) -> int:
+    def damaged_character_count(self) -> int:
         """Return the number of parity and framing errors, or 0 if damaged characters are not counted."""
         return self._marks.damaged_count if self._marks is not None else 0
 
@@ -135,7 +135,7 @@ class SerialPort:
         except _FAILURES as error:
             raise self._cut(error) from error
 
-    def send_available(self, data: bytes) -> int:
+    def send_available_bytes(self, data: bytes) -> int:
         """Send the bytes that the kernel accepts immediately and return their number."""
         try:
             data = self._coded(data)
@@ -191,7 +191,7 @@ class SerialPort:
         except _FAILURES as error:
             raise self._cut(error) from error
 
-    def count_unsent(self) -> int:
+    def count_unsent_bytes(self) -> int:
         """Return the number of bytes in the kernel's output buffer."""
         try:
             return int(self._port.out_waiting)

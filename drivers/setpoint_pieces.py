@@ -42,7 +42,7 @@ def calculate_piece_motion(piece: MotionPiece, time_s: float) -> tuple[tuple[flo
 _TRIM_COUNT = 64  # Pieces; discarding single pieces would cost more than storing them.
 
 
-class PieceQueue:
+class MotionPieceQueue:
     """Queue of motion pieces and the final rest position.
 
     The queue is not thread-safe, so the driver must lock it.
@@ -55,7 +55,7 @@ class PieceQueue:
         self._end = -INFINITY
         self._rest = tuple(rest_positions)
 
-    def reset_to(self, position: Sequence[float]) -> None:
+    def reset_to_position(self, position: Sequence[float]) -> None:
         """Discard all setpoints and stay at rest at ``position``, for example after power-up or homing."""
         self._pieces, self._starts, self._end = [], [], -INFINITY
         self._rest = tuple(position)
@@ -120,7 +120,7 @@ class PieceQueue:
         p, v = state
         dt = max((abs(speed) / limit for speed, limit in zip(v, decel, strict=True)), default=0.0)
         if dt <= 0.0:
-            self.reset_to(p)
+            self.reset_to_position(p)
             return now
         piece = MotionPiece(now, dt, p, v, tuple(-speed / dt for speed in v))
         self.replace_pieces_from(now, [piece])

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.ports import DriverError, MotionSegments
-from drivers.setpoint_pieces import MotionPiece, PieceQueue
+from drivers.setpoint_pieces import MotionPiece, MotionPieceQueue
 
 _BATCH_SIZE = 100  # Pieces per step; their conversion takes 0.1 ms.
 
@@ -72,7 +72,7 @@ class AxisProperties:
     corner: float = 4.0  # Permitted velocity jump at a corner: amax times the setpoint interval.
 
 
-def check_limits(
+def check_setpoint_limits(
     segments: MotionSegments,
     axes: Sequence[AxisProperties],
     homed_axes: Sequence[bool],
@@ -120,8 +120,8 @@ class JunctionTolerance:
     rounding. The velocity tolerance covers a corner: ``amax * interval``.
     """
 
-    position: tuple[float, ...]
-    velocity: tuple[float, ...]
+    max_position_jumps: tuple[float, ...]
+    max_velocity_jumps: tuple[float, ...]
 
     @classmethod
     def from_axes(cls, axes: Sequence[AxisProperties]) -> JunctionTolerance:
@@ -129,7 +129,7 @@ class JunctionTolerance:
         return cls((0.001,) * len(axes), tuple(1.01 * axis.corner + 1e-3 for axis in axes))
 
 
-class SetpointQueue(PieceQueue):
+class SetpointQueue(MotionPieceQueue):
     """Setpoint queue of all axes that checks new setpoints.
 
     The queue is not thread-safe, so the driver must lock it.
@@ -187,8 +187,8 @@ class SetpointQueue(PieceQueue):
                 reason="gap",
                 t_end=f"{t_end[gaps[0]]:.4f}",
             )
-        jumps = (np.abs(segments.positions[1:] - p_end[:-1]) > self._tolerance.position) | (
-            np.abs(segments.velocities[1:] - v_end[:-1]) > self._tolerance.velocity
+        jumps = (np.abs(segments.positions[1:] - p_end[:-1]) > self._tolerance.max_position_jumps) | (
+            np.abs(segments.velocities[1:] - v_end[:-1]) > self._tolerance.max_velocity_jumps
         )
         if jumps.any():
             row, axis = np.argwhere(jumps)[0]
@@ -228,7 +228,7 @@ class SetpointQueue(PieceQueue):
             "{axis}: at the splice point between queued and new setpoints, the velocity jumps from "
             "{before}/s to {after}/s",
         )
-        limits = (self._tolerance.position, self._tolerance.velocity)
+        limits = (self._tolerance.max_position_jumps, self._tolerance.max_velocity_jumps)
         for template, limit, one, two in zip(templates, limits, old, new, strict=True):
             for name, tolerance, before, after in zip(self.axes, limit, one, two, strict=True):
                 if abs(after - before) > tolerance:

@@ -75,7 +75,7 @@ class GearAxes(NamedTuple):
     max_velocities: tuple[float, ...]
     max_accelerations: tuple[float, ...]
     commit_time_s: float  # s
-    tolerance: JunctionTolerance  # Tolerance of setpoints in time.
+    junction_tolerance: JunctionTolerance  # Tolerance of setpoints in time.
 
     @classmethod
     def from_axes(cls, axes: Sequence[AxisProperties], commit_time_s: float) -> GearAxes:
@@ -86,31 +86,31 @@ class GearAxes(NamedTuple):
         )
 
 
-class SpeedLimit(NamedTuple):
+class CamSpeedLimit(NamedTuple):
     """Limit of the spindle speed on a section of the cam, whose ends are in revolutions.
 
-    ``speed_squared`` is the square of the permitted speed in rev²/s².
+    ``max_speed_squared`` is the square of the permitted speed in rev²/s².
     """
 
-    begin_rev: float
+    start_rev: float
     end_rev: float
-    speed_squared: float
+    max_speed_squared: float
 
 
-class SpeedLimits:
+class CamSpeedLimits:
     """Speed limits of a cam, sorted by position.
 
     ``min_deceleration`` is the deceleration in rev/s² that the axes permit everywhere on the cam.
     """
 
-    def __init__(self, limits: Sequence[SpeedLimit], min_deceleration: float) -> None:
+    def __init__(self, limits: Sequence[CamSpeedLimit], min_deceleration: float) -> None:
         self._walls = limits
-        self._begins = [wall.begin_rev for wall in limits]
+        self._begins = [wall.start_rev for wall in limits]
         self._twice = 2.0 * min_deceleration
         # For each limit, the minimum over the limits ahead referred to revolution 0, so that not all must be
         # checked.
         onwards = accumulate(
-            (wall.speed_squared + self._twice * wall.begin_rev for wall in reversed(limits)), min
+            (wall.max_speed_squared + self._twice * wall.start_rev for wall in reversed(limits)), min
         )
         self._onwards = [*reversed([*onwards]), math.inf]
 
@@ -153,7 +153,7 @@ class CamGearing:
                 "thread-no-encoder",
             )
         self._queue = self._empty()
-        self._walls = SpeedLimits([], math.inf)
+        self._walls = CamSpeedLimits([], math.inf)
         self.load_cam(cam)
 
     def load_cam(self, cam: Cam) -> None:
@@ -163,26 +163,31 @@ class CamGearing:
         Also raises DriverError if its path starts too early, does not continue the current motion, contains
         a gap or a jump, or does not end at rest.
         """
-        if not self.is_same_cam(cam):
+        if not self.is_same_cam_reference(cam):
             raise DriverError(
                 "the axes cannot change to another spindle index pulse while they are "
                 "synchronized with the spindle",
                 "broken-path",
                 reason="other-index",
             )
-        queue = self._queue if self.has_moved else self._empty()  # A cam that has not started is discarded.
+        queue = (
+            self._queue if self.has_axis_moved else self._empty()
+        )  # A cam that has not started is discarded.
         queue.commit = self._slides.commit_time_s * self._speed
         queue.discard_pieces_before(self.cam_position_rev)
         queue.splice_segments(cam.segments, self.cam_position_rev)
         self._cam, self._queue = cam, queue
-        self._walls = SpeedLimits(*self._list_speed_limits(queue.pieces))
+        self._walls = CamSpeedLimits(*self._list_speed_limits(queue.pieces))
 
     def _empty(self) -> SetpointQueue:
-        position, velocity = self._slides.tolerance.position, self._slides.tolerance.velocity
+        position, velocity = (
+            self._slides.junction_tolerance.max_position_jumps,
+            self._slides.junction_tolerance.max_velocity_jumps,
+        )
         per_turn = JunctionTolerance(position, tuple(v / self._speed for v in velocity))
         return SetpointQueue(self._slides.names, self._standing, 0.0, per_turn)
 
-    def is_same_cam(self, cam: Cam) -> bool:
+    def is_same_cam_reference(self, cam: Cam) -> bool:
         """Return whether a cam counts from the same index pulse and in the same direction as this cam."""
         return (cam.start_revolutions, cam.sign) == (self._cam.start_revolutions, self._cam.sign)
 
@@ -202,12 +207,12 @@ class CamGearing:
         return self._goal(self._t) - self.cam_position_rev
 
     @property
-    def has_moved(self) -> bool:
+    def has_axis_moved(self) -> bool:
         """Return whether an axis has moved since the axes began to follow the spindle."""
         return self._queue.get_commanded_state(self.cam_position_rev)[0] != self._standing
 
     @property
-    def is_finished(self) -> bool:
+    def is_cam_finished(self) -> bool:
         """Return whether the axes have reached the end of the cam."""
         return self.cam_position_rev >= self._queue.get_end_time(-math.inf)
 
@@ -282,7 +287,7 @@ class CamGearing:
                 bend = min(bend, max(spare, _MIN_SPEED_FRACTION * amax) / abs(v))
         return math.sqrt(self._walls.get_max_speed_squared(self.cam_position_rev, reach)), bend
 
-    def _list_speed_limits(self, pieces: Sequence[MotionPiece]) -> tuple[list[SpeedLimit], float]:
+    def _list_speed_limits(self, pieces: Sequence[MotionPiece]) -> tuple[list[CamSpeedLimit], float]:
         """Return the speed limit of each piece, and the deceleration that all pieces permit."""
         walls, softest = [], math.inf
         for piece in pieces:
@@ -302,7 +307,7 @@ class CamGearing:
                 if a:
                     most = min(most, amax / abs(a))
             if most < math.inf:
-                walls.append(SpeedLimit(piece.start_time_s, piece.start_time_s + piece.duration_s, most))
+                walls.append(CamSpeedLimit(piece.start_time_s, piece.start_time_s + piece.duration_s, most))
         return walls, softest
 
 
@@ -316,7 +321,9 @@ class GearedQueue(SetpointQueue):
     """
 
     def __init__(self, gear_axes: GearAxes, rest_positions: Sequence[float]) -> None:
-        super().__init__(gear_axes.names, rest_positions, gear_axes.commit_time_s, gear_axes.tolerance)
+        super().__init__(
+            gear_axes.names, rest_positions, gear_axes.commit_time_s, gear_axes.junction_tolerance
+        )
         self._slides = gear_axes
         self._gearing: CamGearing | None = None
 
@@ -345,7 +352,7 @@ class GearedQueue(SetpointQueue):
         ``CamGearing`` and ``core.ports.SpindleGear`` list.
         """
         gearing = self._gearing
-        if gearing is not None and (gearing.has_moved or gearing.is_same_cam(cam)):
+        if gearing is not None and (gearing.has_axis_moved or gearing.is_same_cam_reference(cam)):
             gearing.load_cam(cam)
             return
         if gearing is None and not is_queue_finished(self.get_end_time(now), now):
@@ -360,14 +367,14 @@ class GearedQueue(SetpointQueue):
         """Return the setpoint for ``time_s`` from an encoder reading, while the axes follow the spindle."""
         assert self._gearing is not None
         motion = self._gearing.calculate_setpoint(time_s, reading_time, reading_rev)
-        if self._gearing.is_finished:
+        if self._gearing.is_cam_finished:
             self._leave_gearing(time_s, self._gearing)
         return motion
 
-    def reset_to(self, position: Sequence[float]) -> None:
+    def reset_to_position(self, position: Sequence[float]) -> None:
         """Stop following the spindle, and set the axes at rest at this position."""
         self._gearing = None
-        super().reset_to(position)
+        super().reset_to_position(position)
 
     def get_end_time(self, now: float) -> float:
         """Return the end time of the queue in seconds.
@@ -421,7 +428,7 @@ class GearedQueue(SetpointQueue):
         """
         state = self.get_commanded_state(now)
         if self._gearing is not None:
-            self.reset_to(state[0])
+            self.reset_to_position(state[0])
         return self._brake(now, state, decelerations)
 
     def _leave_gearing(self, t: float, gearing: CamGearing) -> None:
@@ -429,7 +436,7 @@ class GearedQueue(SetpointQueue):
 
         If segments follow the cam, the axes continue with these segments.
         """
-        self.reset_to(gearing.end_position)
+        self.reset_to_position(gearing.end_position)
         then = gearing.loaded_cam.following_segments
         if then is not None:
             super().splice_segments(then._replace(start_times_s=then.start_times_s + t), t - self.commit)

@@ -33,7 +33,7 @@ class LocalWakeup:
     """
 
     def __init__(self, is_settled: Callable[[], bool]) -> None:
-        self.is_settled = is_settled
+        self.can_rely_on_wakeups = is_settled
         self._rung = threading.Event()
 
     def request_poll(self) -> None:
@@ -58,12 +58,12 @@ class ProcessWakeup:
         self._near.setblocking(False)
         self.remote_socket.setblocking(False)
 
-    def wake(self) -> None:
+    def send_wakeup(self) -> None:
         """Wake up the waiting process; the call has no effect if the socket is full or closed."""
         with suppress(OSError):
             self.remote_socket.send(b"!")
 
-    def wait(self, seconds: float, file_handles: Sequence[int] = ()) -> bool:
+    def wait_for_wakeup(self, seconds: float, file_handles: Sequence[int] = ()) -> bool:
         """Wait at most ``seconds`` for a wake-up or a readable file, and return whether either occurred.
 
         A wake-up that was sent before the call also ends the wait.

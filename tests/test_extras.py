@@ -15,11 +15,11 @@ from app.compose.machine.driver_modules import load_all_drivers
 from app.compose.optional_features import (
     FEATURE_NAMES,
     extras,
-    insert_after,
+    insert_items_after,
     list_drawing_suffixes,
     map_command_modules,
 )
-from app.special.special_functions import SpecialFunctionList
+from app.special.special_functions import SpecialFunctionsModel
 from core.machine.machine_file import parse_machine
 from core.table_schema import MachineFileError
 from tests.attached import attached
@@ -54,19 +54,19 @@ def test_every_command_of_a_feature_has_a_module() -> None:
 
 
 def test_addition_is_inserted_after_the_item_that_it_names() -> None:
-    assert insert_after("ab", str, [("x", "a"), ("y", "x")]) == ["a", "x", "y", "b"]
+    assert insert_items_after("ab", str, [("x", "a"), ("y", "x")]) == ["a", "x", "y", "b"]
 
 
 def test_additions_after_the_same_item_retain_their_order() -> None:
-    assert insert_after("ab", str, [("x", "a"), ("y", "a")]) == ["a", "x", "y", "b"]
+    assert insert_items_after("ab", str, [("x", "a"), ("y", "a")]) == ["a", "x", "y", "b"]
 
 
 def test_an_addition_may_follow_one_that_is_added_later() -> None:
-    assert insert_after("ab", str, [("y", "x"), ("x", "a")]) == ["a", "x", "y", "b"]
+    assert insert_items_after("ab", str, [("y", "x"), ("x", "a")]) == ["a", "x", "y", "b"]
 
 
 def test_addition_whose_item_is_missing_is_placed_last() -> None:
-    assert insert_after("ab", str, [("x", "gone")]) == ["a", "b", "x"]
+    assert insert_items_after("ab", str, [("x", "gone")]) == ["a", "b", "x"]
 
 
 def test_feature_without_its_required_feature_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -87,7 +87,7 @@ def test_feature_is_listed_after_the_features_it_requires() -> None:
 @pytest.mark.usefixtures("no_features")
 def test_f10_lists_lathe_tool_lives_without_features(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
-    names = {each.name for each in attached(desk_on(FakeMachine()), SpecialFunctionList).functions}
+    names = {each.name for each in attached(desk_on(FakeMachine()), SpecialFunctionsModel).functions}
     assert "TOOL LIFE" in names
     assert "JOBS" not in names
 

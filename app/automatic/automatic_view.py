@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.pages.code_help import make_code_blocks
 from app.desk.pages.guide_text import GuideBlock
-from app.desk.pages.page_entry import find_editor_refusal, find_program_refusal, find_searchto_refusal
+from app.desk.pages.page_entry import find_editor_refusal, find_program_refusal, find_restart_refusal
 from app.desk.pages.table_content import WHOLE_LIST
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
@@ -25,7 +25,7 @@ from app.screen.page_base import KeyActions, Page, PageHost
 from app.screen.program_listing import ProgramListing
 from app.screen.window.window_bars import CommentLine
 from app.screen.window_layout import Rect, divide_work_area
-from app.working_plane.plane_instant import describe_plane, make_run_instant
+from app.working_plane.plane_instant import describe_plane, make_instant_from_snapshot
 from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import MachineState, Snapshot
 from core.interpreter.dialects import get_code_book
@@ -52,7 +52,7 @@ class AutomaticPage(Page):
         "SECCMP",
         "SPECIAL",
     )
-    STARTS = True
+    CAN_START_CYCLES = True
 
     def __init__(self, host: PageHost, parent: QWidget) -> None:
         super().__init__(host, parent)
@@ -80,7 +80,7 @@ class AutomaticPage(Page):
     def _files_closed(self) -> None:
         self.window().setFocus()
 
-    def try_leave(self) -> bool:
+    def try_leave_page(self) -> bool:
         """Close the file prompt and return True, because the operator can always leave this page."""
         self.file_prompt.close_prompt()
         return True
@@ -98,7 +98,7 @@ class AutomaticPage(Page):
         """
         measuring = self.path_view.measurement is not None and not self._moving
         if measuring:
-            self.path_view.set_measuring(is_on=False)
+            self.path_view.switch_measuring(is_on=False)
         return measuring
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
@@ -124,7 +124,7 @@ class AutomaticPage(Page):
             self.path_view.part_player.follows_run = snapshot.state in ACTIVE_STATES
         self._show_program(loaded)
         self.comment_line.text = status.comment
-        self.program_listing.show_run(
+        self.program_listing.show_run_position(
             status.line_number or snapshot.interrupted_line, status.block_text, status.next_block_text
         )
         self._show_path(snapshot, loaded)
@@ -137,7 +137,7 @@ class AutomaticPage(Page):
         lines: Sequence[str] = loaded.source.lines if loaded.source else _NO_LINES
         self.program_listing.error_text = loaded.error_text
         self.program_listing.show_source(lines, {d.line: d.message for d in loaded.blocking_errors if d.line})
-        scene = loaded.picture.scene if loaded.picture is not None else None
+        scene = loaded.picture.mill_scene if loaded.picture is not None else None
         self.plane_view.show_scene(scene)
         self.plane_view.setVisible(scene is not None)
         self.path_view.show_picture(loaded.picture if scene is None else None)
@@ -145,12 +145,14 @@ class AutomaticPage(Page):
     def _show_path(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         scene = self.plane_view.scene
         if scene is not None:
-            self.plane_view.show_instant(make_run_instant(scene, snapshot), describe_plane(snapshot.swivel))
+            self.plane_view.show_instant(
+                make_instant_from_snapshot(scene, snapshot), describe_plane(snapshot.swivel)
+            )
             return
-        self.path_view.show_tip(find_tip_position(snapshot, loaded.job))
+        self.path_view.show_tool_tip(find_tip_position(snapshot, loaded.job))
         first_move = self.desk.start_watch
         self.path_view.show_approach(first_move.make_start_legs(snapshot) if first_move is not None else None)
-        self.path_view.draw_slice()
+        self.path_view.continue_drawing()
 
     @property
     def _visible_view(self) -> PathView | WorkingPlaneView:
@@ -173,11 +175,11 @@ class AutomaticPage(Page):
         """Return the keys for program choice, editor and SEARCHTO that are currently disabled."""
         snapshot, loaded = self.desk.read_snapshot(), self.desk.program_loader.loaded_program
         asking = self.file_prompt.isVisible()
-        named = bool(self.file_prompt.wanted_name) if asking else loaded.path is not None
+        named = bool(self.file_prompt.requested_name) if asking else loaded.path is not None
         found = {
             "F2": "" if asking else find_program_refusal(snapshot),
             "F3": find_editor_refusal(snapshot, has_name=named),
-            "F6": find_searchto_refusal(snapshot, loaded),
+            "F6": find_restart_refusal(snapshot, loaded),
         }
         return frozenset(key for key, why in found.items() if why)
 
@@ -196,7 +198,7 @@ class AutomaticPage(Page):
             "B": partial(self.host.open_page, page_table.PART),
             "Zoom in": partial(looked_at.zoom_view, 1),
             "Zoom out": partial(looked_at.zoom_view, -1),
-            "Measure": self.path_view.set_measuring,
+            "Measure": self.path_view.switch_measuring,
             "View": looked_at.select_next_view,
             **self._part_keys(),
             "Pan left": partial(looked_at.pan_view, -1, 0),
@@ -222,17 +224,17 @@ class AutomaticPage(Page):
 
     def _open_stock(self) -> None:
         """Open the stock settings of the displayed part."""
-        from app.part.part_model import PartModel
+        from app.part.part_model import PartPageModel
 
-        sheet = self.desk.page_registry.find_model(PartModel)
+        sheet = self.desk.page_registry.find_model(PartPageModel)
         if sheet is not None and self.host.open_page(page_table.PART):
-            sheet.show_stock()
+            sheet.show_stock_table()
 
     def _open_editor(self) -> None:
         """Open the editor for the loaded program, or for the file name in the prompt."""
         from app.editor.editor_model import EditorModel
 
-        wanted = self.file_prompt.wanted_name if self.file_prompt.isVisible() else ""
+        wanted = self.file_prompt.requested_name if self.file_prompt.isVisible() else ""
         if self.file_prompt.isVisible() and not wanted:
             self.desk.say(NO_NAME_TYPED)
         elif (editor := self.desk.page_registry.find_model(EditorModel)) is not None:
@@ -246,6 +248,6 @@ class AutomaticPage(Page):
         """
         if self.file_prompt.isVisible():
             self.host.open_page(page_table.PROGRAMS)
-        elif self.desk.program_choice.can_choose():
+        elif self.desk.program_choice.can_choose_program():
             self.host.close_alarm_log()
             self.file_prompt.show_prompt()

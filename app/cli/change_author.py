@@ -28,7 +28,7 @@ COMMAND_LINE_USER = (
 )
 
 
-def add_as_option(parser: argparse.ArgumentParser) -> None:
+def add_author_option(parser: argparse.ArgumentParser) -> None:
     """Add the option ``--as NAME``, which names the user who makes the change."""
     parser.add_argument(
         "--as",
@@ -39,7 +39,7 @@ def add_as_option(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_consent_options(parser: argparse.ArgumentParser) -> None:
+def add_confirmation_options(parser: argparse.ArgumentParser) -> None:
     """Add the options ``--yes`` and ``--machine`` for suspicious changes of offsets."""
     parser.add_argument(
         "--yes", action="store_true", help="make suspicious offset changes without asking for confirmation"
@@ -174,7 +174,7 @@ def _confirm_reset(error: StoreError, actions: Collection[ProtectedChange]) -> s
             get_error_code(error),
         ) from error
     sys.stderr.write(f"turndesk: {error}\n")
-    require_terminal(
+    require_terminal_confirmation(
         Message(
             "The users and their PINs cannot be read. A restore deletes all of them, and this "
             "will be logged. Type {reset} to continue: ",
@@ -184,7 +184,7 @@ def _confirm_reset(error: StoreError, actions: Collection[ProtectedChange]) -> s
     return Message("{user} (service reset at the keyboard)", user=getpass.getuser())
 
 
-def require_terminal(question: str) -> None:
+def require_terminal_confirmation(question: str) -> None:
     """Raise CommandError unless the user confirms the question on a terminal of this machine."""
     if not sys.stdin.isatty() or os.environ.get("SSH_CONNECTION"):
         raise CommandError(

@@ -229,7 +229,7 @@ def insert_program_option(argv: Sequence[str], commands: Collection[str]) -> Seq
     return argv
 
 
-def move_demo_first(argv: Sequence[str]) -> Sequence[str]:
+def move_demo_option_first(argv: Sequence[str]) -> Sequence[str]:
     """Return the arguments with ``--demo`` moved ahead of the command.
 
     The screen's parser reads the option at this position.
@@ -237,7 +237,7 @@ def move_demo_first(argv: Sequence[str]) -> Sequence[str]:
     return ["--demo", *(word for word in argv if word != "--demo")] if "--demo" in argv else argv
 
 
-def assign_screen_options(args: argparse.Namespace) -> argparse.Namespace:
+def copy_screen_options(args: argparse.Namespace) -> argparse.Namespace:
     """Copy the options written before a command to the command's arguments, and return the arguments.
 
     Raises CommandError if the command does not have such an option, or if the option is specified both

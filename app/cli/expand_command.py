@@ -11,7 +11,12 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from app.cli.program_options import add_ideal_option, add_program_options, read_context, read_source
+from app.cli.program_options import (
+    add_ideal_times_option,
+    add_program_options,
+    read_command_context,
+    read_source,
+)
 from app.cli.proofs.progress_bar import ProgressBar
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK
 
@@ -26,7 +31,7 @@ def add_parser(subparsers: SubParsers) -> None:
     parser = subparsers.add_parser("expand")
     parser.add_argument("file", metavar="FILE")
     add_program_options(parser)
-    add_ideal_option(parser)
+    add_ideal_times_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -37,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
     from core.proving.program_timeline import Timeline
 
     path = Path(args.file)
-    around = read_context(args)
+    around = read_command_context(args)
     source = read_source(path, args)
     timeline = Timeline.from_program(source, around.setup, around.machine, is_ideal=args.ideal)
     output_module = importlib.import_module(f"app.cli.outputs.{source.dialect}_output")

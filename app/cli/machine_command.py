@@ -13,7 +13,7 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING
 
-from app.cli.change_author import COMMAND_LINE_USER, add_as_option, get_change_author
+from app.cli.change_author import COMMAND_LINE_USER, add_author_option, get_change_author
 from app.cli.program_options import parse_output_path
 from app.compose.optional_features import map_action_modules
 from app.desk.command_errors import (
@@ -29,7 +29,7 @@ from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.compose.backends.hal_file_writer import GeneratedHal
+    from app.compose.backends.hal_file_writer import GeneratedHalFiles
     from core.machine.machine_file import KeyChange
     from core.machine.machine_model import Machine
 
@@ -62,44 +62,44 @@ def write_hal_file(args: argparse.Namespace) -> int:
     - The backend of the machine file is not hal.
     - An output file already exists or cannot be written.
     """
-    from app.compose.backends.hal_file_writer import generate_hal
+    from app.compose.backends.hal_file_writer import generate_hal_files
     from app.compose.machine.machine_setup import read_machine
     from core.table_schema import MachineFileError
 
     machine = read_machine(args.file)
     try:
-        hal = generate_hal(machine)
+        hal = generate_hal_files(machine)
     except MachineFileError as error:
         sys.stderr.write("".join(f"turndesk: {error.source}: {finding}\n" for finding in error.findings))
         return EXIT_USAGE
     if args.out:
-        _save_hal(Path(args.out), hal.text, hal.extra_files)
+        _save_hal(Path(args.out), hal.hal_text, hal.extra_files)
     if args.json:
         _report_file(machine.source, args.out, hal)
     elif args.out:
         sys.stdout.write("".join(f"{line}\n" for line in hal.wiring_table))
         sys.stdout.write("".join(f"measure: {note}\n" for note in hal.measurement_lines))
     else:
-        sys.stdout.write(hal.text)
+        sys.stdout.write(hal.hal_text)
         sys.stderr.write(
             "".join(
                 f"turndesk: {name} must be in the same folder; --out writes both\n"
                 for name in hal.extra_files
             )
         )
-    if args.out and Path(args.out).name != hal.name:
+    if args.out and Path(args.out).name != hal.file_name:
         sys.stderr.write(
-            f"turndesk: {machine.source}: [hal] file is {hal.name}, so TurnDesk loads that file\n"
+            f"turndesk: {machine.source}: [hal] file is {hal.file_name}, so TurnDesk loads that file\n"
         )
     return EXIT_OK
 
 
-def _report_file(source: str, out: str | None, hal: GeneratedHal) -> None:
+def _report_file(source: str, out: str | None, hal: GeneratedHalFiles) -> None:
     report = {
         "file": source,
-        "board": hal.board_text,
+        "board": hal.board_kind,
         "out": out,
-        "hal": hal.text,
+        "hal": hal.hal_text,
         "beside": hal.extra_files,
         "wires": [{**wire._asdict(), "names": list(wire.names)} for wire in hal.wiring_rows],
         "measure": hal.measurement_lines,
@@ -148,7 +148,7 @@ def add_parser(subparsers: SubParsers) -> None:
     peer.add_argument("file", metavar="FILE", help="machine file, such as gt75-bench.toml")
     accept = actions.add_parser("accept", help="show the changes in a machine file and accept the file")
     accept.add_argument("file", metavar="FILE")
-    add_as_option(accept)
+    add_author_option(accept)
     add_hal_parser(actions)
     for module in map_action_modules().values():
         import_module(module).add_parser(actions)
@@ -164,7 +164,7 @@ def run(args: argparse.Namespace) -> int:
     if args.action == "hal":
         return write_hal_file(args)
     if args.action == "accept":
-        return accept(args.file, args)
+        return accept_machine_file(args.file, args)
     if args.action == "peer":
         return simulate_devices(args.file)
     status: int = import_module(map_action_modules()[args.action]).run(args)
@@ -204,7 +204,7 @@ def check(file: str | None, *, json_output: bool) -> int:
             "errors": [],
             "changes": [change._asdict() for change in changes],
             "ports": [{**row._asdict(), "verdict": row.result_text} for row in answers.rows],
-            "rights": [right._asdict() for right in answers.rights],
+            "rights": [right._asdict() for right in answers.process_rights],
             "warnings": answers.warnings,
             "trouble": answers.faults,
         },
@@ -222,7 +222,7 @@ def check(file: str | None, *, json_output: bool) -> int:
             sys.stdout.write(
                 f"  not checked, because no hardware reports them: {summarize_names(unchecked)}\n"
             )
-        for right in answers.rights:
+        for right in answers.process_rights:
             sys.stdout.write(f"  computer: {right.name}: {right.granted}\n")
             sys.stdout.write(f"    {right.missing}\n" if right.missing else "")
         sys.stdout.write("".join(f"  changed since it was accepted: {change}\n" for change in changes))
@@ -234,7 +234,7 @@ def check(file: str | None, *, json_output: bool) -> int:
 def _unaccepted_changes(machine: Machine) -> Sequence[KeyChange]:
     """Return the changes since the machine file was accepted, or () if the store cannot be read."""
     try:
-        return list_changes(machine)
+        return list_machine_file_changes(machine)
     except CommandError as error:
         sys.stderr.write(f"turndesk: {error}\n")
         return ()
@@ -270,19 +270,19 @@ def _report(json_wanted: bool, report: dict[str, object]) -> None:
 MAX_PRINTED_CHANGES = 5  # changes that a run prints; a check prints all
 
 
-def list_changes(machine: Machine) -> tuple[KeyChange, ...]:
+def list_machine_file_changes(machine: Machine) -> tuple[KeyChange, ...]:
     """Return the changes since the machine file was last accepted, or () if it never was accepted.
 
     Raises CommandError if the store cannot be read.
     """
     from app.cli.store_command import open_store
-    from app.compose.machine.accepted_machine import list_differences
+    from app.compose.machine.accepted_machine import list_file_differences
 
     with open_store(read_only=True) as store:
-        return list_differences(machine, store.settings) or ()
+        return list_file_differences(machine, store.settings) or ()
 
 
-def require_accepted(machine: Machine) -> None:
+def require_accepted_file(machine: Machine) -> None:
     """Print the changes of the machine file before a run.
 
     Raises CommandError if the file of a real machine has changed since it was last accepted, or if the
@@ -292,7 +292,7 @@ def require_accepted(machine: Machine) -> None:
     from app.compose.backends.connection import needs_real_time
 
     try:
-        changes = list_changes(machine)
+        changes = list_machine_file_changes(machine)
     except CommandError:
         if needs_real_time(machine):
             raise
@@ -325,23 +325,27 @@ def require_accepted(machine: Machine) -> None:
     sys.stderr.write("".join(f"{machine.source} has changed: {line}\n" for line in lines))
 
 
-def accept(file: str, args: argparse.Namespace) -> int:
+def accept_machine_file(file: str, args: argparse.Namespace) -> int:
     """Print the changes of the machine file and accept the file.
 
     Raises CommandError if the file is invalid, if the user may not accept it, or if the store cannot be
     written.
     """
     from app.cli.store_command import open_store
-    from app.compose.machine.accepted_machine import create_record, get_settings_key, list_differences
+    from app.compose.machine.accepted_machine import (
+        create_acceptance_record,
+        get_settings_key,
+        list_file_differences,
+    )
     from app.compose.machine.machine_setup import read_machine
 
     machine = read_machine(file)
     with open_store() as store:
         changes, who = (
-            list_differences(machine, store.settings),
+            list_file_differences(machine, store.settings),
             get_change_author(store, args, ProtectedChange.MACHINE_FILE),
         )
-        store.settings.save_setting(get_settings_key(machine), create_record(machine)).result()
+        store.settings.save_setting(get_settings_key(machine), create_acceptance_record(machine)).result()
         said = "; ".join(str(change) for change in changes or ())
         by = "" if who == COMMAND_LINE_USER else f" by {who}"
         store.events.log_event(
@@ -374,14 +378,14 @@ def simulate_devices(file: str) -> int:
 
     Raises CommandError if the devices cannot be simulated.
     """
-    from app.compose.backends.backend_entry import find_backend, list_simulatable_backends
+    from app.compose.backends.backend_entry import find_backend, list_simulatable_backend_names
     from app.compose.machine.machine_setup import read_machine
     from core.ports import DriverError
 
     machine = read_machine(file)
     play_it = find_backend(machine).simulate_devices
     if play_it is None:
-        there = " and ".join(list_simulatable_backends())
+        there = " and ".join(list_simulatable_backend_names())
         why = Message(
             "machine.backend is {backend}, which does not have a simulator; simulators are "
             "available for {present}",
@@ -391,12 +395,12 @@ def simulate_devices(file: str) -> int:
         raise CommandError(f"{file}: {why}", "no-peer")
     ended = False
 
-    def end(_signal: int, _frame: FrameType | None) -> None:
+    def request_end(_signal: int, _frame: FrameType | None) -> None:
         nonlocal ended
         ended = True
 
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, end)
+        signal.signal(number, request_end)
     with convert_to_command_error(DriverError):
         play_it(machine, lambda: not ended, _say, _line_reader())
     return EXIT_OK

@@ -19,7 +19,7 @@ from types import ModuleType
 from app import VERSION
 from app.cli.bug_report.crash_report import (
     catch_interrupts,
-    raise_interrupt,
+    raise_dropped_interrupt,
     report_crash,
     report_thread_exception,
 )
@@ -27,12 +27,12 @@ from app.cli.command_parser import (
     CommandParser,
     SubcommandsAction,
     add_screen_options,
-    assign_screen_options,
+    copy_screen_options,
     has_only_screen_options,
     insert_program_option,
-    move_demo_first,
+    move_demo_option_first,
 )
-from app.compose.optional_features import Subcommand, extras, insert_after, map_command_modules
+from app.compose.optional_features import Subcommand, extras, insert_items_after, map_command_modules
 from app.desk import command_errors
 from app.desk.command_errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_USAGE, CommandError
 from app.desk.standard_input import reset_standard_input
@@ -74,7 +74,7 @@ SCREENLESS_COMMANDS_TEXT = "prove, expand, trace and run --headless do not need 
 def list_commands() -> Sequence[str]:
     """Return all subcommands in the order of the help, including the subcommands of optional features."""
     added = [(name, each.preceding_subcommand) for name, each in _feature_commands().items()]
-    return insert_after(CORE_COMMANDS, str, added)
+    return insert_items_after(CORE_COMMANDS, str, added)
 
 
 def _feature_commands() -> Mapping[str, Subcommand]:
@@ -135,7 +135,7 @@ def _commands_for(argv: Sequence[str]) -> Sequence[str]:
 
 def _arguments(argv: Sequence[str]) -> Sequence[str]:
     """Return the arguments, with ``--demo`` and a program file moved to where the parser expects them."""
-    argv = move_demo_first(argv)
+    argv = move_demo_option_first(argv)
     if has_only_screen_options(argv) or (argv and argv[0] in CORE_COMMANDS):
         return argv
     return insert_program_option(argv, list_commands())
@@ -157,8 +157,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
         with catch_interrupts():
             check_data_folder()
-            status = _flush_output(_dispatch(assign_screen_options(args)))
-            raise_interrupt()
+            status = _flush_output(_dispatch(copy_screen_options(args)))
+            raise_dropped_interrupt()
             return status
     except SystemExit:  # raised after the help, which needs no error handling
         raise
@@ -235,10 +235,10 @@ def _dispatch(args: argparse.Namespace) -> int:
 
 def _open_demo(args: argparse.Namespace) -> None:
     """Use the data folder of the demo, and load its program if the user specified no program."""
-    from app.compose.demo_store import find_demo_program, open_demo
+    from app.compose.demo_store import find_demo_program, open_demo_data_folder
 
     machine = getattr(args, "machine", None)
-    open_demo(machine)
+    open_demo_data_folder(machine)
     if not args.command:
         args.program = args.program or find_demo_program(machine)
 

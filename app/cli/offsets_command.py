@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from app.cli.change_author import add_as_option, add_consent_options
+from app.cli.change_author import add_author_option, add_confirmation_options
 from core.message import Message
 from core.store.store_rows import OffsetKind
 
@@ -37,7 +37,7 @@ def add_parser(subparsers: SubParsers) -> None:
         "and minutes: for TOOL, name L R R2 DL DR DR2 cut t-angle time2 stop; for PRESET, x "
         "y z a b c rot doc",
     )
-    add_consent_options(change)
+    add_confirmation_options(change)
     clear = actions.add_parser(
         "clear", help="clear one offset (T3, D4 or G54) or all offsets of one type (T, D or G)"
     )
@@ -49,7 +49,7 @@ def add_parser(subparsers: SubParsers) -> None:
     undo = actions.add_parser("undo", help="undo the last change; repeat to undo earlier changes")
     _add_table(undo)
     for action, why in ((change, "entered"), (clear, "cleared"), (undo, "undo")):
-        add_as_option(action)
+        add_author_option(action)
         action.add_argument(
             "--why",
             default=why,

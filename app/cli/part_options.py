@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.outputs.units import MM_PER_INCH
-from app.cli.program_options import STDIN_NAME, read_context, read_source
+from app.cli.program_options import STDIN_NAME, read_command_context, read_source
 from app.desk.command_errors import CommandError
-from app.desk.stored_part import make_stock_absolute
+from app.desk.stored_part import make_stock_path_absolute
 from core.message import Message, get_error_code
 from core.part.stock_forms import SPECIFICATION_FORMS
 
@@ -58,10 +58,10 @@ def read_part_settings(args: argparse.Namespace, context: CommandContext) -> Par
 
     Raises CommandError if an option is invalid, or if the stored tool shapes cannot be read or are invalid.
     """
-    from app.compose.part_data import read_known_part
+    from app.compose.part_data import make_part_settings
 
     stick_out = _read_stickout(args, context.machine)
-    setting = read_known_part(context.machine, context.setup.tools, _read_shapes(args), stick_out)
+    setting = make_part_settings(context.machine, context.setup.tools, _read_shapes(args), stick_out)
     if args.stock is None:
         if args.keep_stock:
             raise CommandError(
@@ -89,10 +89,10 @@ def apply_stored_stock(part_settings: PartSettings, program: str, args: argparse
         from app.cli.store_command import open_store
         from core.access.access_table import ProtectedChange
 
-        around = read_context(args)
+        around = read_command_context(args)
         with open_store() as store:
             get_change_author(store, args, ProtectedChange.STOCK)
-        save_stock(program, make_stock_absolute(args.stock), _read_stickout(args, around.machine))
+        save_stock(program, make_stock_path_absolute(args.stock), _read_stickout(args, around.machine))
     return apply_stored_part(part_settings, program, read_stored_part(program), args)
 
 
@@ -105,7 +105,7 @@ def apply_stored_part(
     """
     from app.compose.part_data import apply_stored_clamping
 
-    around = read_context(args)
+    around = read_command_context(args)
     part_settings = apply_stored_clamping(
         part_settings, around.machine, stored_part, is_explicit=args.stick_out is not None
     )
@@ -133,12 +133,15 @@ def _said(
     from app.compose.specified_stock import StockContext, read_stock
     from core.part.stock_spec import StockError
 
-    def read(path: Path) -> ProgramSource:
+    def read_program_source(path: Path) -> ProgramSource:
         return read_source(path, args)
 
     try:
         return read_stock(
-            text, StockContext(read, around.setup, around.machine, setting, read_stored_part=read_stored_part)
+            text,
+            StockContext(
+                read_program_source, around.setup, around.machine, setting, read_stored_part=read_stored_part
+            ),
         )
     except StockError as error:
         raise CommandError(f"--stock {error}", get_error_code(error)) from error

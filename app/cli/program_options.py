@@ -14,7 +14,7 @@ from core.language.source import Dialect, guess_dialect
 from core.message import CodedError, Message, get_error_code
 
 if TYPE_CHECKING:
-    from core.interpreter.shared.job_setup import Setup
+    from core.interpreter.shared.job_setup import InterpreterSetup
     from core.language.source import ProgramSource
     from core.machine.machine_model import Machine
 
@@ -44,7 +44,7 @@ def add_program_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="print only JSON on stdout")
 
 
-def add_ideal_option(parser: argparse.ArgumentParser) -> None:
+def add_ideal_times_option(parser: argparse.ArgumentParser) -> None:
     """Add the option --ideal, which calculates times only from feeds and speed limits."""
     parser.add_argument(
         "--ideal", action="store_true", help="calculate times without allowing for acceleration or waiting"
@@ -56,10 +56,10 @@ class CommandContext:
     """Machine and setup that one command uses to evaluate programs."""
 
     machine: Machine
-    setup: Setup
+    setup: InterpreterSetup
 
 
-def read_context(args: argparse.Namespace) -> CommandContext:
+def read_command_context(args: argparse.Namespace) -> CommandContext:
     """Return the machine and setup that the options specify.
 
     Raises CommandError if an option is invalid, or if the stored offsets cannot be read.

@@ -11,9 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.part_options import add_part_options
-from app.cli.program_options import add_ideal_option, add_program_options, read_context, read_source
+from app.cli.program_options import (
+    add_ideal_times_option,
+    add_program_options,
+    read_command_context,
+    read_source,
+)
 from app.cli.proofs.progress_bar import ProgressBar
-from app.compose.optional_features import find_worker_class
+from app.compose.optional_features import find_worker_class_name
 from app.desk import command_errors
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError
 from core.message import Message
@@ -23,10 +28,10 @@ MAX_JOBS = 256
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.cli.proofs.proof_job import ComparisonOffsets, JobsByMachine, ProofJob
-    from app.cli.proofs.proof_work import ProofFindings
+    from app.cli.proofs.proof_job import ComparisonOffsets, ProofJob, ProofJobsByMachine
+    from app.cli.proofs.proof_work import ProofResult
     from app.cli.proofs.report_file import ReportFile
-    from core.interpreter.shared.job_setup import Setup
+    from core.interpreter.shared.job_setup import InterpreterSetup
     from core.language.source import ProgramSource
     from core.proving.proof_report import PartReport, ProofReport
 
@@ -38,7 +43,7 @@ def add_parser(subparsers: SubParsers) -> None:
         "files", nargs="+", metavar="FILE", help="programs, or folders with programs (including subfolders)"
     )
     add_program_options(parser)
-    add_ideal_option(parser)
+    add_ideal_times_option(parser)
     add_part_options(parser)
     parser.add_argument(
         "--compare",
@@ -64,7 +69,7 @@ def add_folder_options(parser: argparse.ArgumentParser) -> None:
         "--jobs", metavar="N", type=_parse_count, help="number of worker processes (default: one per core)"
     )
     parser.set_defaults(scheduler=None)
-    if find_worker_class():
+    if find_worker_class_name():
         parser.add_argument(
             "--scheduler",
             metavar="HOST:PORT",
@@ -91,9 +96,9 @@ def _parse_count(word: str) -> int:
 def run(args: argparse.Namespace) -> int:
     """Prove each file. Return 1 if a program has errors, or 2 if a program cannot be read."""
     many = _uses_workers(args)
-    from app.cli.proofs.proof_job import JobsByMachine
+    from app.cli.proofs.proof_job import ProofJobsByMachine
 
-    jobs = JobsByMachine(args, _create_job)
+    jobs = ProofJobsByMachine(args, _create_job)
     jobs.get_job("")  # reports errors in the options before anything is proved
     if many:
         from app.cli.proofs.folder_proofs import prove_programs
@@ -142,7 +147,7 @@ def _create_job(args: argparse.Namespace) -> ProofJob:
     from app.cli.part_options import read_part_settings
     from app.cli.proofs.proof_job import ProofJob
 
-    around = read_context(args)
+    around = read_command_context(args)
     setting = read_part_settings(args, around)
     reported, other = args.report is not None, _other_offsets(args, around.setup)
     if other is not None:
@@ -152,7 +157,7 @@ def _create_job(args: argparse.Namespace) -> ProofJob:
     return ProofJob(around.machine, around.setup, setting, args.ideal, args.optional_stop, reported, other)
 
 
-def _other_offsets(args: argparse.Namespace, setup: Setup) -> ComparisonOffsets | None:
+def _other_offsets(args: argparse.Namespace, setup: InterpreterSetup) -> ComparisonOffsets | None:
     """Return the offsets of --compare, or None if the option is not used.
 
     Raises CommandError, which lists every error, if the offsets are invalid.
@@ -160,14 +165,14 @@ def _other_offsets(args: argparse.Namespace, setup: Setup) -> ComparisonOffsets 
     if args.compare is None:
         return None
     from app.cli.proofs.proof_job import ComparisonOffsets
-    from app.compose.stored_offsets import read_offsets
+    from app.compose.stored_offsets import read_offsets_file
 
-    tools, secondary, zero, *_ = read_offsets(Path(args.compare))
+    tools, secondary, zero, *_ = read_offsets_file(Path(args.compare))
     return ComparisonOffsets(args.compare, replace(setup, tools=tools, secondary=secondary, zero=zero))
 
 
 def _prove_and_print(
-    path: Path, jobs: JobsByMachine, args: argparse.Namespace, report: ReportFile | None
+    path: Path, jobs: ProofJobsByMachine, args: argparse.Namespace, report: ReportFile | None
 ) -> int:
     """Prove one file and return its exit status.
 
@@ -194,12 +199,12 @@ def _prove_and_print(
     return EXIT_ERRORS if found.report.errors else EXIT_OK
 
 
-def _prove(path: Path, source: ProgramSource, job: ProofJob, args: argparse.Namespace) -> ProofFindings:
-    from app.cli.outputs.proof_output import count_stops, make_report_json
-    from app.cli.proofs.proof_work import prove_with_findings
+def _prove(path: Path, source: ProgramSource, job: ProofJob, args: argparse.Namespace) -> ProofResult:
+    from app.cli.outputs.proof_output import count_operator_stops, make_report_json
+    from app.cli.proofs.proof_work import prove_with_comparison
 
     with ProgressBar(f"proving {path.name}", len(source.lines)) as progress:
-        found = prove_with_findings(job, source, progress.report_progress)
+        found = prove_with_comparison(job, source, progress.report_progress)
     report, part, _, compare = found
     if args.json:
         report_json = make_report_json(str(path), report, part, optional_stop=args.optional_stop)
@@ -207,7 +212,7 @@ def _prove(path: Path, source: ProgramSource, job: ProofJob, args: argparse.Name
         sys.stdout.write(json.dumps(report_json) + "\n")
     else:
         sys.stdout.write(_proof_text(path, report, part))
-        stops = count_stops(report, optional_stop=args.optional_stop)
+        stops = count_operator_stops(report, optional_stop=args.optional_stop)
         sys.stdout.write(f"  stops {stops} times for the operator\n" if stops else "")
         sys.stdout.write(_silenced_text(report))
         if compare is not None:
@@ -229,7 +234,7 @@ def _limits_text(report: ProofReport, length: Callable[[float], float], unit: st
         from app.cli.outputs.klartext_output import format_machine_limits
 
         return format_machine_limits(report.mill_results)
-    (x0, x1), (z0, z1) = report.ranges.x_range, report.ranges.z_range
+    (x0, x1), (z0, z1) = report.program_ranges.x_range, report.program_ranges.z_range
     return f"  X radius {length(x0):.5f} … {length(x1):.5f}   Z {length(z0):.5f} … {length(z1):.5f} {unit}\n"
 
 
@@ -266,7 +271,7 @@ def _proof_text(path: Path, report: ProofReport, part: PartReport | None) -> str
     length, unit, scale = (to_inches, "in", 1.0) if inch else (round_millimeters, "mm", MM_PER_INCH)
 
     findings = "".join(f"{d.format_one_line(str(path))}\n" for d in report.diagnostics)
-    times, reach = report.times, report.ranges
+    times, reach = report.program_times, report.program_ranges
     slow, fast = (to_inches_per_minute(speed) * scale for speed in reach.feed_range)
     tools = " ".join(format_edge_name(n) for n in report.tool_numbers) or "no tool"
     count = len(report.errors)
@@ -278,8 +283,9 @@ def _proof_text(path: Path, report: ProofReport, part: PartReport | None) -> str
     return findings + (
         f"{path}: {verdict}; {report.block_count} blocks, {report.elementary_block_count} elementary, "
         f"{tools}\n"
-        f"  cycle {times.cycle_s:.2f} s = cutting {times.cutting_s:.2f} + rapid {times.rapid_s:.2f}"
-        f" + dwell {times.dwell_s:.2f} + waiting {times.wait_s:.2f}\n"
+        f"  cycle {times.cycle_time_s:.2f} s = cutting {times.cutting_time_s:.2f} + rapid "
+        f"{times.rapid_time_s:.2f}"
+        f" + dwell {times.dwell_time_s:.2f} + waiting {times.wait_time_s:.2f}\n"
         f"{_paths_text(report)}"
         f"  path {length(report.cutting_length_mm):.4f} {unit} cutting,"
         f" {length(report.rapid_length_mm):.4f} {unit} rapid\n"

@@ -15,7 +15,7 @@ from app.cli.part_options import add_part_options
 from app.cli.program_options import (
     CommandContext,
     add_program_options,
-    read_context,
+    read_command_context,
     read_input_states,
     read_source,
 )
@@ -69,7 +69,7 @@ def run(args: argparse.Namespace) -> int:
             ),
             "needs-headless",
         )
-    around = read_context(args)
+    around = read_command_context(args)
     job = make_job(read_source(path, args), around.setup)
     report = _prove_program(args, around, job)
     sys.stderr.write("".join(f"{d.format_one_line(str(path))}\n" for d in report.diagnostics))
@@ -83,8 +83,8 @@ def run(args: argparse.Namespace) -> int:
             ),
             report,
         )
-    if report.missing_tools:
-        names = ", ".join(format_edge_name(key) for key in report.missing_tools)
+    if report.missing_tool_numbers:
+        names = ", ".join(format_edge_name(key) for key in report.missing_tool_numbers)
         why = Message(
             "{path}: no offset has been set for {names}; set the offset with turndesk "
             "offsets set, or use --offsets",
@@ -92,12 +92,12 @@ def run(args: argparse.Namespace) -> int:
             names=names,
         )
         return _refused(args, why, report)
-    unanswered = [need for need in report.required_functions if need.builder_m_code]
+    unanswered = [need for need in report.required_functions if need.missing_m_code]
     if unanswered:
         why = Message(
             "{path} line {line}: this machine does not define {unanswered}",
             path=path,
-            line=unanswered[0].line,
+            line=unanswered[0].first_line,
             unanswered=unanswered[0].description,
         )
         return _refused(args, why, report)
@@ -107,25 +107,27 @@ def run(args: argparse.Namespace) -> int:
 def _prove_program(args: argparse.Namespace, circumstances: CommandContext, job: Job) -> ProofReport:
     """Return the proof of the program and of its part."""
     from app.cli.part_options import apply_stored_stock, read_part_settings
-    from core.proving.part_proof import prove_with_part
+    from core.proving.part_proof import prove_program_and_part
 
     setting = apply_stored_stock(read_part_settings(args, circumstances), job.source.name, args)
-    report, _part = prove_with_part(job.shared_program, circumstances.setup, circumstances.machine, setting)
+    report, _part = prove_program_and_part(
+        job.shared_program, circumstances.setup, circumstances.machine, setting
+    )
     return report
 
 
 def _run(args: argparse.Namespace, around: CommandContext, job: Job, report: ProofReport) -> int:
-    from app.cli.machine_command import require_accepted
+    from app.cli.machine_command import require_accepted_file
     from app.compose.program_proving import create_proof
     from app.compose.runs.headless_run import run_headless
     from app.compose.runs.run_log import EventLog
 
-    require_accepted(around.machine)
+    require_accepted_file(around.machine)
     inputs = read_input_states(args.inputs, around.machine.inputs)
     path = Path(args.file)
     with (
         EventLog.create(path.name) as log,
-        ProgressBar(f"running {path.name}", report.times.cycle_s) as progress,
+        ProgressBar(f"running {path.name}", report.program_times.cycle_time_s) as progress,
         run_headless(
             around.machine,
             input_states=inputs,
@@ -134,7 +136,7 @@ def _run(args: argparse.Namespace, around: CommandContext, job: Job, report: Pro
             event_log=log,
             print_line=lambda text: _say(path, text),
             report_progress=progress.report_progress,
-            duration_s=report.times.cycle_s + _EXTRA_RECORD_S,
+            duration_s=report.program_times.cycle_time_s + _EXTRA_RECORD_S,
         ) as play,
     ):
         outcome = play.run_job(job, create_proof(job, report), optional_stop=args.optional_stop)
@@ -169,7 +171,7 @@ def _write(
     unit = "in" if report.dialect == "omniturn" else "mm"
     sys.stdout.write(
         f"{path}: {outcome.final_state} after {outcome.elapsed_s:.2f} s (proved: "
-        f"{report.times.cycle_s:.2f} s)\n"
+        f"{report.program_times.cycle_time_s:.2f} s)\n"
         f"  at {_shown_place(final, mill=report.mill_results is not None)} {unit};"
         f" following error at most {run_values['max_following_error']:.5f} {unit},"
         f" {run_values['underruns']} underruns; log {events}\n"

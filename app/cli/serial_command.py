@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from app.cli.change_author import add_as_option, get_permitted_user, log_user_change
+from app.cli.change_author import add_author_option, get_permitted_user, log_user_change
 from app.cli.store_command import open_store
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, convert_to_command_error
 from core.access.access_table import ProtectedChange
@@ -62,7 +62,7 @@ def add_parser(subparsers: SubParsers) -> None:
     )
     for each in (send, receive):
         _add_line_options(each)
-    add_as_option(receive)
+    add_author_option(receive)
     _add_send_options(send)
 
 
@@ -172,11 +172,11 @@ def _settings(args: argparse.Namespace, machine: Machine) -> SerialLineModel:
 
 
 def _send(args: argparse.Namespace, settings: SerialLineModel) -> int:
-    from app.compose.program_transfer import SerialLines
+    from app.compose.program_transfer import SerialPortLines
 
     path = Path(args.file)
     _check_readable(path)
-    lines = SerialLines(lambda _source: ((), 0.0))
+    lines = SerialPortLines(lambda _source: ((), 0.0))
     sent = run_transfer(lines.make_send_transfer(settings, path), f"sending {path.name}")
     if sent is None:
         return EXIT_ERRORS
@@ -197,7 +197,7 @@ def _check_readable(path: Path) -> None:
 
 def _receive(args: argparse.Namespace, machine: Machine, settings: SerialLineModel) -> int:
     from app.compose.program_proving import create_loading_steps
-    from app.compose.program_transfer import SerialLines, create_proof_check
+    from app.compose.program_transfer import SerialPortLines, create_program_checker
     from app.compose.stored_offsets import make_offsets_reader
     from core.language.source import Dialect, get_default_extension
 
@@ -208,8 +208,8 @@ def _receive(args: argparse.Namespace, machine: Machine, settings: SerialLineMod
         return EXIT_ERRORS
     who = get_permitted_user(open_store, args, ProtectedChange.PROGRAMS)  # checked before waiting
     ending = get_default_extension(Dialect(machine.mdi_language))
-    lines = SerialLines(
-        create_proof_check(create_loading_steps(machine, make_offsets_reader(None), draw_pictures=False)),
+    lines = SerialPortLines(
+        create_program_checker(create_loading_steps(machine, make_offsets_reader(None), draw_pictures=False)),
         ending,
     )
     received = run_transfer(
@@ -229,7 +229,7 @@ def _store(args: argparse.Namespace, received: ReceivedProgram, who: str) -> int
     folder = out.parent if out else find_data_folder() / "programs"
     try:
         path = store_received_program(
-            received, folder, out.name if out else find_unused_name(folder, received.name)
+            received, folder, out.name if out else find_unused_name(folder, received.file_name)
         )
     except FileOperationError as error:
         sys.stderr.write(f"turndesk: {error}\n")
@@ -267,11 +267,11 @@ def _format_received(progress: TransferProgress) -> str:
     if progress.wait_reason == "noise":
         return Message(
             "the received data is not text ({received}); check --baud, --bits, --parity and the cable",
-            received=progress.received_text,
+            received=progress.leading_text,
         )
     return Message(
         "text was received without %: {received}; to receive programs without %, use --wrap ''",
-        received=f"{progress.received_text!r}",
+        received=f"{progress.leading_text!r}",
     )
 
 
@@ -280,7 +280,7 @@ def _tell(last_reason: str, progress: TransferProgress) -> str:
 
     The reason is not printed again if it equals ``last_reason``.
     """
-    if not progress.received_text or last_reason == progress.wait_reason:
+    if not progress.leading_text or last_reason == progress.wait_reason:
         return last_reason
     sys.stderr.write(f"turndesk: {_format_received(progress)}\n")
     return progress.wait_reason
@@ -299,7 +299,7 @@ def run_transfer(transfer: SerialLineTransfer[T], description: str) -> T | None:
         try:
             while not wait([future], _POLL_INTERVAL_S).done:
                 progress.total = transfer.progress.total_byte_count
-                progress.report_progress(transfer.progress.done_byte_count)
+                progress.report_progress(transfer.progress.transferred_byte_count)
                 printed_text = _tell(printed_text, transfer.progress)
             return future.result()
         except (DriverError, FileOperationError) as error:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.change_author import add_as_option, get_permitted_user, log_user_change
+from app.cli.change_author import add_author_option, get_permitted_user, log_user_change
 from app.cli.store_command import open_store
 from app.desk.command_errors import EXIT_OK, CommandError
 from core.access.access_table import ProtectedChange
@@ -34,7 +34,7 @@ def add_parser(subparsers: SubParsers) -> None:
         "load", help="load the setup from FILE; the replaced data is saved next to the new data"
     )
     load.add_argument("file", metavar="FILE")
-    add_as_option(load)
+    add_author_option(load)
     load.add_argument("--check", action="store_true", help="check the file without changing anything")
     desktop = actions.add_parser("desktop", help="add an entry with an icon to the desktop menu")
     desktop.add_argument(
@@ -93,14 +93,14 @@ def _load(args: argparse.Namespace) -> int:
 
 
 def _desktop(args: argparse.Namespace) -> int:
-    from app.cli.actions.desktop_entry import install_entries, remove_entries
+    from app.cli.actions.desktop_entry import install_desktop_entries, remove_desktop_entries
 
     if args.remove and args.autostart:
         raise CommandError(
             "--remove removes the menu entry and the autostart; use it without --autostart",
             "remove-and-autostart",
         )
-    paths = remove_entries() if args.remove else install_entries(autostart=args.autostart)
+    paths = remove_desktop_entries() if args.remove else install_desktop_entries(autostart=args.autostart)
     verb = "removed" if args.remove else "written"
     sys.stdout.write("".join(f"{verb}: {path}\n" for path in paths) or "there is no entry to remove\n")
     return EXIT_OK

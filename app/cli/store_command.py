@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 from app.cli.change_author import (
     COMMAND_LINE_USER,
-    add_as_option,
-    add_consent_options,
+    add_author_option,
+    add_confirmation_options,
     get_change_author,
     get_permitted_user,
     log_user_change,
@@ -50,9 +50,9 @@ def add_parser(subparsers: SubParsers) -> None:
         action = actions.add_parser(name, help=text)
         action.add_argument("path", metavar=what)
         if name in {"restore", "import"}:
-            add_as_option(action)
+            add_author_option(action)
         if name == "import":
-            add_consent_options(action)
+            add_confirmation_options(action)
     actions.add_parser(
         "upgrade",
         help="upgrade the stored data of an older TurnDesk version, as the operator screen also does",
@@ -201,7 +201,7 @@ def _verify(args: argparse.Namespace) -> int:
 
     path = find_data_folder() / STORE_FILE_NAME
     with convert_store_errors():
-        problems = backup.find_all_problems(path) if has_store(find_data_folder()) else ()
+        problems = backup.find_all_store_problems(path) if has_store(find_data_folder()) else ()
     if args.json:
         sys.stdout.write(json.dumps({"store": str(path), "problems": problems}) + "\n")
     elif not problems:

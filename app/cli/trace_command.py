@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.expand_command import print_diagnostics
-from app.cli.program_options import add_program_options, parse_output_path, read_context, read_source
+from app.cli.program_options import add_program_options, parse_output_path, read_command_context, read_source
 from app.cli.proofs.progress_bar import ProgressBar
 from app.desk.command_errors import CommandError, make_write_error
 from core.file_replacement import replace_atomically
@@ -71,10 +71,10 @@ def run(args: argparse.Namespace) -> int:
             "--json needs --out FILE, because the setpoints and the JSON cannot both go to stdout",
             "json-needs-file",
         )
-    around = read_context(args)
+    around = read_command_context(args)
     source = read_source(path, args)
     timeline = Timeline.from_program(source, around.setup, around.machine)
-    table = _Table(around.machine, inch=source.dialect is Dialect.OMNITURN)
+    table = _SetpointTable(around.machine, inch=source.dialect is Dialect.OMNITURN)
     if args.out is None:
         _write(timeline, table, args.dt, sys.stdout.write, source)
     else:
@@ -99,7 +99,7 @@ def _write_json(timeline: Timeline, args: argparse.Namespace, path: Path) -> Non
     sys.stdout.write(json.dumps(result) + "\n")
 
 
-class _Table:
+class _SetpointTable:
     """Layout of the CSV file of a machine: time, axes in order, spindle angle and program line."""
 
     def __init__(self, machine: Machine, *, inch: bool) -> None:
@@ -122,7 +122,9 @@ class _Table:
         return "".join([self._row % row for row in zip(*(c.tolist() for c in columns), strict=True)])
 
 
-def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, source: ProgramSource) -> None:
+def _write_file(
+    timeline: Timeline, table: _SetpointTable, args: argparse.Namespace, source: ProgramSource
+) -> None:
     """Write the complete CSV file, or no file after a program error, a full disk or Ctrl+C.
 
     An existing file is replaced only by a complete file.
@@ -142,7 +144,11 @@ def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, sou
 
 
 def _write(
-    timeline: Timeline, table: _Table, dt: float, write: Callable[[str], object], source: ProgramSource
+    timeline: Timeline,
+    table: _SetpointTable,
+    dt: float,
+    write: Callable[[str], object],
+    source: ProgramSource,
 ) -> None:
     """Write the setpoints.
 

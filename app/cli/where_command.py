@@ -28,7 +28,7 @@ def run(args: argparse.Namespace) -> int:
 
     Raises CommandError if the machine file is invalid.
     """
-    places = find_places(args.machine)
+    places = find_file_locations(args.machine)
     if args.json:
         sys.stdout.write(json.dumps(places, indent=1) + "\n")
         return EXIT_OK
@@ -41,7 +41,7 @@ def run(args: argparse.Namespace) -> int:
     return EXIT_OK
 
 
-def find_places(machine_file: str | None) -> Mapping[str, str]:
+def find_file_locations(machine_file: str | None) -> Mapping[str, str]:
     """Return the path of each file and folder by name. Raises CommandError if the machine file is invalid."""
     from app import __file__ as package
     from app.compose.machine.machine_files import find_machine_path

@@ -32,7 +32,7 @@ DEMO_FOLDER_NAME = "demo"  # subfolder of the data folder
 _CHANGE_REASON = "offsets of the sample programs"
 
 
-def open_demo(machine_file: str | None) -> Path:
+def open_demo_data_folder(machine_file: str | None) -> Path:
     """Switch this process to the data folder of the demo and return the folder.
 
     On the first call, the offsets and the stock of the sample programs are written to the folder. Later
@@ -99,7 +99,7 @@ def _seed(folder: Path) -> None:
             ).result()
             store.settings.save_setting(SCREEN, {"first_job": True}).result()
             for program, part in _PARTS.items():
-                for key, value in part.make_settings(program).items():
+                for key, value in part.make_stored_settings(program).items():
                     store.settings.save_setting(key, value).result()
     except StoreError as error:
         raise CommandError(

@@ -14,12 +14,12 @@ from typing import NamedTuple
 from app.compose.backends.backend_entry import NO_PRIORITY_TEXT, ConnectedMachine, has_inverter, is_simulated
 from app.compose.backends.connection import connect_machine
 from app.compose.desk_pages import PAGES, PageSetup, get_program_folder, register_pages
-from app.compose.machine.accepted_machine import guard_commands, review_changes
-from app.compose.machine.machine_setup import read_machine, store_machine
+from app.compose.machine.accepted_machine import make_guarded_post, prepare_change_review
+from app.compose.machine.machine_setup import read_machine, save_machine_in_use
 from app.compose.optional_features import list_drawing_suffixes
 from app.compose.program_proving import create_loading_steps, create_thumbnail_drawer, get_samples_folder
 from app.compose.runs.journal import Journal
-from app.compose.runs.receipt import Receipt
+from app.compose.runs.receipt import EventReceipt
 from app.compose.stored_offsets import Offsets, create_offset_book, try_read_shapes
 from app.desk.command_errors import convert_to_command_error
 from app.desk.desk import Desk
@@ -59,7 +59,7 @@ def create_desk_and_executor(
     """
     machine = read_machine(machine_file)
     if journal is not None:
-        store_machine(machine_file, journal)
+        save_machine_in_use(machine_file, journal)
     parts = create_control_parts(machine, clock, journal, records_folder)
     closing = ClosingSequence(ControlClosing(close_drivers=parts.close_drivers))
     return create_desk(machine, parts.control, parts.events, read_offsets, closing), parts.executor
@@ -86,7 +86,7 @@ def create_control_parts(
     """
     connected = _connected(machine, clock)
     recorder = ScopeRecorder(list_recorded_signals(machine, connected.ports), records_folder)
-    events = EventDistributor(clock, journal, recorder.assign_record_name)
+    events = EventDistributor(clock, journal, recorder.add_record_name)
     executor = Executor(
         machine,
         connected.ports,
@@ -122,8 +122,8 @@ def create_desk(
     desk = _create_desk_model(machine, control, event_distributor, read_offsets, closing_sequence)
     event_distributor.desk = desk
     if journal is not None:
-        desk.alarm_log.add_stored(_list_stops(journal))
-        journal.on_late_open(partial(_handle_late_store, desk, journal))
+        desk.alarm_log.add_stored_entries(_list_stops(journal))
+        journal.set_late_open_callback(partial(_handle_late_store, desk, journal))
     for warning in (
         *control.warnings,
         *(Message("machine file: {item}", item=each) for each in desk.changes.changes),
@@ -173,12 +173,12 @@ class EventDistributor:
         self.desk: Desk | None = None
         self._clock = clock
 
-    def hear(self, event: LogEvent, receipt: Receipt | None = None) -> None:
+    def hear(self, event: LogEvent, receipt: EventReceipt | None = None) -> None:
         """Pass an event to the screen model and the journal.
 
         If a previous screen process has already stored the event, only confirm its ``receipt``.
         """
-        if receipt is not None and (self.journal is None or self.journal.has_stored(receipt.origin)):
+        if receipt is not None and (self.journal is None or self.journal.has_stored_event(receipt.origin)):
             receipt.confirm_storage()
             if self.journal is not None:
                 return
@@ -210,16 +210,21 @@ def _create_desk_model(
     journal = events.journal
     keep = journal or Persistence()
 
-    def left() -> ModalState:
+    def read_modal_state() -> ModalState:
         return control.read_snapshot().modal
 
     kept = partial(load_stored_part, keep.read_setting)
-    changed = review_changes(machine, keep, partial(events.report_event, "machine"))
+    changed = prepare_change_review(machine, keep, partial(events.report_event, "machine"))
     guarded_control = replace(
-        control, post=guard_commands(control.post, changed, partial(events.report_event, "refused"))
+        control, post=make_guarded_post(control.post, changed, partial(events.report_event, "refused"))
     )
     steps = create_loading_steps(
-        machine, offsets, journal, read_modal_state=left, read_shapes=try_read_shapes, read_stored_part=kept
+        machine,
+        offsets,
+        journal,
+        read_modal_state=read_modal_state,
+        read_shapes=try_read_shapes,
+        read_stored_part=kept,
     )
     desk = Desk(
         guarded_control,
@@ -238,8 +243,10 @@ def _create_desk_model(
         persistence=keep,
         journal=journal,
         program_folder=get_program_folder(),
-        loading_steps=create_loading_steps(machine, offsets, read_modal_state=left),
-        proof_steps=create_loading_steps(machine, offsets, read_modal_state=left, draw_pictures=False),
+        loading_steps=create_loading_steps(machine, offsets, read_modal_state=read_modal_state),
+        proof_steps=create_loading_steps(
+            machine, offsets, read_modal_state=read_modal_state, draw_pictures=False
+        ),
         read_offsets=offsets,
         read_stored_part=kept,
         draw_thumbnail=create_thumbnail_drawer(machine, try_read_shapes, kept),
@@ -253,9 +260,9 @@ def _displayed_machine(machine: Machine) -> DeskMachine:
     return DeskMachine(
         name=Message("{machine} · {machine2}", machine=machine.name, machine2=_describe_drives(machine)),
         machine=machine,
-        is_two_hand=machine.interlocks.two_hand_start,
+        has_two_hand_start=machine.interlocks.two_hand_start,
         has_c_axis=machine.is_c_enabled,
-        allows_one_hand=is_simulated(machine) and not has_inverter(machine),
+        allows_one_hand_start=is_simulated(machine) and not has_inverter(machine),
     )
 
 

@@ -13,13 +13,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.compose.optional_features import extras
-from app.compose.part_prover import ReadStoredPart, get_empty_part
+from app.compose.part_prover import ReadStoredPart, get_empty_stored_part
 from app.compose.program_proving import (
-    create_drawer,
     create_line_prover,
     create_loading_steps,
     create_part_comparer,
-    create_search,
+    create_path_drawer,
+    create_restart_search,
     get_samples_folder,
 )
 from app.compose.runs.journal import Journal
@@ -33,13 +33,13 @@ from app.desk.programs.program_loading import LoadingSteps, ProvedJob
 from app.desk.status.busy_notice import BusyNotice
 from app.jog.manual_functions import ManualFunctions
 from app.mdi.mdi_model import MdiInput, MdiModel
-from app.offsets.offset_effect import OffsetEffect
-from app.part.part_model import PartModel
-from app.production.parts_book import PartsBook, find_tool_table_kind
-from app.production.parts_watch import PartsWatch
-from app.production.tool_life_watch import ToolLifeWatch
-from app.searchto.searchto_model import SearchtoModel
-from app.special.lamps_and_sound import EventSounds
+from app.offsets.offset_effect import OffsetEffectWorker
+from app.part.part_model import PartPageModel
+from app.production.parts_book import ProductionRecords, find_tool_table_kind
+from app.production.parts_watch import ProductionMonitor
+from app.production.tool_life_watch import ToolLifeMonitor
+from app.searchto.searchto_model import RestartModel
+from app.special.lamps_and_sound import EventSoundPlayer
 from core.access.access_table import ProtectedChange
 from core.executor.job import Job
 from core.interpreter.dialects import get_code_book
@@ -53,7 +53,7 @@ if TYPE_CHECKING:
     from app.programs.program_list_model import ProgramListModel
     from app.programs.program_rows import DrawThumbnail
     from app.scope.scope_curves import LiveSamples
-    from app.special.special_functions import SpecialFunctionList
+    from app.special.special_functions import SpecialFunctionsModel
 
 _MODEST_FRACTION = 0.2  # fraction of the manual rapid, for moves inside the part
 
@@ -78,7 +78,7 @@ class PageSetup:
     loading_steps: LoadingSteps
     proof_steps: LoadingSteps
     read_offsets: Callable[[], Offsets] = read_stored_offsets
-    read_stored_part: ReadStoredPart = get_empty_part
+    read_stored_part: ReadStoredPart = get_empty_stored_part
     draw_thumbnail: DrawThumbnail | None = None
     live_samples: LiveSamples | None = None
 
@@ -97,11 +97,11 @@ def register_pages(setup: PageSetup, pages: Iterable[RegisterPage]) -> None:
 
 def _register_effect(setup: PageSetup) -> None:
     compare = create_part_comparer(setup.machine, try_read_shapes, setup.read_stored_part)
-    setup.desk.page_registry.attach_model(OffsetEffect(create_drawer(setup.machine), compare))
+    setup.desk.page_registry.attach_model(OffsetEffectWorker(create_path_drawer(setup.machine), compare))
 
 
 def _register_editor(setup: PageSetup) -> None:
-    setup.desk.page_registry.attach_lazily(
+    setup.desk.page_registry.attach_lazy_model(
         "app.editor.editor_model.EditorModel", partial(_create_editor, setup)
     )
 
@@ -112,7 +112,7 @@ def _create_editor(setup: PageSetup) -> EditorModel:
     It does not save a version after each key press.
     """
     from app.editor.editor_model import EditorModel
-    from app.editor.version_history import NullArchive
+    from app.editor.version_history import NullVersionArchive
 
     desk, machine = setup.desk, setup.machine
     work = create_loading_steps(
@@ -125,18 +125,18 @@ def _create_editor(setup: PageSetup) -> EditorModel:
     ending = get_default_extension(Dialect(machine.mdi_language))
     editor = EditorModel(
         work,
-        setup.journal or NullArchive(),
+        setup.journal or NullVersionArchive(),
         setup.program_folder,
         get_samples_folder(),
         default_extension=ending,
     )
-    editor.find_save_refusal = lambda: desk.user_access.find_refusal(ProtectedChange.PROGRAMS)
+    editor.find_save_refusal = lambda: desk.user_access.find_refusal_reason(ProtectedChange.PROGRAMS)
     return editor
 
 
 def register_programs(setup: PageSetup) -> None:
     """Register the list of programs on the screen model."""
-    setup.desk.page_registry.attach_lazily(
+    setup.desk.page_registry.attach_lazy_model(
         "app.programs.program_list_model.ProgramListModel", partial(_programs, setup)
     )
 
@@ -156,7 +156,7 @@ def _register_part(setup: PageSetup) -> None:
     machine = setup.machine
     held, of_machine = machine.clamping, frozenset(machine.silenced_checks)
     checks, holds = frozenset(PART_CHECKS), bool(held.diameter)
-    sheet = PartModel(
+    sheet = PartPageModel(
         setup.desk, setup.persistence, checks, of_machine, held.stick_out, has_workholding=holds
     )
     setup.desk.page_registry.attach_model(sheet)
@@ -195,22 +195,22 @@ def _register_searchto(setup: PageSetup) -> None:
     The restart moves at the manual rapid rate, but more slowly inside the part.
     """
     desk, rapid = setup.desk, setup.machine.limits.manual_rapid
-    choices = OperatorChoices(outside_speed_mm_s=rapid, inside_speed_mm_s=_MODEST_FRACTION * rapid)
+    choices = OperatorChoices(approach_speed_outside_mm_s=rapid, inside_speed_mm_s=_MODEST_FRACTION * rapid)
 
-    def prove(job: Job, watch: ProgressCallback) -> ProvedJob:
+    def prove_job(job: Job, watch: ProgressCallback) -> ProvedJob:
         proved = desk.program_loader.loading_steps.prove_job(job, watch)
         if desk.start_watch is None:
             return proved
         return desk.start_watch.add_first_move_check(job, proved, desk.read_snapshot(), watch)
 
-    searchto = SearchtoModel(
+    searchto = RestartModel(
         desk.program_loader,
         desk.post,
         desk.read_snapshot,
         desk.say,
         desk.clear_prompt_line,
-        create_search,
-        prove,
+        create_restart_search,
+        prove_job,
         choices,
     )
     desk.page_registry.attach_model(searchto)
@@ -222,7 +222,7 @@ def _register_searchto(setup: PageSetup) -> None:
 
 def register_sounds(setup: PageSetup) -> None:
     """Register the sounds of the operator screen, which the special functions also need."""
-    sounds = EventSounds(setup.desk, setup.persistence)
+    sounds = EventSoundPlayer(setup.desk, setup.persistence)
     setup.desk.page_registry.attach_model(sounds)
     setup.desk.page_registry.add_frame_watcher(sounds.play_new_event_sounds)
 
@@ -230,13 +230,13 @@ def register_sounds(setup: PageSetup) -> None:
 def register_special_functions(setup: PageSetup) -> None:
     """Register the list of special functions (F10)."""
     make = partial(_special_functions, setup)
-    setup.desk.page_registry.attach_lazily("app.special.special_functions.SpecialFunctionList", make)
+    setup.desk.page_registry.attach_lazy_model("app.special.special_functions.SpecialFunctionsModel", make)
 
 
-def _special_functions(setup: PageSetup) -> SpecialFunctionList:
+def _special_functions(setup: PageSetup) -> SpecialFunctionsModel:
     from app.compose.special_functions_desk import create_special_functions
 
-    sounds = setup.desk.page_registry.find_model(EventSounds)
+    sounds = setup.desk.page_registry.find_model(EventSoundPlayer)
     assert sounds is not None
     return create_special_functions(
         setup.desk, setup.machine, setup.persistence, setup.loading_steps, setup.program_folder, sounds
@@ -246,17 +246,21 @@ def _special_functions(setup: PageSetup) -> SpecialFunctionList:
 def register_production(setup: PageSetup) -> None:
     """Register the models that count and store production data."""
     desk, tools = setup.desk, find_tool_table_kind(setup.machine.kind)
-    book = setup.journal.create_parts_book(tools) if setup.journal is not None else PartsBook(tool_kind=tools)
+    book = (
+        setup.journal.create_parts_book(tools)
+        if setup.journal is not None
+        else ProductionRecords(tool_table_kind=tools)
+    )
     book.user_access = desk.user_access
-    watch = PartsWatch(desk, book, ToolLifeWatch(book, desk.desk_control.read_identity))
+    watch = ProductionMonitor(desk, book, ToolLifeMonitor(book, desk.desk_control.read_control_identity))
     desk.page_registry.attach_model(watch)
     desk.page_registry.add_run_watcher(watch)
     if tools is OffsetKind.MILL_TOOL:
         from app.offsets.mill_touch import MillToolLives
 
-        lives = watch.tool_life_watch
+        lives = watch.tool_life_monitor
         lives_of_mill = MillToolLives(
-            lives.read_lives, lambda number, cut: lives.set_cutting_time(number, cut, desk.say)
+            lives.find_tool_lives, lambda number, cut: lives.set_cutting_time(number, cut, desk.say)
         )
         desk.page_registry.attach_model(lives_of_mill)
 

@@ -22,7 +22,7 @@ from core.executor.snapshot import LogEvent, Snapshot
 from core.machine.machine_model import Machine
 from core.machine.serial_and_backup_tables import BackupTable
 from core.message import Message
-from core.store.backup import find_problems as backup_problems
+from core.store.backup import find_store_problems as backup_problems
 from core.store.store_rows import get_utc_now_text
 
 # Threads other than the executor, with the function that is lost when they end.
@@ -96,7 +96,7 @@ def _start_status_file(
     reader = MachineReader(machine, time.monotonic)
     keeper = StatusFileUpdater(
         StatusFileWriter(folder / STATUS_FILE_NAME, get_utc_now_text),
-        lambda: make_status(machine.name, reader.read_snapshot(snapshot())),
+        lambda: make_status(machine.name, reader.make_reading(snapshot())),
         make_status(machine.name, UNKNOWN_READING),
     )
     keeper.start()
@@ -109,15 +109,15 @@ def _start_daily_backup(desk: Desk, machine: Machine, journal: Journal) -> Calla
     Errors are shown and logged.
     """
 
-    def tell(why: str) -> None:
+    def report_error(why: str) -> None:
         text = tr(Message("NO DAILY BACKUP: {why}", why=why))
         desk.say(text)
         journal.hear(LogEvent(desk.read_snapshot().t, "warning", text))
 
-    def still() -> bool:
+    def is_idle() -> bool:
         return desk.read_snapshot().state not in ACTIVE_STATES
 
-    def same_disk() -> None:
+    def report_same_disk() -> None:
         text = tr(
             "DAILY BACKUPS: {folder} IS ON THE SAME DISK AS THE DATA. CHECK THAT THE BACKUP DISK IS MOUNTED"
         )
@@ -125,8 +125,8 @@ def _start_daily_backup(desk: Desk, machine: Machine, journal: Journal) -> Calla
 
     table = machine.hardware.find_driver_table(BackupTable) or BackupTable()
     folder = Path(table.folder) if table.folder else find_data_folder() / BACKUPS_FOLDER_NAME
-    daily = DailyBackup(folder, table.keep, journal.backup, backup_problems, still, tell)
+    daily = DailyBackup(folder, table.keep, journal.backup, backup_problems, is_idle, report_error)
     if table.folder:
-        daily.data_folder, daily.report_same_disk = find_data_folder(), same_disk
+        daily.data_folder, daily.report_same_disk = find_data_folder(), report_same_disk
     daily.start()
     return daily.close

@@ -33,19 +33,19 @@ def load_shipped_machines() -> dict[str, Machine]:
     return {name: load_shipped_machine(name) for name in names}
 
 
-def generate_text() -> str:
+def generate_dialects_text() -> str:
     """Return the generated text including its begin and end marks."""
     found = load_shipped_machines()
     return "\n".join([BEGIN_MARK, *_languages(found), "", *_shipped(found), END_MARK])
 
 
-def update_page(text: str) -> str:
+def update_dialects_page(text: str) -> str:
     """Return the page text with its generated part updated. Raises ValueError if a mark is missing."""
     before, mark, rest = text.partition(BEGIN_MARK)
     _, last, after = rest.partition(END_MARK)
     if not (mark and last):
         raise ValueError(f"the page needs the lines {BEGIN_MARK!r} and {END_MARK!r}")
-    return before + generate_text() + after
+    return before + generate_dialects_text() + after
 
 
 def _languages(found: dict[str, Machine]) -> Iterator[str]:
@@ -76,4 +76,4 @@ def _shipped(found: dict[str, Machine]) -> Iterator[str]:
 
 if __name__ == "__main__":
     page_path = Path(sys.argv[1])
-    page_path.write_text(update_page(page_path.read_text("utf-8")), "utf-8")
+    page_path.write_text(update_dialects_page(page_path.read_text("utf-8")), "utf-8")

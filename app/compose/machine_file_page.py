@@ -20,15 +20,15 @@ from core.key_declaration import (
     FileUnit,
     KeyField,
     ValueKind,
-    convert_to_file,
+    convert_to_file_unit,
     get_declared_keys,
 )
 from core.machine import axis_tables, machine_tables, mill_kinematics
 from core.machine.driver_tables import list_driver_tables
 from core.machine.hardware_model import AnalogInputModel
 from core.machine.machine_model import InputModel, OutputModel
-from core.page_contents import make_contents
-from core.table_schema import TableReference
+from core.page_contents import make_table_of_contents
+from core.table_schema import TableDescription
 from drivers.inverter import family_table
 
 _HEAD = """\
@@ -60,39 +60,41 @@ _AXES = "Positions are measured from home; X is a radius."
 
 def generate_page() -> str:
     """Return the complete reference page as Markdown."""
-    tables = tuple(iterate_references())
-    head = _HEAD + make_contents(map(_table_title, tables)).rstrip("\n")
+    tables = tuple(iterate_table_references())
+    head = _HEAD + make_table_of_contents(map(_table_title, tables)).rstrip("\n")
     return "\n".join([head, *(line for each in tables for line in _table(each))]) + "\n"
 
 
-def iterate_references() -> Iterator[TableReference]:
+def iterate_table_references() -> Iterator[TableDescription]:
     """Yield every table that a machine file may have, in the order of the page."""
     plain = dict(machine_tables.list_tables_without_subtables(load_all_drivers()))
-    yield TableReference(
+    yield TableDescription(
         "machine",
         "General machine settings and the timing of the setpoint queue.",
         machine_tables.get_machine_table_keys(load_all_drivers()),
     )
-    yield TableReference("limits", "Limits that apply to all axes. The table is optional.", plain["limits"])
+    yield TableDescription("limits", "Limits that apply to all axes. The table is optional.", plain["limits"])
     yield from _axes()
-    yield TableReference(
+    yield TableDescription(
         "c_axis", "Feedback from the C drive of a lathe. The table is optional.", plain["c_axis"]
     )
-    yield TableReference("spindle", "The main spindle.", plain["spindle"])
-    yield TableReference("collet", "The collet or chuck of a lathe. The table is optional.", plain["collet"])
-    yield TableReference(
+    yield TableDescription("spindle", "The main spindle.", plain["spindle"])
+    yield TableDescription(
+        "collet", "The collet or chuck of a lathe. The table is optional.", plain["collet"]
+    )
+    yield TableDescription(
         "clamping",
         "Dimensions of the chuck or collet and of the tailstock, for the collision checks. "
         "The table is optional.",
         plain["clamping"],
     )
-    yield TableReference("tooling", "How the tools are mounted. The table is optional.", plain["tooling"])
-    yield TableReference(
+    yield TableDescription("tooling", "How the tools are mounted. The table is optional.", plain["tooling"])
+    yield TableDescription(
         "checks",
         "Checks of the part that run while a program is proved. The table is optional.",
         plain["checks"],
     )
-    yield TableReference(
+    yield TableDescription(
         "interlocks",
         "Software interlocks. These interlocks never replace the safety circuit. The table is optional.",
         plain["interlocks"],
@@ -100,47 +102,47 @@ def iterate_references() -> Iterator[TableReference]:
     yield from _signals()
     yield from _kinematics()
     for table in list_driver_tables(load_all_drivers()):
-        yield TableReference(table.path, table.purpose, table.key_class)
+        yield TableDescription(table.path, table.purpose, table.key_class)
         yield from table.sub_tables
     yield from family_table.FAMILY_TABLES
 
 
-def _axes() -> Iterator[TableReference]:
-    yield TableReference(
+def _axes() -> Iterator[TableDescription]:
+    yield TableDescription(
         "axis.X, axis.Y, axis.Z",
         f"A linear axis. {_AXES} A lathe has X and Z, a mill X, Y and Z; all of them are required.",
         axis_tables.LinearAxisKeys,
     )
-    yield TableReference(
+    yield TableDescription(
         "axis.X.home, axis.Y.home, axis.Z.home",
         "Homing settings of a linear axis. An axis with `absolute = true` does not need this table.",
         axis_tables.HomingKeys,
     )
-    yield TableReference(
+    yield TableDescription(
         "axis.C of a lathe",
         "The C axis of a lathe. A lathe without this table does not have a C axis.",
         axis_tables.LatheCAxisKeys,
     )
-    yield TableReference(
+    yield TableDescription(
         "axis.C of a lathe, linear",
         "Keys of the third axis of a lathe if it is a linear axis (`linear = true`).",
         axis_tables.LinearThirdAxisKeys,
     )
-    yield TableReference(
+    yield TableDescription(
         "axis.A, axis.B, axis.C of a mill",
         "A rotary axis of a mill. A mill can have at most two rotary axes, and each "
         "axis needs a table in [kinematics].",
         axis_tables.RotaryAxisKeys,
     )
-    yield TableReference(
+    yield TableDescription(
         "axis.A.home, axis.B.home, axis.C.home of a mill",
         "Homing settings of a rotary axis. An axis with `absolute = true` does not need this table.",
         axis_tables.RotaryHomingKeys,
     )
 
 
-def _signals() -> Iterator[TableReference]:
-    yield TableReference(
+def _signals() -> Iterator[TableDescription]:
+    yield TableDescription(
         "io.out.…",
         "An output; the last word of the heading is its name. `coolant` is required, and `collet` on a "
         "lathe. "
@@ -149,7 +151,7 @@ def _signals() -> Iterator[TableReference]:
         "whose name begins with `live` drives the live tool.",
         OutputModel,
     )
-    yield TableReference(
+    yield TableDescription(
         "io.in.…",
         "An input; the last word of the heading is its name. `estop` is required. "
         "Other names with a predefined meaning: `start`, `hold`, `guard`, "
@@ -158,32 +160,32 @@ def _signals() -> Iterator[TableReference]:
         "(M91 to M97).",
         InputModel,
     )
-    yield TableReference(
+    yield TableDescription(
         "io.analog.…",
         "An analog signal: `feed_pot`, `spindle_pot`, `handwheel` or `spindle_load`.",
         AnalogInputModel,
     )
-    yield TableReference(
+    yield TableDescription(
         "m_codes.…",
         "An M code that switches an output; the last word of the heading is the number of "
         "the code, without a leading zero. M codes that are part of the programming language "
         "are rejected.",
         machine_tables.MCodeKeys,
     )
-    yield TableReference(
+    yield TableDescription(
         "m_codes.… with ignored = true",
         "An M code from another machine; this machine ignores the code.",
         machine_tables.IgnoredMCodeKeys,
     )
 
 
-def _kinematics() -> Iterator[TableReference]:
-    yield TableReference(
+def _kinematics() -> Iterator[TableDescription]:
+    yield TableDescription(
         mill_kinematics.KINEMATICS_TABLE,
         "The position of the workpiece on a mill with rotary axes.",
         mill_kinematics.KinematicsModel,
     )
-    yield TableReference(
+    yield TableDescription(
         "kinematics.A, kinematics.B, kinematics.C",
         "Location of a rotary axis of a mill.",
         mill_kinematics.RotaryModel,
@@ -193,12 +195,12 @@ def _kinematics() -> Iterator[TableReference]:
 # --- One table as Markdown.
 
 
-def _table_title(table: TableReference) -> str:
+def _table_title(table: TableDescription) -> str:
     """Return the heading of a table, with each table name in brackets and formatted as code."""
     return re.sub(r"[\w\[\]]+(?:\.[\w…\]]+)+|^\w+", r"`[\g<0>]`", table.heading)
 
 
-def _table(table: TableReference) -> Iterator[str]:
+def _table(table: TableDescription) -> Iterator[str]:
     yield from ("", f"## {_table_title(table)}", "", *_wrapped(table.purpose))
     if fields := get_declared_keys(table.keys):
         yield from ("", "| key | unit | range | default | meaning |", "|---|---|---|---|---|")
@@ -250,11 +252,11 @@ def _format_in_units(unit: FileUnit, *values: float) -> str:
     Lengths are given in mm and inches.
     """
     if unit not in LENGTH_UNITS:
-        return " to ".join(number(convert_to_file(value, unit, is_inch=False)) for value in values)
+        return " to ".join(number(convert_to_file_unit(value, unit, is_inch=False)) for value in values)
     if values == (0.0,):
         return "0"
-    metric = " to ".join(number(convert_to_file(value, unit, is_inch=False)) for value in values)
-    inches = " to ".join(_format_inches(convert_to_file(value, unit, is_inch=True)) for value in values)
+    metric = " to ".join(number(convert_to_file_unit(value, unit, is_inch=False)) for value in values)
+    inches = " to ".join(_format_inches(convert_to_file_unit(value, unit, is_inch=True)) for value in values)
     return f"{metric} mm, {inches} in"
 
 

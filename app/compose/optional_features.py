@@ -15,7 +15,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 if TYPE_CHECKING:
-    from app.compose.backends.backend_entry import CheckResults, ConnectedMachine
+    from app.compose.backends.backend_entry import ConnectedMachine, MachineCheckResults
     from app.compose.runs.journal import Journal
     from app.desk.background_work import LatestRequestWorker
     from app.desk.desk import Desk
@@ -130,7 +130,7 @@ class OptionalFeature:
         the reason on the prompt line and in the event log.
         """
 
-    def start_headless(
+    def start_headless_services(
         self,
         machine: Machine,
         read_snapshot: Callable[[], Snapshot],
@@ -171,7 +171,7 @@ class OptionalFeature:
         """
         return False
 
-    def add_check_rows(self, machine: Machine, results: CheckResults) -> None:
+    def add_check_rows(self, machine: Machine, results: MachineCheckResults) -> None:
         """Add the rows of this feature to the results of ``turndesk machine check``."""
 
 
@@ -213,7 +213,7 @@ def _modules(words_of: Callable[[OptionalFeature], Iterable[str]]) -> Mapping[st
     }
 
 
-def find_worker_class() -> str:
+def find_worker_class_name() -> str:
     """Return the dotted class name of the workers that prove programs on other computers.
 
     The name is empty if no feature provides such a class.
@@ -226,7 +226,7 @@ def list_drawing_suffixes() -> tuple[str, ...]:
     return tuple(ending for extra in extras().values() for ending in extra.drawing_suffixes)
 
 
-def insert_after(
+def insert_items_after(
     items: Iterable[T], get_name: Callable[[T], str], additions: Iterable[tuple[T, str]]
 ) -> list[T]:
     """Return ``items`` with each addition inserted after the item that the addition names.

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 MACHINE_FILE_REASON = "set by the machine file"
 
 
-def read_known_part(
+def make_part_settings(
     machine: Machine,
     tools: Mapping[int, ToolOffset],
     shapes: Mapping[int, ToolShape],
@@ -42,9 +42,11 @@ def read_known_part(
         shapes=shapes,
         nose_radii={number: tool.nose_radius for number, tool in tools.items()},
         clamping=_stock_clamping(machine, stick_out_mm),
-        drives=DriveLimits(machine.axes[1].max_acceleration, machine.spindle.decel),
+        drives=DriveLimits(machine.axes[1].max_acceleration, machine.spindle.deceleration_rpm_s),
         gang={n: (tool.z, tool.x) for n, tool in tools.items()} if machine.tooling_kind == "gang" else {},
-        live_codes=any(on and name.startswith(LIVE_TOOL_PREFIX) for name, on in machine.m_codes.values()),
+        live_codes=any(
+            on and name.startswith(LIVE_TOOL_PREFIX) for name, on in machine.m_code_outputs.values()
+        ),
         silenced=dict.fromkeys(machine.silenced_checks, MACHINE_FILE_REASON),
         travel=_axis_travel(machine),
     )
@@ -123,5 +125,5 @@ def save_stock(program: str, text: str, stick_out_mm: float | None) -> None:
     with convert_to_command_error(StoreError), Store.open(find_data_folder()) as store:
         kept = replace(load_stored_part(store.settings.read_setting, program), stock_text=text)
         kept = kept if stick_out_mm is None else replace(kept, stick_out_mm=stick_out_mm)
-        for key, value in kept.make_settings(program).items():
+        for key, value in kept.make_stored_settings(program).items():
             store.settings.save_setting(key, value).result()

@@ -12,12 +12,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.desk.background_work import AbandonedError, ProgressCallback, describe_error
+from app.desk.background_work import ProgressCallback, WorkAbandonedError, describe_error
 from app.desk.programs.program_loading import PartProof
 from app.desk.stored_part import EMPTY_STORED_PART, StoredPart
 from core.language.diagnostics import Diagnostic, Severity
 from core.message import Message
-from core.proving.checks.part_checks import is_serious
+from core.proving.checks.part_checks import is_serious_finding
 from core.store.store_errors import StoreError
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from core.language.source import ProgramSource
     from core.machine.machine_model import Machine
     from core.part.tool_shape import ToolShape
-    from core.proving.offset_comparison import ComparedPart
+    from core.proving.offset_comparison import OffsetComparisonResult
     from core.proving.part_history import ProgramSteps
     from core.proving.program_tools import PartSettings
     from core.proving.proof_report import PartReport
@@ -43,7 +43,7 @@ _log = logging.getLogger(__name__)
 NOT_MADE, NO_STOCK = "part-not-made", "stock-unusable"
 
 
-def get_empty_part(_program: str) -> StoredPart:
+def get_empty_stored_part(_program: str) -> StoredPart:
     """Return empty part data, for callers without a store."""
     return EMPTY_STORED_PART
 
@@ -60,17 +60,17 @@ class PartProver:
     read_stored_part: ReadStoredPart
     read_source: Callable[[Path], ProgramSource]
 
-    def read_settings(
+    def read_part_settings(
         self, job: Job, report_progress: ProgressCallback
     ) -> tuple[PartSettings, Diagnostic | None]:
         """Return the specified stock, tools and clamping, and a finding if the stock cannot be used.
 
         The finding is None if the stock can be used or if no stock is specified.
         """
-        from app.compose.part_data import apply_stored_clamping, read_known_part
+        from app.compose.part_data import apply_stored_clamping, make_part_settings
         from app.compose.specified_stock import StockContext, read_stock
 
-        setting = read_known_part(self.machine, job.setup.tools, self.read_shapes())
+        setting = make_part_settings(self.machine, job.setup.tools, self.read_shapes())
         try:
             kept = self.read_stored_part(job.source.name)
         except StoreError as error:
@@ -88,17 +88,17 @@ class PartProver:
 
     def compare_parts(
         self, old_job: Job, new_job: Job, report_progress: ProgressCallback
-    ) -> ComparedPart | None:
+    ) -> OffsetComparisonResult | None:
         """Return a comparison of the parts that a job makes with old and with new offsets.
 
         The result is None if the job does not make a part.
         """
         from core.proving.offset_comparison import FINE_COLUMN_WIDTH_MM, ProvedPart, prove_other_offsets
-        from core.proving.part_proof import prove_with_part
+        from core.proving.part_proof import prove_program_and_part
 
-        setting = replace(self.read_settings(old_job, report_progress)[0], step=FINE_COLUMN_WIDTH_MM)
+        setting = replace(self.read_part_settings(old_job, report_progress)[0], step=FINE_COLUMN_WIDTH_MM)
         around = old_job.setup, self.machine, setting
-        report, part = prove_with_part(
+        report, part = prove_program_and_part(
             old_job.shared_program, *around, report_progress, check_canceled=report_progress
         )
         if part is None or part.last_piece is None:
@@ -116,7 +116,7 @@ class PartProver:
             report = PartProof(program_steps.part_settings, program_steps.block_groups).make_report(
                 report_progress
             )
-        except AbandonedError:
+        except WorkAbandonedError:
             raise
         except Exception as error:  # noqa: BLE001 - the program itself is proved, and may be run
             _log.exception("proving the part")
@@ -160,7 +160,7 @@ def _is_announced(finding: Diagnostic) -> bool:
     """
     if finding.code in {NOT_MADE, NO_STOCK}:
         return True
-    return is_serious(finding) and finding.severity is not Severity.ERROR
+    return is_serious_finding(finding) and finding.severity is not Severity.ERROR
 
 
 def _shorten(finding: Diagnostic) -> str:

@@ -8,7 +8,7 @@ from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
 from app.desk.persistence import Persistence
 from app.desk.programs.program_loading import LoadingSteps
-from app.programs.import_export import ImportExport
+from app.programs.import_export import ProgramTransfer
 from app.programs.program_list_model import ProgramListModel
 from app.programs.program_rows import DrawThumbnail, ProgramPreview
 from app.programs.removable_media import FolderChooser
@@ -27,7 +27,7 @@ def create_program_list(
     Imported programs are proved with the offsets at the time of the import.
     """
 
-    def check(path: Path) -> str:
+    def prove_imported_program(path: Path) -> str:
         job = loading_steps.make_job(loading_steps.read_source(path), False)
         proved = loading_steps.prove_job(job, lambda _count: None)
         errors = proved.proof.errors
@@ -41,8 +41,8 @@ def create_program_list(
         return errors[0] if errors else ""
 
     worker = LatestRequestWorker("editing-programs")
-    chooser = FolderChooser(Path.home(), accepts_name=desk.program_choice.program_folders.accepts_name)
-    transfer = ImportExport(desk, folder, persistence, worker, check, chooser)
+    chooser = FolderChooser(Path.home(), accepts_name=desk.program_choice.program_folders.accepts_file_name)
+    transfer = ProgramTransfer(desk, folder, persistence, worker, prove_imported_program, chooser)
     return ProgramListModel(
         desk, folder, persistence, worker, ProgramPreview(loading_steps, draw_thumbnail), transfer
     )

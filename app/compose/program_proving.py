@@ -11,7 +11,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.compose.part_prover import PartProver, ReadShapes, ReadStoredPart, get_empty_part
+from app.compose.part_prover import PartProver, ReadShapes, ReadStoredPart, get_empty_stored_part
 from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import Offsets, create_setup_with_offsets
 from app.compose.thumbnails import HIGH, WIDE, ThumbnailCache
@@ -50,7 +50,7 @@ def create_loading_steps(
     *,
     read_modal_state: Callable[[], ModalState] | None = None,
     read_shapes: ReadShapes = dict,
-    read_stored_part: ReadStoredPart = get_empty_part,
+    read_stored_part: ReadStoredPart = get_empty_stored_part,
     draw_pictures: bool = True,
 ) -> LoadingSteps:
     """Return the functions that load a program.
@@ -60,7 +60,7 @@ def create_loading_steps(
     true, programs are drawn and their parts proved.
     """
 
-    def new_job(source: ProgramSource, block_delete: bool) -> Job:
+    def make_new_job(source: ProgramSource, block_delete: bool) -> Job:
         if journal is not None:
             journal.keep(source)
         setup = create_setup_with_offsets(machine, read_offsets(), block_delete=block_delete)
@@ -69,14 +69,16 @@ def create_loading_steps(
             setup = replace(setup, metric=modal.metric, last_rapid=modal.rapid_rate)
         return make_job(_read_complete(source), setup)
 
-    def renewed(job: Job) -> Job:
+    def renew_job(job: Job) -> Job:
         now = create_setup_with_offsets(machine, read_offsets(), block_delete=job.setup.block_delete)
         setup = replace(now, metric=job.setup.metric, last_rapid=job.setup.last_rapid)
         return replace(make_job(job.source, setup), shared_program=job.shared_program)
 
     parts = PartProver(machine, read_shapes, read_stored_part, _read)
     passes = _ProofAndPicture(machine, parts, pictures=draw_pictures)
-    return LoadingSteps(_read, new_job, passes.prove_job, passes.draw_picture, renewed, passes.prove_part)
+    return LoadingSteps(
+        _read, make_new_job, passes.prove_job, passes.draw_picture, renew_job, passes.prove_part
+    )
 
 
 class _ProofAndPicture:
@@ -97,10 +99,10 @@ class _ProofAndPicture:
         self._drawn, sketch = None, PictureBuilder(millimetres)
         gathered, waits = None, False
         if self._pictures and self._machine.kind == "lathe":
-            setting, self._trouble = self._parts.read_settings(job, report_progress)
+            setting, self._trouble = self._parts.read_part_settings(job, report_progress)
             gathered = StepCollector(setting)
 
-        def seen(span: MotionSpan | RestSpan) -> None:
+        def add_span(span: MotionSpan | RestSpan) -> None:
             for each in span.iter_group_times():
                 sketch.add_timed_blocks(each)
             if gathered is not None:
@@ -111,7 +113,7 @@ class _ProofAndPicture:
             job.setup,
             self._machine,
             report_progress,
-            on_span=seen if self._pictures else None,
+            on_span=add_span if self._pictures else None,
         )
         if self._pictures:
             part, why = (
@@ -168,9 +170,9 @@ def create_proof(job: Job, report: ProofReport) -> Proof:
         digest=job.digest,
         errors=tuple(d.format_one_line(job.source.name) for d in report.errors),
         block_count=report.elementary_block_count,
-        cycle_time_s=report.times.cycle_s,
+        cycle_time_s=report.program_times.cycle_time_s,
         tool_numbers=report.tool_numbers,
-        measured_tools=tuple(sorted({*report.tool_numbers} - {*report.missing_tools})),
+        measured_tools=tuple(sorted({*report.tool_numbers} - {*report.missing_tool_numbers})),
         required_functions=report.required_functions,
     )
 
@@ -179,7 +181,7 @@ def create_proof(job: Job, report: ProofReport) -> Proof:
 
 
 def create_part_comparer(
-    machine: Machine, read_shapes: ReadShapes = dict, read_stored_part: ReadStoredPart = get_empty_part
+    machine: Machine, read_shapes: ReadShapes = dict, read_stored_part: ReadStoredPart = get_empty_stored_part
 ) -> ComparePart:
     """Return a function that compares the parts that a job makes with two sets of offsets."""
     return PartProver(machine, read_shapes, read_stored_part, _read).compare_parts
@@ -199,17 +201,17 @@ def create_thumbnail_drawer(
     return ThumbnailCache(find_data_folder() / "thumbnails", machine, parts, *size_px).get_thumbnail
 
 
-def create_drawer(machine: Machine) -> DrawPaths:
+def create_path_drawer(machine: Machine) -> DrawPaths:
     """Return a function that draws the tool path of a job with specified tool offsets."""
 
-    def draw(job: Job, frame: Mapping[int, ToolOffset], watch: ProgressCallback) -> ProgramPicture:
+    def draw_path(job: Job, frame: Mapping[int, ToolOffset], watch: ProgressCallback) -> ProgramPicture:
         from app.path.path_picture import build_picture
         from core.proving.program_timeline import Timeline, iter_timed_blocks
 
         blocks = iter_timed_blocks(Timeline.from_program(job.shared_program, job.setup, machine))
         return build_picture(_shift_part_zero(blocks, frame), watch)
 
-    return draw
+    return draw_path
 
 
 def _shift_part_zero(blocks: Iterator[TimedBlocks], frame: Mapping[int, ToolOffset]) -> Iterator[TimedBlocks]:
@@ -217,16 +219,20 @@ def _shift_part_zero(blocks: Iterator[TimedBlocks], frame: Mapping[int, ToolOffs
     for block, start, end in blocks:
         modal = block.modal
         offset = frame.get(modal.tool, ToolOffset())
-        if (modal.tool_x, modal.tool_z) == (offset.x, offset.z):
+        if (modal.tool_offset_x, modal.tool_offset_z) == (offset.x, offset.z):
             yield block, start, end
         else:
-            yield replace(block, modal=modal._replace(tool_x=offset.x, tool_z=offset.z)), start, end
+            yield (
+                replace(block, modal=modal._replace(tool_offset_x=offset.x, tool_offset_z=offset.z)),
+                start,
+                end,
+            )
 
 
 # --- MDI: proof of its lines on this machine.
 
 
-def read_checkpoint(snapshot: Snapshot) -> Checkpoint:
+def make_checkpoint(snapshot: Snapshot) -> Checkpoint:
     """Return the modal state of the machine that the next line inherits."""
     return Checkpoint(
         snapshot.modal, tool_line=-1 if snapshot.is_tool_move_pending else 0, kept=snapshot.kept
@@ -245,7 +251,7 @@ def create_line_prover(machine: Machine, read_offsets: Callable[[], Offsets]) ->
         setup = replace(
             create_setup_with_offsets(machine, read_offsets()),
             start=snapshot.demand,
-            begin=PassStart(read_checkpoint(snapshot), is_mdi_line=True),
+            begin=PassStart(make_checkpoint(snapshot), is_mdi_line=True),
         )
         job = make_job(ProgramSource("MDI", text, Dialect(machine.mdi_language)), setup)
         report = prove(job.shared_program, job.setup, machine, watch)
@@ -257,15 +263,15 @@ def create_line_prover(machine: Machine, read_offsets: Callable[[], Offsets]) ->
 # --- SEARCHTO on this machine.
 
 
-def create_search(job: Job, report_progress: ProgressCallback) -> RestartSearch:
+def create_restart_search(job: Job, report_progress: ProgressCallback) -> RestartSearch:
     """Return the search for restart lines in a job's program.
 
     The interpreter is loaded on first use.
     """
     if job.source.dialect is not Dialect.OMNITURN:
-        from core.interpreter.restart.program_search import BlockSearch
+        from core.interpreter.restart.program_search import RestartLineSearch
 
-        return BlockSearch(job.shared_program, job.setup, report_progress)
-    from core.interpreter.restart.state_rebuild import OmniturnSearch
+        return RestartLineSearch(job.shared_program, job.setup, report_progress)
+    from core.interpreter.restart.state_rebuild import OmniturnRestartSearch
 
-    return OmniturnSearch(job.source, job.setup, report_progress)
+    return OmniturnRestartSearch(job.source, job.setup, report_progress)

@@ -27,7 +27,7 @@ DEFAULT_SETTINGS = SerialLineModel("", 9600, 8, "N", 1, "xonxoff", "%", "\r\n")
 CheckProgram = Callable[[ProgramSource], tuple[tuple[str, ...], float]]
 
 
-class SerialLines:
+class SerialPortLines:
     """Implementation of ``app.transfer.line_transfer.Lines``.
 
     ``check_program`` proves received programs. ``file_suffix`` is the suffix of the files in which they are
@@ -132,7 +132,7 @@ class ProgramReceiveTransfer(_LineTransfer):
         return self._looked_at(inner.receive_program())
 
     def _looked_at(self, program: ReceivedText) -> ReceivedProgram:
-        name = program.name or "RECEIVED"
+        name = program.program_name or "RECEIVED"
         name = name if Path(name).suffix else name + self._ending
         source = _create_source(program.program_bytes, name)
         try:
@@ -141,11 +141,11 @@ class ProgramReceiveTransfer(_LineTransfer):
             findings, cycle = (str(error),), 0.0
         return ReceivedProgram(
             program_bytes=source.text.encode("utf-8"),
-            name=name,
+            file_name=name,
             line_count=program.line_count,
             sha256=program.sha256,
             is_seven_bit=program.is_seven_bit,
-            skipped_bytes=program.skipped_byte_count,
+            skipped_byte_count=program.skipped_byte_count,
             finding_texts=findings,
             cycle_time_s=cycle,
         )
@@ -157,14 +157,14 @@ def make_transfer_settings(model: SerialLineModel) -> TransferSettings:
     return TransferSettings(line, model.wrap, model.eol, model.dc_codes, model.wait, model.leader)
 
 
-def create_proof_check(loading_steps: LoadingSteps) -> CheckProgram:
+def create_program_checker(loading_steps: LoadingSteps) -> CheckProgram:
     """Return a function that proves a program on this machine with the current offsets."""
 
-    def check(source: ProgramSource) -> tuple[tuple[str, ...], float]:
+    def prove_source(source: ProgramSource) -> tuple[tuple[str, ...], float]:
         proved = loading_steps.prove_job(loading_steps.make_job(source, False), lambda _count: None)
         return proved.proof.errors, proved.proof.cycle_time_s
 
-    return check
+    return prove_source
 
 
 def _create_source(text: bytes, name: str) -> ProgramSource:

@@ -34,11 +34,11 @@ class RecordedSamples:
         return self.recorder.ring.samples.last_time_s
 
     @property
-    def buffer_length_s(self) -> float:
+    def buffer_duration_s(self) -> float:
         """Return the duration of the ring buffer, in seconds."""
         return self.recorder.ring.layout.duration_s
 
-    def read_between(
+    def read_samples_between(
         self, start_s: float, end_s: float, channel_names: Collection[str] | None = None
     ) -> ScopeRecord:
         """Return the samples from ``start_s`` to ``end_s`` inclusive."""
@@ -51,7 +51,9 @@ def register_scope(desk: Desk, live_samples: LiveSamples | None) -> None:
     Without a source of samples, the scope shows only files. The scope is created when the operator first
     opens its page.
     """
-    desk.page_registry.attach_lazily("app.scope.scope_model.ScopeModel", partial(_scope, desk, live_samples))
+    desk.page_registry.attach_lazy_model(
+        "app.scope.scope_model.ScopeModel", partial(_scope, desk, live_samples)
+    )
     desk.page_registry.set_recording_opener(partial(_open_alarm_recording, desk))
 
 

@@ -15,7 +15,7 @@ from app.compose.control.control_start import StartedControl
 from app.compose.control.live_control import LiveControl
 from app.compose.desk_assembly import EventDistributor, create_control_parts, create_desk
 from app.compose.desk_services import SUPERVISED_THREAD_TEXTS, DeskServices, report_ended_thread
-from app.compose.machine.machine_setup import store_machine
+from app.compose.machine.machine_setup import save_machine_in_use
 from app.compose.runs.error_log import ErrorLog
 from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import Offsets, read_stored_offsets
@@ -26,7 +26,7 @@ from app.desk.pages.attached_parts import ClosingSequence, ControlClosing
 from app.desk.state.desk_control import DeskControl
 from core.closing_steps import ClosingStep
 from core.executor.commands import ReportInterruptedJob
-from core.executor.safety.watchdog import ExecutorThread, ThreadWatch, Watchdog
+from core.executor.safety.watchdog import ExecutorThread, ThreadMonitor, Watchdog
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import DriverError
@@ -66,7 +66,7 @@ def build_desk(
         ),
     )
     try:
-        store_machine(machine_file, journal)
+        save_machine_in_use(machine_file, journal)
         if control is None:
             desk = _create_threaded_desk(machine, read_offsets, journal, closing)
         else:
@@ -147,7 +147,7 @@ def _create_process_desk(
         live.restart,
         lambda: live.client.hello_message.control_identity,
     )
-    threads = ThreadWatch(SUPERVISED_THREAD_TEXTS, partial(report_ended_thread, events.report_warning))
+    threads = ThreadMonitor(SUPERVISED_THREAD_TEXTS, partial(report_ended_thread, events.report_warning))
     control_closing = ControlClosing(
         (
             ClosingStep("threads", threads.stop_reporting),  # threads that end from now on end as intended
@@ -155,10 +155,10 @@ def _create_process_desk(
         )
     )
     desk = create_desk(machine, used, events, offsets, replace(closing, control=control_closing))
-    for right in client.hello_message.rights:
+    for right in client.hello_message.process_rights:
         words = Message("control process: {name}: {granted}", name=right.name, granted=right.granted)
         events.report_event("rights", right.missing or words)
-    desk.page_registry.add_frame_watcher(live.report_alive)
+    desk.page_registry.add_frame_watcher(live.report_screen_alive)
     live.start_threads(
         ControlEventHandlers(
             events.hear,

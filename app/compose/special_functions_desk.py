@@ -5,23 +5,23 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from app.compose.optional_features import extras, insert_after
-from app.compose.program_transfer import DEFAULT_SETTINGS, SerialLines, create_proof_check
+from app.compose.optional_features import extras, insert_items_after
+from app.compose.program_transfer import DEFAULT_SETTINGS, SerialPortLines, create_program_checker
 from app.desk.background_work import LatestRequestWorker
 from app.desk.data_folder import BACKUPS_FOLDER_NAME, find_data_folder
 from app.desk.desk import Desk
 from app.desk.persistence import Persistence
 from app.desk.programs.program_loading import LoadingSteps
-from app.production.parts_watch import PartsWatch
+from app.production.parts_watch import ProductionMonitor
 from app.scope.scope_function import ScopeFunction
 from app.special.backup_and_restore import BackupFunction
 from app.special.counter_functions import PartsCounterFunction, ToolLifeFunction
 from app.special.inputs_outputs import DriveStatusFunction, SignalsFunction
-from app.special.lamps_and_sound import EventSounds, LampsAndSoundFunction
+from app.special.lamps_and_sound import EventSoundPlayer, LampsAndSoundFunction
 from app.special.machine_records import EventLogFunction, MachineFileFunction
 from app.special.operator_settings import RParametersFunction, ScreenSettingsFunction, SpindleLimitFunction
 from app.special.setup_sheet_function import SetupSheetFunction
-from app.special.special_functions import SpecialFunction, SpecialFunctionList
+from app.special.special_functions import SpecialFunction, SpecialFunctionsModel
 from app.transfer.serial_transfer import SerialTransferFunction
 from core.language.source import Dialect, get_default_extension
 from core.machine.machine_model import Machine
@@ -39,12 +39,12 @@ def _backup(
         desk, persistence, worker, find_data_folder() / BACKUPS_FOLDER_NAME, daily_folder=daily
     )
 
-    def restored() -> None:
+    def reload_restored_data() -> None:
         desk.settings_store.reload()
         desk.program_runs.part_counter.reload()
         desk.user_access.reload()
 
-    backup.on_restored = restored
+    backup.on_restored = reload_restored_data
     return backup
 
 
@@ -61,7 +61,9 @@ def _create_transfer(
 
     Its initial settings are in [dnc] of the machine file.
     """
-    lines = SerialLines(create_proof_check(workshop), get_default_extension(Dialect(machine.mdi_language)))
+    lines = SerialPortLines(
+        create_program_checker(workshop), get_default_extension(Dialect(machine.mdi_language))
+    )
     return SerialTransferFunction(
         desk,
         persistence,
@@ -91,8 +93,8 @@ def create_special_functions(
     persistence: Persistence,
     loading_steps: LoadingSteps,
     program_folder: Path,
-    sounds: EventSounds,
-) -> SpecialFunctionList:
+    sounds: EventSoundPlayer,
+) -> SpecialFunctionsModel:
     """Return the list of all special functions.
 
     ``loading_steps`` proves programs received over RS-232, and ``program_folder`` is the folder of the
@@ -103,7 +105,7 @@ def create_special_functions(
     functions.append(_create_transfer(desk, machine, persistence, loading_steps, program_folder))
     functions.append(_setup_sheet(desk, machine, persistence, worker))
     functions.append(ScopeFunction(desk))
-    watch = desk.page_registry.find_model(PartsWatch)
+    watch = desk.page_registry.find_model(ProductionMonitor)
     if watch is not None and machine.kind == "lathe":
         functions.append(ToolLifeFunction(desk, watch))
     functions.append(LampsAndSoundFunction(desk, machine, sounds))
@@ -116,4 +118,4 @@ def create_special_functions(
         for extra in extras().values()
         for pair in extra.list_special_functions(desk, machine, persistence, worker)
     ]
-    return SpecialFunctionList(insert_after(functions, lambda function: function.name, added), worker)
+    return SpecialFunctionsModel(insert_items_after(functions, lambda function: function.name, added), worker)

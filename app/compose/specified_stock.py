@@ -14,10 +14,10 @@ from app.compose.part_data import apply_stored_clamping
 from app.desk.stored_part import EMPTY_STORED_PART, StoredPart
 from core.input_file import BYTES_PER_MB, read_input_text
 from core.message import Message
-from core.part.stock_spec import StockError, parse_profile, parse_specification
+from core.part.stock_spec import StockError, parse_stock_profile, parse_stock_specification
 
 if TYPE_CHECKING:
-    from core.interpreter.shared.job_setup import Setup
+    from core.interpreter.shared.job_setup import InterpreterSetup
     from core.language.source import ProgramSource
     from core.machine.machine_model import Machine
     from core.part.stock import Stock
@@ -38,7 +38,7 @@ class StockContext(NamedTuple):
     """
 
     read_source: Callable[[Path], ProgramSource]
-    setup: Setup
+    setup: InterpreterSetup
     machine: Machine
     part_settings: PartSettings
     report_progress: ReportProgress | None = None
@@ -53,7 +53,7 @@ def read_stock(text: str, context: StockContext) -> Stock | StockSpec:
     preceding program does not produce a part. Exceptions of ``context.read_source`` and
     ``context.read_stored_part`` are passed on.
     """
-    spec = parse_specification(text)
+    spec = parse_stock_specification(text)
     if spec.after:
         return _stock_from_program(Path(spec.after), context, spec)
     if not spec.profile:
@@ -77,18 +77,20 @@ def read_stock(text: str, context: StockContext) -> Stock | StockSpec:
             ),
             "not-text",
         ) from error
-    parse_profile(spec.given, points, 1.0, spec.allowance)  # checks the profile
+    parse_stock_profile(spec.given, points, 1.0, spec.allowance)  # checks the profile
     return replace(spec, points=points)
 
 
 def _stock_from_program(path: Path, context: StockContext, spec: StockSpec) -> Stock:
     """Return the last part that the preceding program makes. This part is the stock."""
     from core.part.stock import Stock
-    from core.proving.part_proof import prove_with_part
+    from core.proving.part_proof import prove_program_and_part
 
     source = context.read_source(path)
     setting = _initial_setting(source.name, spec, context)
-    report, part = prove_with_part(source, context.setup, context.machine, setting, context.report_progress)
+    report, part = prove_program_and_part(
+        source, context.setup, context.machine, setting, context.report_progress
+    )
     if report.errors or part is None or part.last_piece is None:
         first = Message(": {errors}", errors=report.errors[0].text) if report.errors else ""
         raise StockError(

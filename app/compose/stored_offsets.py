@@ -8,7 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from app.desk.command_errors import CommandError, convert_to_command_error
 from app.desk.data_folder import find_data_folder
 from app.offsets.active_offsets import (
@@ -22,10 +22,10 @@ from app.offsets.active_offsets import (
     make_tool_offsets,
     parse_r_parameters,
 )
-from core.interpreter.shared.job_setup import SecondaryOffset, Setup, ToolOffset, ZeroOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, SecondaryOffset, ToolOffset, ZeroOffset
 from core.message import Message
 from core.store.store_file import has_store
-from core.store.store_rows import SecondaryRow, ToolRow, ZeroRow
+from core.store.store_rows import SecondaryOffsetRow, ToolOffsetRow, ZeroOffsetRow
 
 if TYPE_CHECKING:
     from app.compose.runs.journal import Journal
@@ -59,10 +59,10 @@ def create_setup_with_offsets(
     input_states: Mapping[str, bool] | None = None,
     block_delete: bool = False,
     is_strict: bool = False,
-) -> Setup:
+) -> InterpreterSetup:
     """Return the setup of a program that starts after power-up with these offsets."""
     return add_mill_offsets(
-        create_setup(
+        create_power_up_setup(
             machine,
             tool_offsets=offsets.tool_offsets,
             secondary_offsets=offsets.secondary_offsets,
@@ -102,12 +102,12 @@ def read_stored_shapes() -> dict[int, ToolShape]:
     folder = find_data_folder()
     if not has_store(folder):
         return {}
-    from app.desk.stored_shapes import describe_mistakes, make_tool_shapes
+    from app.desk.stored_shapes import describe_shape_mistakes, make_tool_shapes
     from core.store.store import Store, StoreError
 
     with convert_to_command_error(StoreError), Store.open(folder, read_only=True) as store:
         shapes, tools = store.offsets.tool_shapes.read_rows(), store.offsets.tool_offsets.read_rows()
-    if wrong := describe_mistakes(shapes, tools):
+    if wrong := describe_shape_mistakes(shapes, tools):
         remedy = "correct the shape on its page (F8) or with 'turndesk offsets set'"
         raise CommandError(
             Message(
@@ -143,7 +143,7 @@ def read_store_offsets(store: Store) -> Offsets:
     )
 
 
-def read_offsets(path: Path) -> Offsets:
+def read_offsets_file(path: Path) -> Offsets:
     """Return the offsets in an offsets file. Raises CommandError that lists every error."""
     from app.offsets.offsets_file import read_offset_rows
 
@@ -156,7 +156,7 @@ def make_offsets_reader(path: str | None) -> Callable[[], Offsets]:
 
     The function reads the store again at each call.
     """
-    return read_stored_offsets if path is None else partial(read_offsets, Path(path))
+    return read_stored_offsets if path is None else partial(read_offsets_file, Path(path))
 
 
 def create_offset_book(load_offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBook:
@@ -174,11 +174,13 @@ def create_offset_book(load_offsets: Callable[[], Offsets], journal: Journal | N
     return OffsetBook(
         lock_reason=OFFSETS_FILE_TEXT,
         tool_offsets={
-            n: ToolRow(row.x, row.z, row.nose_radius, quadrant=row.quadrant, remark=row.name)
+            n: ToolOffsetRow(row.x, row.z, row.nose_radius, quadrant=row.quadrant, remark=row.name)
             for n, row in tools.items()
         },
-        secondary_offsets={n: SecondaryRow(row.x, row.z, row.nose_radius) for n, row in secondary.items()},
-        zero_offsets={n: ZeroRow(row.x, row.z, row.c) for n, row in zero.items()},
+        secondary_offsets={
+            n: SecondaryOffsetRow(row.x, row.z, row.nose_radius) for n, row in secondary.items()
+        },
+        zero_offsets={n: ZeroOffsetRow(row.x, row.z, row.c) for n, row in zero.items()},
         mill_tools=dict(mill.tools),
         presets=dict(mill.presets),
         active_preset=mill.active_preset,
@@ -186,7 +188,9 @@ def create_offset_book(load_offsets: Callable[[], Offsets], journal: Journal | N
 
 
 def _of_rows(
-    tools: Mapping[int, ToolRow], secondary: Mapping[int, SecondaryRow], zero: Mapping[int, ZeroRow]
+    tools: Mapping[int, ToolOffsetRow],
+    secondary: Mapping[int, SecondaryOffsetRow],
+    zero: Mapping[int, ZeroOffsetRow],
 ) -> Offsets:
     settable = {code: ZeroOffset(*row) for code, row in zero.items()}
     return Offsets(make_tool_offsets(tools), make_secondary_offsets(secondary), settable)

@@ -49,7 +49,7 @@ class ThumbnailCache:
         """
         if self.machine.kind != "lathe":
             return None
-        setting = self.part_prover.read_settings(job, report_progress)[0]
+        setting = self.part_prover.read_part_settings(job, report_progress)[0]
         path = self.folder / self._cache_key(job, setting)
         pixels = _found(path, self.width_px * self.height_px)
         if pixels is None:
@@ -82,7 +82,7 @@ class ThumbnailCache:
             part.back_z_mm, part.front_z_mm, part.radius_mm, self.width_px, self.height_px, _AZIMUTH
         )
         view = SolidView(_AZIMUTH, _TILT, 0.0, scale, centre)
-        return SolidPicture().draw(part.solid, view, self.width_px, self.height_px)
+        return SolidPicture().draw_picture(part.solid, view, self.width_px, self.height_px)
 
     def _cache_key(self, job: Job, setting: PartSettings) -> str:
         """Return the file name of the thumbnail, which is a hash of all data that affects the picture."""

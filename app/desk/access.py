@@ -26,7 +26,7 @@ _RETRY_INTERVAL_S = 1.0  # Seconds between two attempts to read the stored users
 class SignInSession(Protocol):
     """Interface of the optional sign-in feature. Its methods never wait."""
 
-    def note_activity(self) -> None:
+    def record_activity(self) -> None:
         """Record that the signed-in user pressed a key or touched the screen."""
 
     def update(self, snapshot: Snapshot) -> None:
@@ -47,7 +47,7 @@ class UserAccess:
     """The signed-in user, the current access level, and the resulting permissions.
 
     ``user_name`` is the name of the signed-in user, or empty if no user is signed in. Call
-    ``note_activity`` for every key press and touch.
+    ``record_activity`` for every key press and touch.
     """
 
     persistence: Persistence = field(default_factory=Persistence)
@@ -63,7 +63,7 @@ class UserAccess:
 
     def __post_init__(self) -> None:
         self.reload()
-        self.persistence.who = lambda: self.recorded_user if self.user_list.is_access_restricted else ""
+        self.persistence.who = lambda: self.history_user_name if self.user_list.is_access_restricted else ""
 
     @property
     def has_read_failed(self) -> bool:
@@ -73,7 +73,7 @@ class UserAccess:
     # --- who and what --------------------------------------------------------------------------------
 
     @property
-    def recorded_user(self) -> str:
+    def history_user_name(self) -> str:
         """Return the user name to record in the history for a change."""
         return self.user_name or DEFAULT_USER
 
@@ -87,7 +87,7 @@ class UserAccess:
         level = tr(self.access_level.name)
         return join_messages(" · ", (mark_untranslated(self.user_name), level)) if self.user_name else level
 
-    def find_refusal(self, change: ProtectedChange) -> str:
+    def find_refusal_reason(self, change: ProtectedChange) -> str:
         """Return the reason why the access level forbids this change, or an empty string if permitted."""
         needed = get_required_level(change)
         if not self.user_list.is_access_restricted or self.access_level >= needed:
@@ -105,10 +105,10 @@ class UserAccess:
 
     # --- time ----------------------------------------------------------------------------------------
 
-    def note_activity(self) -> None:
+    def record_activity(self) -> None:
         """Record that the signed-in user pressed a key or touched the screen."""
         if self.sign_in_session is not None:
-            self.sign_in_session.note_activity()
+            self.sign_in_session.record_activity()
 
     def update(self, snapshot: Snapshot) -> None:
         """Retry reading the users after an error, and update the session.
@@ -142,7 +142,7 @@ class UserAccess:
         if self.user_name and (row is None or row.level < self.access_level):
             self.sign_out()
 
-    def remove_levels(self) -> None:
+    def remove_access_levels(self) -> None:
         """Remove the access levels after a service reset.
 
         Stored levels that cannot be read are ignored until TurnDesk closes.
@@ -152,7 +152,7 @@ class UserAccess:
 
     def log_access(self, text: str) -> None:
         """Log a line with the name of the signed-in user."""
-        self.persistence.log_access(text, self.recorded_user)
+        self.persistence.log_access(text, self.history_user_name)
 
     def close(self) -> None:
         """Close the session when TurnDesk closes."""

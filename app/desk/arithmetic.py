@@ -12,21 +12,21 @@ MAX_LENGTH = 80  # Maximum length of an expression in characters.
 _TOKEN = re.compile(r"\s*(?:([0-9]+\.?[0-9]*|\.[0-9]+)|([-+*/()−]))")
 
 
-class EntryError(ValueError):
+class InvalidEntryError(ValueError):
     """Error for an expression that has no numeric value. The message gives the reason."""
 
 
 def evaluate_expression(entry: str) -> float:
     """Return the value of an arithmetic expression.
 
-    Raises EntryError with the reason if the expression is empty, invalid or longer than ``MAX_LENGTH``. It
-    also raises EntryError for a division by zero or a value that is too large. For an unexpected number or
-    operator, the error text contains its position.
+    Raises InvalidEntryError with the reason if the expression is empty, invalid or longer than
+    ``MAX_LENGTH``. It also raises InvalidEntryError for a division by zero or a value that is too large.
+    For an unexpected number or operator, the error text contains its position.
     """
     if not entry.strip():
-        raise EntryError("no value entered; type a number")
+        raise InvalidEntryError("no value entered; type a number")
     if len(entry) > MAX_LENGTH:
-        raise EntryError(
+        raise InvalidEntryError(
             Message(
                 "the expression is longer than {longest} characters; calculate it yourself and type "
                 "the result",
@@ -38,7 +38,7 @@ def evaluate_expression(entry: str) -> float:
     value = reader.parse_sum()
     reader.expect_end()
     if not isfinite(value):
-        raise EntryError(Message("{entry} is too large; type a smaller number", entry=entry))
+        raise InvalidEntryError(Message("{entry} is too large; type a smaller number", entry=entry))
     return value
 
 
@@ -49,7 +49,7 @@ def evaluate_line_number(entry: str) -> int | None:
     """
     try:
         value = evaluate_expression(entry)
-    except EntryError:
+    except InvalidEntryError:
         return None
     return int(value) if value == int(value) and value >= 1 else None
 
@@ -74,7 +74,7 @@ class _ExpressionParser:
         while sign := self._take("*", "/"):
             part = self._signed()
             if sign == "/" and part == 0:
-                raise EntryError(Message("{entry} divides by zero", entry=self._entry))
+                raise InvalidEntryError(Message("{entry} divides by zero", entry=self._entry))
             value = value * part if sign == "*" else value / part
         return value
 
@@ -106,9 +106,9 @@ class _ExpressionParser:
             return self._tokens[self._next - 1][0]
         return ""
 
-    def _refusal(self, expected: str) -> EntryError:
+    def _refusal(self, expected: str) -> InvalidEntryError:
         if self._next >= len(self._tokens):
-            return EntryError(
+            return InvalidEntryError(
                 Message(
                     "{entry} is incomplete; expected {expected} at the end",
                     entry=self._entry,
@@ -116,7 +116,7 @@ class _ExpressionParser:
                 )
             )
         found, column = self._tokens[self._next]
-        return EntryError(
+        return InvalidEntryError(
             Message(
                 "unexpected {value} at character {column} of {entry}; expected {expected}",
                 value=found,
@@ -130,7 +130,7 @@ class _ExpressionParser:
 def _split_tokens(entry: str) -> list[tuple[str, int]]:
     """Return the numbers and operators of an expression, each with its column, counted from 1.
 
-    Raises EntryError for a character that must not occur in an expression.
+    Raises InvalidEntryError for a character that must not occur in an expression.
     """
     tokens, at = [], 0
     while at < len(entry):
@@ -142,7 +142,7 @@ def _split_tokens(entry: str) -> list[tuple[str, int]]:
                 if bad == ","
                 else ("use only numbers and + - * / ( )")
             )
-            raise EntryError(
+            raise InvalidEntryError(
                 Message("{bad} in {entry} is not a number; {hint}", bad=bad, entry=entry, hint=hint)
             )
         word = match.group(1) or match.group(2)

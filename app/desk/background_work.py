@@ -23,7 +23,7 @@ ResultT = TypeVar("ResultT")
 ProgressCallback = Callable[[float], None]
 """Function that receives the progress of slow work.
 
-It may raise AbandonedError, which the caller must not catch.
+It may raise WorkAbandonedError, which the caller must not catch.
 """
 FailureCallback = Callable[[str], None]
 
@@ -65,7 +65,7 @@ class DaemonWorker:
             task()
 
 
-class AbandonedError(Exception):
+class WorkAbandonedError(Exception):
     """Exception that cancels the work in progress because a newer request replaced it."""
 
 
@@ -90,18 +90,19 @@ class WorkRequest:
     start_time_s: float = 0.0
 
     def __call__(self, reached: float = 0.0) -> None:
-        """Report the progress of the work. Raises AbandonedError if the work must stop."""
-        self.worker.check_canceled(self)
+        """Report the progress of the work. Raises WorkAbandonedError if the work must stop."""
+        self.worker.raise_if_canceled(self)
         self.worker.progress_count = int(reached)
 
     def publish_result(self, deliver: Callable[[], None]) -> None:
         """Call ``deliver`` with an intermediate result on the worker thread.
 
-        Newer requests are blocked during the call. Raises AbandonedError if the result is no longer needed.
+        Newer requests are blocked during the call. Raises WorkAbandonedError if the result is no longer
+        needed.
         """
         with self.worker.lock:
             if not self.is_wanted:
-                raise AbandonedError
+                raise WorkAbandonedError
             deliver()
 
 
@@ -111,15 +112,15 @@ class LatestRequestWorker:
 
     ``enqueue_work`` adds work that is never canceled. Requests that follow typing are delayed: work begins
     after ``quiet_time_s`` seconds without another request, but no later than after ``max_delay_s`` seconds.
-    A replaced request may continue for ``grace_time_s`` seconds. ``thread_owner`` is another worker whose
-    thread this worker shares.
+    A replaced request may continue for ``grace_time_s`` seconds. ``thread_owning_worker`` is another worker
+    whose thread this worker shares.
     """
 
     name: str  # Name of the thread.
     quiet_time_s: float = 0.0
     max_delay_s: float = 0.0
     grace_time_s: float = 0.0
-    thread_owner: LatestRequestWorker | None = None
+    thread_owning_worker: LatestRequestWorker | None = None
     read_time_s: Callable[[], float] = time.monotonic
     progress_count: int = 0  # Progress of the work in progress, in the unit of the work.
     lock: threading.Condition = field(default_factory=threading.Condition)
@@ -132,7 +133,9 @@ class LatestRequestWorker:
     _pool: DaemonWorker = field(init=False)
 
     def __post_init__(self) -> None:
-        self._pool = DaemonWorker(self.name) if self.thread_owner is None else self.thread_owner._pool
+        self._pool = (
+            DaemonWorker(self.name) if self.thread_owning_worker is None else self.thread_owning_worker._pool
+        )
 
     # --- caller's side -------------------------------------------------------------------------------
 
@@ -214,7 +217,7 @@ class LatestRequestWorker:
             self._closing = True
             self.cancel_request()
             self.lock.notify_all()
-        if self.thread_owner is None:
+        if self.thread_owning_worker is None:
             self._pool.close(CLOSE_TIMEOUT_S)
 
     def _begin(
@@ -225,13 +228,13 @@ class LatestRequestWorker:
         *,
         queued: bool,
     ) -> None:
-        def run(request: WorkRequest) -> Callable[[], None]:
+        def run_request(request: WorkRequest) -> Callable[[], None]:
             result = work(request)
             return lambda: done(result)
 
         if self._closing:
             return
-        self._waiting.append(WorkRequest(self, run, failed, queued))
+        self._waiting.append(WorkRequest(self, run_request, failed, queued))
         self._asked = self.read_time_s()
         self.lock.notify_all()
         if not self._running:
@@ -243,11 +246,11 @@ class LatestRequestWorker:
 
     # --- worker thread -------------------------------------------------------------------------------
 
-    def check_canceled(self, request: WorkRequest) -> None:
-        """Raise AbandonedError if the work on this request must stop."""
+    def raise_if_canceled(self, request: WorkRequest) -> None:
+        """Raise WorkAbandonedError if the work on this request must stop."""
         late = request.is_superseded and self.read_time_s() - request.start_time_s > self.grace_time_s
         if late or not request.is_wanted:
-            raise AbandonedError
+            raise WorkAbandonedError
 
     def _work_off(self) -> None:
         while (request := self._wait_for_request()) is not None:
@@ -287,7 +290,7 @@ def _run_request(request: WorkRequest) -> Callable[[], None] | None:
     """
     try:
         return request.run_work(request)
-    except AbandonedError:
+    except WorkAbandonedError:
         return None
     except BaseException as error:  # noqa: BLE001 - any error is raised where the result is read
         if _is_defect(error):

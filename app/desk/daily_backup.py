@@ -49,7 +49,7 @@ class DailyBackup:
     _thread: RepeatingThread = field(init=False)
 
     def __post_init__(self) -> None:
-        self._thread = RepeatingThread("daily-backup", self.make_if_due, _LOOK, _FIRST_LOOK)
+        self._thread = RepeatingThread("daily-backup", self.make_backup_if_due, _LOOK, _FIRST_LOOK)
 
     def start(self) -> None:
         """Start the thread that makes the backups. Call this method only once."""
@@ -59,7 +59,7 @@ class DailyBackup:
         """End the backup thread, after completing a backup in progress."""
         self._thread.close()
 
-    def make_if_due(self) -> Path | None:
+    def make_backup_if_due(self) -> Path | None:
         """Make the daily backup if it is due, and return its path, or None if no backup was made.
 
         An error is reported once per day.

@@ -13,7 +13,7 @@ from functools import partial
 from typing import Final
 
 from app.desk.access import UserAccess
-from app.desk.late_presses import LatePressFilter, StartingAction
+from app.desk.late_presses import BlockedLateAction, LatePressFilter
 from app.desk.pages.attached_parts import ClosingSequence
 from app.desk.pages.page_registry import PageRegistry
 from app.desk.persistence import Persistence
@@ -35,7 +35,7 @@ from app.desk.station_controls import StationControls
 from app.desk.status import prompt_line
 from app.desk.status.alarm_log import AlarmLog
 from app.desk.status.machine_file_changes import MachineFileChanges
-from app.desk.status.machine_status import MachineStatus, Tone, make_status
+from app.desk.status.machine_status import MachineStatus, StatusTone, make_machine_status
 from app.desk.status.prompt_line import ONE_HAND_HINT, ONE_PALM_PRESSED, YES_KEY, PromptLine
 from app.desk.status.readouts import ReadoutKind
 from app.desk.stop_keys.stop_records import SOURCE_ESC, SOURCE_SCREEN
@@ -92,7 +92,7 @@ class Desk:
         self.offset_book: Final = offset_book or OffsetBook(lock_reason=OFFSETS_NOT_STORED)
         self.window_state: Final = WindowState(LatePressFilter(self.read_snapshot, self.clock.read_seconds))
         self.desk_control: Final = replace(
-            control, post=self.window_state.late_presses.guard_post(control.post)
+            control, post=self.window_state.late_presses.guard_post_command(control.post)
         )
         self.storage_state: Final = StorageState()
         self.page_registry: Final = PageRegistry()
@@ -102,33 +102,33 @@ class Desk:
         self.settings_store: Final = SettingsStore(persistence)
         self.program_runs: Final = ProgramRuns(persistence)
         self.alarm_log: Final = AlarmLog(self.clock.format_local_time)
-        self.prompt_answers: Final = PromptLine(
-            self.read_snapshot, self.storage_state.read_problem, self._now
+        self.prompt_line: Final = PromptLine(
+            self.read_snapshot, self.storage_state.read_storage_problem, self._now
         )
         self.user_access: Final = UserAccess(persistence, self.say, self.clock.read_seconds)
         self.offset_book.user_access = self.user_access
         self.renewal: Final = ProgramRenewal(program_loader, self.show_warning)
         self.program_choice: Final = ProgramChoice(
-            folders, program_loader, self.read_snapshot, self.prompt_answers, self._save_path
+            folders, program_loader, self.read_snapshot, self.prompt_line, self._save_path
         )
         self.station_controls: Final = StationControls(
             control.station_panel,
             self.clock.read_seconds,
             self.say,
             self.clear_prompt_line,
-            self.prompt_answers.note_start_attempt,
+            self.prompt_line.record_start_attempt,
             self.barred,
-            self.window_state.find_press_age,
-            one_palm_message=ONE_HAND_HINT if machine.allows_one_hand else ONE_PALM_PRESSED,
+            self.window_state.find_press_age_s,
+            one_palm_message=ONE_HAND_HINT if machine.allows_one_hand_start else ONE_PALM_PRESSED,
         )
-        self.station_controls.use_late_presses(self.window_state.late_presses)
+        self.station_controls.set_late_press_filter(self.window_state.late_presses)
         self.station_keys: Final = StationKeys(
             self.desk_control,
             self.station_controls,
-            self.prompt_answers,
+            self.prompt_line,
             self.barred,
             lambda press: self.start_feed_hold(press=press),
-            machine.is_two_hand,
+            machine.has_two_hand_start,
             PostedValues(self.clock.read_seconds),
         )
 
@@ -148,18 +148,18 @@ class Desk:
 
     def say(self, text: str) -> None:
         """Show a message on the prompt line for 4 s or until the next key press."""
-        self.prompt_answers.say(text)
+        self.prompt_line.say(text)
 
     def show_warning(self, text: str) -> None:
         """Show a warning on the prompt line for 4 s, for example about dropped input.
 
         Key presses do not remove it.
         """
-        self.prompt_answers.say(text, is_lasting=True)
+        self.prompt_line.say(text, is_lasting=True)
 
     def show_success(self, text: str) -> None:
         """Show a message that an action has succeeded. Its style differs from that of a refusal."""
-        self.prompt_answers.say(text, is_success=True)
+        self.prompt_line.say(text, is_success=True)
 
     def show_refusal(self, reason: str) -> None:
         """Show a message that an action was rejected, with the reason."""
@@ -172,35 +172,37 @@ class Desk:
         It must differ from the key that caused the question. On a touch screen, the prompt line has a
         button for the reply.
         """
-        self.prompt_answers.ask_question(question, on_confirmed, key)
+        self.prompt_line.ask_question(question, on_confirmed, key)
 
     @property
-    def confirm_key(self) -> str:
+    def confirmation_key(self) -> str:
         """Return the key that means yes to the open question, or an empty string if no question is open."""
-        return self.prompt_answers.key if self.prompt_answers.on_confirmed is not None else ""
+        return self.prompt_line.key if self.prompt_line.on_confirmed is not None else ""
 
     def clear_prompt_line(self) -> None:
         """Remove the message or the question from the prompt line."""
-        self.prompt_answers.withdraw_question()
+        self.prompt_line.withdraw_question()
 
     @property
     def prompt_notice(self) -> str:
         """Return the open question or the message for the last key, or an empty string if neither exists."""
-        return self.prompt_answers.shown_message
+        return self.prompt_line.shown_message
 
     @property
     def start_instruction(self) -> str:
         """Return the instruction for starting a cycle at this machine."""
         if self.desk_control.station_panel is None:
-            return "PRESS BOTH PALM BUTTONS" if self.machine.is_two_hand else "PRESS CYCLE START"
+            return "PRESS BOTH PALM BUTTONS" if self.machine.has_two_hand_start else "PRESS CYCLE START"
         if (
-            self.machine.is_two_hand
-            and self.machine.allows_one_hand
+            self.machine.has_two_hand_start
+            and self.machine.allows_one_hand_start
             and self.settings_store.current_settings.latched
         ):
             return "PRESS ONE PALM BUTTON, THEN THE OTHER (F11, F12)"
         return (
-            "PRESS BOTH PALM BUTTONS (F11 + F12)" if self.machine.is_two_hand else "PRESS CYCLE START (F12)"
+            "PRESS BOTH PALM BUTTONS (F11 + F12)"
+            if self.machine.has_two_hand_start
+            else "PRESS CYCLE START (F12)"
         )
 
     @property
@@ -222,7 +224,7 @@ class Desk:
 
     def is_refused(self, change: ProtectedChange) -> bool:
         """Return whether the access level is too low for this change, and if so, show the reason."""
-        why = self.user_access.find_refusal(change)
+        why = self.user_access.find_refusal_reason(change)
         if why:
             self.say(why)
         return bool(why)
@@ -259,15 +261,15 @@ class Desk:
 
     def hear(self, event: LogEvent) -> None:
         """Process an event of the executor. The executor's thread may call this method."""
-        self.prompt_answers.hear(event)
+        self.prompt_line.hear(event)
         self.alarm_log.hear(event)
 
     def barred(self) -> str:
         """Return the reason why the start buttons are disabled, or an empty string if they are enabled."""
-        if self.window_state.is_stop_held() or not self.window_state.can_start_here:
+        if self.window_state.is_stop_key_held() or not self.window_state.can_start_here:
             return (
                 prompt_line.RELEASE_STOP_KEY
-                if self.window_state.is_stop_held()
+                if self.window_state.is_stop_key_held()
                 else prompt_line.START_ON_AUTOMATIC
             )
         if self.storage_state.is_restoring:
@@ -278,7 +280,7 @@ class Desk:
         if self.read_snapshot().state is not MachineState.IDLE:
             return ""
         if loaded.phase is LoadingPhase.UNREADABLE:
-            return prompt_line.make_refusal(loaded)  # The executor still has the previous program.
+            return prompt_line.make_refusal_text(loaded)  # The executor still has the previous program.
         stale = (
             self.renewal.is_requested or self.offset_book.is_saving or loaded.phase is LoadingPhase.READING
         )
@@ -294,14 +296,14 @@ class Desk:
         self.station_controls.advance_pots()
         snapshot = self.read_snapshot()
         self.user_access.update(snapshot)
-        self.prompt_answers.update(snapshot)
+        self.prompt_line.update(snapshot)
         self.renewal.update(snapshot, self.offset_book, self.post)
         loaded = self.program_loader.loaded_program
         if self.start_watch is not None:
             self.start_watch.update(snapshot, loaded)
         self._see_runs(snapshot, loaded)
         machine, settings = self.machine, self.settings_store
-        view = make_status(
+        view = make_machine_status(
             snapshot,
             self.readout_kind,
             machine.has_c_axis,
@@ -311,7 +313,7 @@ class Desk:
             machine.is_table_rotary,
         )
         if self.desk_control.silence_watch.check_silence(snapshot.t, self.station_controls.clock()):
-            view = replace(view, state_text=CONTROL_SILENT_TITLE, state_tone=Tone.ALARM)
+            view = replace(view, state_text=CONTROL_SILENT_TITLE, state_tone=StatusTone.ALARM)
         return snapshot, view, loaded
 
     def _see_runs(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
@@ -351,7 +353,7 @@ class Desk:
 
         If work would be lost, this method asks the operator, and the reply Y calls ``close``.
         """
-        waiting = self.storage_state.read_unsaved()
+        waiting = self.storage_state.read_unsaved_text()
         if waiting:
             words = tr("UNSAVED WORK WILL BE LOST: {what}. Y: CLOSE   N: STAY")
             self.ask_operator(tr(Message(words, what=waiting)), close)
@@ -392,8 +394,8 @@ class Desk:
         """
         snapshot = self.read_snapshot()
         found, here = snapshot.interrupted, self.window_state.can_start_here
-        if self.confirm_key:
-            self.confirm_if_unchanged()
+        if self.confirmation_key:
+            self.confirm_question_if_unchanged()
         elif found is None or not snapshot.interrupted_line:
             self.clear_prompt_line()
         elif (
@@ -433,7 +435,7 @@ class Desk:
         """
         shot = self.read_snapshot()
         moves = shot.state in prompt_line.MOVING_STATES
-        if self.confirm_key or (self.prompt_notice and not moves):
+        if self.confirmation_key or (self.prompt_notice and not moves):
             self.clear_prompt_line()
         elif shot.confirmed:
             self.post(ConfirmStart(""))
@@ -444,12 +446,12 @@ class Desk:
             return False
         return True
 
-    def confirm_if_unchanged(self) -> None:
+    def confirm_question_if_unchanged(self) -> None:
         """Confirm the open question if the state of the machine has not changed since it was asked."""
-        if self.window_state.late_presses.refuse_late_press(StartingAction.YES):
+        if self.window_state.late_presses.refuse_late_press(BlockedLateAction.YES):
             return
-        self.prompt_answers.remove_expired(self.read_snapshot())
-        self.prompt_answers.confirm_question(self.station_controls.at())
+        self.prompt_line.remove_expired_texts(self.read_snapshot())
+        self.prompt_line.confirm_question(self.station_controls.at())
 
     @property
     def was_question_read(self) -> bool:
@@ -457,4 +459,4 @@ class Desk:
 
         This is the time from the display of the question to the current key press.
         """
-        return self.prompt_answers.was_read(self.station_controls.at())
+        return self.prompt_line.was_question_read(self.station_controls.at())

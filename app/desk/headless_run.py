@@ -98,7 +98,7 @@ class HeadlessRun:
         self._step()
         before = self._executor.snapshot.parts  # A program with one action may end before the first poll.
         if not self._start(
-            lambda s: s.state is not MachineState.IDLE or bool(s.start_refusal) or s.parts > before
+            lambda s: s.state is not MachineState.IDLE or bool(s.start_refusal_reason) or s.parts > before
         ):
             return self._outcome("waiting", "no Cycle Start received; were both palm buttons pressed?")
         if self._executor.snapshot.state in RUNNING_STATES:
@@ -149,7 +149,9 @@ class HeadlessRun:
                     )
                 )
                 if not self._has_restarted():
-                    return self._outcome("waiting", snapshot.start_refusal or ("Cycle Start has no effect"))
+                    return self._outcome(
+                        "waiting", snapshot.start_refusal_reason or ("Cycle Start has no effect")
+                    )
             elif snapshot.state is MachineState.HOLD:
                 return self._outcome("hold", snapshot.waiting_for or "feed hold")
             elif self._is_stuck(snapshot):
@@ -194,8 +196,8 @@ class HeadlessRun:
                     "{alarm}: {cause}; {remedy}", alarm=alarm.text, cause=alarm.cause, remedy=alarm.remedy
                 ),
             )
-        if snapshot.start_refusal:
-            return self._outcome("refused", snapshot.start_refusal)
+        if snapshot.start_refusal_reason:
+            return self._outcome("refused", snapshot.start_refusal_reason)
         if snapshot.state is not MachineState.IDLE:
             return self._outcome("refused", Message("the machine is in state {state}", state=snapshot.state))
         return self._outcome("complete", "")

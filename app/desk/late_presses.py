@@ -20,7 +20,7 @@ from core.executor.snapshot import MachineState, Snapshot
 REPORT_INTERVAL_S = 4.0  # Seconds after the last dropped press. A press dropped later gets a new message.
 
 
-class StartingAction(Enum):
+class BlockedLateAction(Enum):
     """Action that a late press must not start, such as a motion, the drives or an output."""
 
     CYCLE = auto()
@@ -42,26 +42,26 @@ class StartingAction(Enum):
     TOUCH = auto()  # A touch on a screen that has changed since.
 
 
-def name_starting_action(action: StartingAction) -> str:
+def get_starting_action_name(action: BlockedLateAction) -> str:
     """Return the name of a starting action, translated for the operator."""
     names = {
-        StartingAction.CYCLE: tr("CYCLE START"),
-        StartingAction.DRIVES: tr("DRIVES ON"),
-        StartingAction.ACKNOWLEDGE: tr("RESET"),
-        StartingAction.JOG: tr("JOG"),
-        StartingAction.HANDWHEEL: tr("HANDWHEEL"),
-        StartingAction.TOUCH_OFF: tr("TOUCH-OFF"),
-        StartingAction.DRIVE_TEST: tr("DRIVE TEST"),
-        StartingAction.HOME: tr("HOME"),
-        StartingAction.OUTPUT: tr("OUTPUT"),
-        StartingAction.INPUT: tr("SIMULATED INPUT"),
-        StartingAction.SPINDLE: tr("SPINDLE"),
-        StartingAction.OVERRIDE: tr("FEED RATE"),
-        StartingAction.RELEASE_ESTOP: tr("E-STOP RELEASE"),
-        StartingAction.START_AT_LINE_1: tr("START AT LINE 1"),
-        StartingAction.YES: tr("YES"),
-        StartingAction.FOLLOWING_KEY: tr("ALL KEYS AFTER YES"),
-        StartingAction.TOUCH: tr("TOUCH"),
+        BlockedLateAction.CYCLE: tr("CYCLE START"),
+        BlockedLateAction.DRIVES: tr("DRIVES ON"),
+        BlockedLateAction.ACKNOWLEDGE: tr("RESET"),
+        BlockedLateAction.JOG: tr("JOG"),
+        BlockedLateAction.HANDWHEEL: tr("HANDWHEEL"),
+        BlockedLateAction.TOUCH_OFF: tr("TOUCH-OFF"),
+        BlockedLateAction.DRIVE_TEST: tr("DRIVE TEST"),
+        BlockedLateAction.HOME: tr("HOME"),
+        BlockedLateAction.OUTPUT: tr("OUTPUT"),
+        BlockedLateAction.INPUT: tr("SIMULATED INPUT"),
+        BlockedLateAction.SPINDLE: tr("SPINDLE"),
+        BlockedLateAction.OVERRIDE: tr("FEED RATE"),
+        BlockedLateAction.RELEASE_ESTOP: tr("E-STOP RELEASE"),
+        BlockedLateAction.START_AT_LINE_1: tr("START AT LINE 1"),
+        BlockedLateAction.YES: tr("YES"),
+        BlockedLateAction.FOLLOWING_KEY: tr("ALL KEYS AFTER YES"),
+        BlockedLateAction.TOUCH: tr("TOUCH"),
     }
     return names[action]
 
@@ -101,26 +101,26 @@ def _is_override_increase(command: Command, now: Snapshot) -> bool:
     return isinstance(command, commands.SetFeedOverride) and command.fraction > now.feed_override
 
 
-STARTING_COMMANDS: Mapping[type[Command], tuple[StartingAction, StartRule]] = {
-    commands.CycleStart: (StartingAction.CYCLE, _always),
-    commands.EnableDrives: (StartingAction.DRIVES, _always),
-    commands.Reset: (StartingAction.ACKNOWLEDGE, _is_acknowledge),
-    commands.Jog: (StartingAction.JOG, _always),
-    commands.JogByStep: (StartingAction.JOG, _always),
-    commands.SelectHandwheel: (StartingAction.HANDWHEEL, _always),
-    commands.TouchOffTool: (StartingAction.TOUCH_OFF, _always),
-    commands.RunDriveTest: (StartingAction.DRIVE_TEST, _always),
-    commands.HomeAxes: (StartingAction.HOME, _always),
-    commands.ForceOutput: (StartingAction.OUTPUT, _is_drive_switch),
-    commands.SetFeedOverride: (StartingAction.OVERRIDE, _is_override_increase),
-    commands.ConfirmStart: (StartingAction.START_AT_LINE_1, _begins_at_line_1),
+STARTING_COMMANDS: Mapping[type[Command], tuple[BlockedLateAction, StartRule]] = {
+    commands.CycleStart: (BlockedLateAction.CYCLE, _always),
+    commands.EnableDrives: (BlockedLateAction.DRIVES, _always),
+    commands.Reset: (BlockedLateAction.ACKNOWLEDGE, _is_acknowledge),
+    commands.Jog: (BlockedLateAction.JOG, _always),
+    commands.JogByStep: (BlockedLateAction.JOG, _always),
+    commands.SelectHandwheel: (BlockedLateAction.HANDWHEEL, _always),
+    commands.TouchOffTool: (BlockedLateAction.TOUCH_OFF, _always),
+    commands.RunDriveTest: (BlockedLateAction.DRIVE_TEST, _always),
+    commands.HomeAxes: (BlockedLateAction.HOME, _always),
+    commands.ForceOutput: (BlockedLateAction.OUTPUT, _is_drive_switch),
+    commands.SetFeedOverride: (BlockedLateAction.OVERRIDE, _is_override_increase),
+    commands.ConfirmStart: (BlockedLateAction.START_AT_LINE_1, _begins_at_line_1),
 }
 """Commands that can start an action, each with the action and the rule that decides whether it starts."""
 
 HARMLESS_COMMANDS: frozenset[type[Command]] = frozenset(
     {
         commands.LoadJob,
-        commands.SupplyProof,
+        commands.SupplyJobProof,
         commands.ChangeOffsets,
         commands.ReportInterruptedJob,
         commands.FeedHold,
@@ -129,18 +129,18 @@ HARMLESS_COMMANDS: frozenset[type[Command]] = frozenset(
         commands.RenewDriveTest,
         commands.DeselectHandwheel,
         commands.SetSpindleLimit,
-        commands.UseOffsets,
+        commands.UseOffsetTables,
         commands.StopSpindle,
         commands.SetPartCount,
-        commands.ReplaceClearances,
-        commands.BlockNextPart,
-        commands.PrepareStart,
+        commands.ReplaceStartClearances,
+        commands.PreventNextPart,
+        commands.PrepareCycleStart,
     }
 )
 """All other commands. They start an action only together with a command from STARTING_COMMANDS."""
 
 
-def find_starting_action(command: Command, snapshot: Snapshot) -> StartingAction | None:
+def find_starting_action(command: Command, snapshot: Snapshot) -> BlockedLateAction | None:
     """Return the action that a command starts, or None if the command does not start an action."""
     found = STARTING_COMMANDS.get(type(command))
     return found[0] if found is not None and found[1](command, snapshot) else None
@@ -150,25 +150,25 @@ def find_starting_action(command: Command, snapshot: Snapshot) -> StartingAction
 class LatePressFilter:
     """Filter that drops actions of a late press, and collects their names for one message.
 
-    ``read_time_s`` returns monotonic time in seconds. ``report_names`` receives the names of all dropped
-    actions. ``on_answer_dropped`` is called when the reply to a question is dropped.
+    ``read_time_s`` returns monotonic time in seconds. ``report_dropped_names`` receives the names of all
+    dropped actions. ``on_answer_dropped`` is called when the reply to a question is dropped.
     """
 
     read_snapshot: Callable[[], Snapshot]
     read_time_s: Callable[[], float]
-    report_names: Callable[[tuple[str, ...]], None] = lambda _names: None
+    report_dropped_names: Callable[[tuple[str, ...]], None] = lambda _names: None
     on_answer_dropped: Callable[[], None] = lambda: None
-    is_late: bool = False  # The press that is being handled is late.
-    _dropped: list[StartingAction] = field(default_factory=list)
+    is_press_late: bool = False  # The press that is being handled is late.
+    _dropped: list[BlockedLateAction] = field(default_factory=list)
     _last: float = float("-inf")
 
-    def refuse_late_press(self, action: StartingAction) -> bool:
+    def refuse_late_press(self, action: BlockedLateAction) -> bool:
         """Return whether the current press is too late to start this action. A dropped action is reported."""
-        if self.is_late:
-            self.report_dropped(action)
-        return self.is_late
+        if self.is_press_late:
+            self.report_dropped_action(action)
+        return self.is_press_late
 
-    def report_dropped(self, action: StartingAction) -> None:
+    def report_dropped_action(self, action: BlockedLateAction) -> None:
         """Report a dropped action together with the actions that were dropped shortly before."""
         now = self.read_time_s()
         if now - self._last > REPORT_INTERVAL_S:
@@ -176,9 +176,9 @@ class LatePressFilter:
         self._last = now
         if action not in self._dropped:
             self._dropped.append(action)
-        if action is StartingAction.YES:
+        if action is BlockedLateAction.YES:
             self.on_answer_dropped()
-        self.report_names(tuple(name_starting_action(each) for each in self._dropped))
+        self.report_dropped_names(tuple(get_starting_action_name(each) for each in self._dropped))
 
     @contextmanager
     def suspend_check(self) -> Iterator[None]:
@@ -186,18 +186,18 @@ class LatePressFilter:
 
         Once per frame, the screen uses this context to renew keys that are held down.
         """
-        late, self.is_late = self.is_late, False
+        late, self.is_press_late = self.is_press_late, False
         try:
             yield
         finally:
-            self.is_late = late
+            self.is_press_late = late
 
-    def guard_post(self, post_command: Callable[[Command], None]) -> Callable[[Command], None]:
+    def guard_post_command(self, post_command: Callable[[Command], None]) -> Callable[[Command], None]:
         """Return a version of ``post_command`` that drops the commands that a late press must not send."""
 
-        def guarded(command: Command) -> None:
-            starting = find_starting_action(command, self.read_snapshot()) if self.is_late else None
+        def post_unless_late(command: Command) -> None:
+            starting = find_starting_action(command, self.read_snapshot()) if self.is_press_late else None
             if starting is None or not self.refuse_late_press(starting):
                 post_command(command)
 
-        return guarded
+        return post_unless_late

@@ -25,7 +25,9 @@ class PageDescription:
     key: str = ""
     menu_label: str = ""
     use: str = ""
-    languages: frozenset[str] = ALL_LANGUAGES  # Programming languages of the machines that have this page.
+    program_languages: frozenset[str] = (
+        ALL_LANGUAGES  # Programming languages of the machines that have this page.
+    )
     deferred_modules: tuple[str, ...] = ()
     preceding_page: str = ""  # Page of an optional feature: the page that precedes it in the main menu.
     shortcut_key: str = (

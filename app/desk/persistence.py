@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from core.store.backup import BackupVerdict
+from core.store.backup import BackupCheckResult
 from core.store.store_errors import StoreError
 from core.store.store_rows import EventRow, RunRow
 from core.store.user_records import UserList
@@ -44,10 +44,10 @@ class NullRunRecords:
     def reset_parts(self, program: str) -> None:
         """Ignore the reset of a part count."""
 
-    def record_start(self, program: str) -> None:
+    def record_run_start(self, program: str) -> None:
         """Ignore the start of a run."""
 
-    def record_end(self, program: str, outcome: str) -> None:
+    def record_run_end(self, program: str, outcome: str) -> None:
         """Ignore the outcome of a run."""
 
     def record_cycle(self, program: str, seconds: float) -> None:
@@ -132,7 +132,7 @@ class Persistence:
         """Write a backup of the whole store. Raises StoreError if the backup fails."""
         raise StoreError(NOTHING_SAVED, "nothing-stored")
 
-    def check_backup(self, _source: Path) -> BackupVerdict:
+    def check_backup(self, _source: Path) -> BackupCheckResult:
         """Check a backup, compare it with the current store, and return the result.
 
         Call this method on a worker thread. Raises StoreError if the check cannot be made.

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from app.desk.late_presses import LatePressFilter, StartingAction
+from app.desk.late_presses import BlockedLateAction, LatePressFilter
 from app.desk.status.prompt_line import ONE_PALM_PRESSED, RELEASE_BOTH_PALMS
 
 # --- palm buttons and pots ----------------------------------------------------------------------------
@@ -121,7 +121,7 @@ class OverridePot:
     max_fraction: float
     wanted: float = 1.0
     current_fraction: float = 1.0
-    starting_action: StartingAction = StartingAction.OVERRIDE
+    starting_action: BlockedLateAction = BlockedLateAction.OVERRIDE
     late_presses: LatePressFilter | None = None
 
     def set(self, fraction: float) -> None:
@@ -170,29 +170,29 @@ class StationControls:
     clear: Callable[[], None]
     starting: Callable[[], None]
     barred: Callable[[], str] = str
-    find_press_age: Callable[[], float] = float  # Seconds since the press that is being handled.
+    find_press_age_s: Callable[[], float] = float  # Seconds since the press that is being handled.
     palms: PalmButtons = field(default_factory=PalmButtons)
     one_palm_message: str = ONE_PALM_PRESSED  # Message after a single palm button was pressed.
     is_estop_pressed: bool = False
     late: LatePressFilter | None = None
     spindle_pot: OverridePot = field(
-        default_factory=lambda: OverridePot(1.0, starting_action=StartingAction.SPINDLE)
+        default_factory=lambda: OverridePot(1.0, starting_action=BlockedLateAction.SPINDLE)
     )
     feed_pot: OverridePot = field(default_factory=lambda: OverridePot(MAX_OVERRIDE))
     latched: str = ""  # The palm button that waits for the other one, "left" or "right".
     _latched_at: float = 0.0
     _looked: float | None = None
 
-    def use_late_presses(self, late_presses: LatePressFilter) -> None:
+    def set_late_press_filter(self, late_presses: LatePressFilter) -> None:
         """Set the filter that drops late presses that would start an action at the station."""
         self.late = self.spindle_pot.late_presses = self.feed_pot.late_presses = late_presses
 
-    def _refuses(self, starting: StartingAction) -> bool:
+    def _refuses(self, starting: BlockedLateAction) -> bool:
         return self.late is not None and self.late.refuse_late_press(starting)
 
     def at(self) -> float:
         """Return the time of the press that is being processed, in seconds of this object's clock."""
-        return self.clock() - self.find_press_age()
+        return self.clock() - self.find_press_age_s()
 
     def palm(self, side: str, is_down: bool) -> None:
         """Press or release a palm button.
@@ -204,7 +204,7 @@ class StationControls:
         station = self.station
         if station is None:
             return
-        if is_down and self._refuses(StartingAction.CYCLE):
+        if is_down and self._refuses(BlockedLateAction.CYCLE):
             self.palms.is_pair_invalid = bool(self.palms.press_times)
         elif is_down and self.barred():
             self.palms.is_pair_invalid = bool(self.palms.press_times)
@@ -223,7 +223,7 @@ class StationControls:
         buttons together, and the end of the touch releases both.
         """
         first, self.latched = self.update_latched_side(), ""
-        if self._refuses(StartingAction.CYCLE):
+        if self._refuses(BlockedLateAction.CYCLE):
             return
         if first in {"", side}:
             if why := self.barred():
@@ -244,7 +244,7 @@ class StationControls:
             self.latched = ""
         return self.latched
 
-    def release_latched(self) -> None:
+    def release_palm_buttons(self) -> None:
         """Release both palm buttons at the end of the touch that pressed them."""
         for side in tuple(self.palms.press_times):
             self.palm(side, is_down=False)
@@ -258,7 +258,7 @@ class StationControls:
         else:
             (station.press_left if side == "left" else station.press_right)()
 
-    def release_all(self) -> None:
+    def release_all_buttons(self) -> None:
         """Release all buttons when the window has lost the keyboard focus.
 
         The window then receives no release events.
@@ -275,7 +275,7 @@ class StationControls:
 
     def estop(self, is_pressed: bool) -> None:
         """Press the E-stop button, or release it by twisting."""
-        if not is_pressed and self._refuses(StartingAction.RELEASE_ESTOP):
+        if not is_pressed and self._refuses(BlockedLateAction.RELEASE_ESTOP):
             return
         if self.station and is_pressed is not self.is_estop_pressed:
             self.is_estop_pressed = is_pressed
@@ -284,19 +284,19 @@ class StationControls:
 
     def set_spindle_auto(self, is_auto: bool) -> None:
         """Turn the spindle switch to AUTO or to OFF."""
-        if self.station and not (is_auto and self._refuses(StartingAction.SPINDLE)):
+        if self.station and not (is_auto and self._refuses(BlockedLateAction.SPINDLE)):
             self.station.set_spindle_auto(is_auto)
 
     def turn_spindle_pot(self, steps: int) -> None:
         """Turn the spindle override pot by a number of steps of ten percent."""
-        self.spindle_pot.set(step_fraction(self.spindle_pot.wanted, steps))
+        self.spindle_pot.set(step_override_fraction(self.spindle_pot.wanted, steps))
 
     def turn_feed_pot(self, steps: int) -> None:
         """Turn the feed override pot by a number of steps of ten percent.
 
         The feed override always equals the position of the pot.
         """
-        self.feed_pot.set(step_fraction(self.feed_pot.wanted, steps))
+        self.feed_pot.set(step_override_fraction(self.feed_pot.wanted, steps))
 
     def advance_pots(self) -> None:
         """Move the pots toward their targets. The screen calls this method once per frame."""
@@ -310,11 +310,11 @@ class StationControls:
                 self.station.set_feed_pot(self.feed_pot.current_fraction)
 
 
-def step_fraction(fraction: float, steps: int) -> float:
+def step_override_fraction(fraction: float, steps: int) -> float:
     """Return an override fraction changed by a number of steps of ten percent, without a range limit."""
     return round(fraction / OVERRIDE_STEP + steps) * OVERRIDE_STEP
 
 
 def step_feed_override(fraction: float, steps: int) -> float:
     """Return a feed override changed by a number of steps of ten percent, limited to its range."""
-    return max(0.0, min(MAX_OVERRIDE, step_fraction(fraction, steps)))
+    return max(0.0, min(MAX_OVERRIDE, step_override_fraction(fraction, steps)))

@@ -27,7 +27,7 @@ class StoredPart:
     stick_out_mm: float | None = None
     silenced_checks: Mapping[str, str] = field(default_factory=dict)
 
-    def make_settings(self, program: str) -> dict[str, object]:
+    def make_stored_settings(self, program: str) -> dict[str, object]:
         """Return the settings to store for a program, by setting name. The value None removes a setting."""
         rest: dict[str, object] = {"stick_out": self.stick_out_mm, "silenced": dict(self.silenced_checks)}
         said = {name: value for name, value in rest.items() if value}
@@ -52,7 +52,7 @@ def load_stored_part(read_setting: ReadSetting, program: str) -> StoredPart:
     )
 
 
-def make_stock_absolute(stock: str) -> str:
+def make_stock_path_absolute(stock: str) -> str:
     """Return the stock specification with an absolute file path, so that it is valid in every folder."""
     kind, _, rest = stock.partition(":")
     return f"{kind}:{Path(rest).resolve()}" if kind in {"profile", "after"} else stock

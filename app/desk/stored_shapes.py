@@ -7,26 +7,28 @@ from collections.abc import Mapping
 from core.message import Message
 from core.part.insert_codes import parse_outline
 from core.part.shape_rules import ShapeMistake, find_shape_mistakes
-from core.part.tool_shape import Hand, ToolKind, ToolShape
-from core.store.store_rows import ShapeRow, ToolRow
+from core.part.tool_shape import ToolHand, ToolKind, ToolShape
+from core.store.store_rows import ToolOffsetRow, ToolShapeRow
 from core.tool_edges import format_edge_name, get_tool_number
 
 
-def make_tool_shape(row: ShapeRow, tool: ToolRow | None) -> ToolShape:
+def make_tool_shape(row: ToolShapeRow, tool: ToolOffsetRow | None) -> ToolShape:
     """Return the tool's shape with the nose radius and tip quadrant from its tool offset.
 
     Both values are 0 for a tool without an offset.
     """
-    offset = tool or ToolRow()
+    offset = tool or ToolOffsetRow()
     read = {
         "kind": ToolKind(row.kind),
-        "hand": Hand(row.hand),
+        "hand": ToolHand(row.hand),
         "profile": parse_outline(row.profile) or (),
     }
     return ToolShape(**row._asdict() | read, tip=offset.quadrant, nose_radius=offset.nose_radius)
 
 
-def make_tool_shapes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow]) -> dict[int, ToolShape]:
+def make_tool_shapes(
+    shapes: Mapping[int, ToolShapeRow], tools: Mapping[int, ToolOffsetRow]
+) -> dict[int, ToolShape]:
     """Return the valid shapes by tool number. Invalid shapes are omitted because they cannot be drawn.
 
     An additional cutting edge has the shape of its tool, but its own nose radius and tip quadrant.
@@ -35,11 +37,13 @@ def make_tool_shapes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow
     return {
         number: make_tool_shape(row, tools.get(number))
         for number, row in {**edges, **shapes}.items()
-        if not find_mistakes(row, tools.get(number))
+        if not find_shape_row_mistakes(row, tools.get(number))
     }
 
 
-def describe_mistakes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow]) -> tuple[str, ...]:
+def describe_shape_mistakes(
+    shapes: Mapping[int, ToolShapeRow], tools: Mapping[int, ToolOffsetRow]
+) -> tuple[str, ...]:
     """Return an error text for every mistake in the shapes.
 
     Each field was valid when it was entered. Mistakes result from later changes of other fields or offsets.
@@ -52,11 +56,11 @@ def describe_mistakes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRo
             wrong=wrong.message,
         )
         for number, row in shapes.items()
-        for wrong in find_mistakes(row, tools.get(number))
+        for wrong in find_shape_row_mistakes(row, tools.get(number))
     )
 
 
-def find_mistakes(row: ShapeRow, tool: ToolRow | None) -> tuple[ShapeMistake, ...]:
+def find_shape_row_mistakes(row: ToolShapeRow, tool: ToolOffsetRow | None) -> tuple[ShapeMistake, ...]:
     """Return the mistakes in a shape, such as contradictory fields, an invalid code or an invalid outline."""
     if row.profile and parse_outline(row.profile) is None:
         text = "a profile needs at least three points, each with Z and X in mm, for example 0,0 2.5,0 1.2,1.5"

@@ -155,7 +155,7 @@ class CodeStrip(Panel):
     """Strip that shows a code with its syntax and meaning. A touch opens the list of codes."""
 
     background_color = "panel"
-    entry: RedrawingAttribute[CodeBookEntry | None] = RedrawingAttribute(None)
+    code_entry: RedrawingAttribute[CodeBookEntry | None] = RedrawingAttribute(None)
 
     def __init__(self, theme: ScreenTheme, press: Callable[[], None], parent: QWidget) -> None:
         super().__init__(theme, parent)
@@ -167,10 +167,10 @@ class CodeStrip(Panel):
         box = self.find_full_area().adjusted(
             1.2 * self.theme.unit_px, 0.3 * self.theme.unit_px, -0.6 * self.theme.unit_px, 0
         )
-        if self.entry is None:
+        if self.code_entry is None:
             painter.draw_text_line(box, "CODES", 1.8, "accent", fit=False)
             return
-        draw_code_entry(painter, box, self.entry, "accent", "text")
+        draw_code_entry(painter, box, self.code_entry, "accent", "text")
 
 
 class CodeList(CodeChoiceList):
@@ -227,9 +227,9 @@ class CodeList(CodeChoiceList):
         drawn = make_code_sketch(chosen.head, self.dialect) if chosen is not None else None
         self._picture.setVisible(drawn is not None)
         if drawn is not None:
-            self._picture.displayed = (
+            self._picture.displayed_sketch = (
                 drawn,
-                tuple((d.field_word, d.field_word) for d in drawn.dimensions),
+                tuple((d.field_label, d.field_label) for d in drawn.dimensions),
                 "",
                 frozenset(),
             )
@@ -249,7 +249,7 @@ class CodeList(CodeChoiceList):
         """Return the height of the sketch in pixels, or 0 while the sketch is hidden."""
         return SKETCH_HEIGHT * self.theme.unit_px if not self._picture.isHidden() else 0.0
 
-    def function_keys(self) -> dict[int, FunctionKey]:
+    def make_function_keys(self) -> dict[int, FunctionKey]:
         """Return the function keys that apply while the list is open."""
         shown = self._codes
         return {
@@ -260,9 +260,9 @@ class CodeList(CodeChoiceList):
             7: FunctionKey("CHAPTER +", partial(shown.move_chapters, 1)),
         }
 
-    def arrow_actions(self) -> dict[int, Callable[[], None]]:
+    def make_arrow_actions(self) -> dict[int, Callable[[], None]]:
         """Return the actions of the arrow and page keys, Home, End and Enter."""
-        by = {number: key.action for number, key in self.function_keys().items()}
+        by = {number: key.action for number, key in self.make_function_keys().items()}
         return {
             Qt.Key.Key_Up: by[4],
             Qt.Key.Key_Down: by[5],

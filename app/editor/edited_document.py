@@ -10,7 +10,7 @@ from app.desk.background_work import LatestRequestWorker
 from app.desk.programs.program_folder import PROGRAM_EXTENSIONS
 from app.editor import editor_messages as messages
 from app.editor.version_history import VersionArchive
-from app.programs.atomic_files import read_if_exists, write_program_file
+from app.programs.atomic_files import read_file_if_exists, write_program_file
 from core.file_replacement import write_atomically
 from core.language.source import SourceError, load_source
 from core.message import CodedError, Message
@@ -21,11 +21,11 @@ MAX_LINES = 50_000  # The text field needs 0.7 s for this number of lines.
 _CRLF = "\r\n"
 
 
-class TooLongError(CodedError, ValueError):
+class TextTooLongError(CodedError, ValueError):
     """Error for a text that is too long for the editor, with a message for the operator."""
 
 
-class InvalidNameError(ValueError):
+class InvalidProgramNameError(ValueError):
     """Error for an invalid program name, with a message for the operator."""
 
 
@@ -51,10 +51,10 @@ class Document:
 
     def encode_text(self, text: str) -> bytes:
         """Return ``text`` as bytes with the line ending of the file."""
-        return end_last_line(text).replace("\n", self.line_ending).encode("utf-8", "replace")
+        return add_final_newline(text).replace("\n", self.line_ending).encode("utf-8", "replace")
 
 
-def end_last_line(text: str) -> str:
+def add_final_newline(text: str) -> str:
     """Return the text with a line feed at its end, or an empty string for an empty text.
 
     TurnDesk saves and proves texts in this form.
@@ -65,12 +65,12 @@ def end_last_line(text: str) -> str:
 def open_document(path: Path, samples_folder: Path) -> Document:
     """Open a file as a document.
 
-    Raises SourceError if the file cannot be read or is not a program text, and TooLongError if the text is
-    too long.
+    Raises SourceError if the file cannot be read or is not a program text, and TextTooLongError if the text
+    is too long.
     """
     text = _read_text(path)
     if text.count("\n") >= MAX_LINES:
-        raise TooLongError(
+        raise TextTooLongError(
             Message(
                 "{path} has over {most_lines} lines, too many for this editor; split the file in "
                 "another editor",
@@ -97,7 +97,7 @@ def _read_text(path: Path) -> str:
 def create_document(folder: Path, typed_name: str, default_extension: str) -> Document:
     """Return a new, empty document for a typed name.
 
-    Raises InvalidNameError if the name is not valid.
+    Raises InvalidProgramNameError if the name is not valid.
     """
     return Document(folder / make_program_name(typed_name, default_extension), is_new=True)
 
@@ -105,26 +105,26 @@ def create_document(folder: Path, typed_name: str, default_extension: str) -> Do
 def make_program_name(typed_name: str, default_extension: str) -> str:
     """Return the file name for a typed name.
 
-    A name without an extension gets ``default_extension``. Raises InvalidNameError if the name is not
+    A name without an extension gets ``default_extension``. Raises InvalidProgramNameError if the name is not
     valid.
     """
     name = typed_name.strip()
     if not name:
-        raise InvalidNameError("ENTER A PROGRAM NAME")
+        raise InvalidProgramNameError("ENTER A PROGRAM NAME")
     if name.startswith("."):
-        raise InvalidNameError(
+        raise InvalidProgramNameError(
             Message("{name} WOULD BE A HIDDEN FILE. START WITH A LETTER OR DIGIT", name=name)
         )
     try:
         check_new_program_name(name)
     except StoreError as error:
-        raise InvalidNameError(
+        raise InvalidProgramNameError(
             Message("{name}: INVALID NAME. USE LETTERS, DIGITS, DOT, DASH, SPACE", name=name)
         ) from error
     ending = Path(name).suffix
     if ending.lower() not in PROGRAM_EXTENSIONS:
         allowed = " ".join(sorted(PROGRAM_EXTENSIONS - {""}))
-        raise InvalidNameError(
+        raise InvalidProgramNameError(
             Message(
                 "EXTENSION {ending} IS NOT ALLOWED. USE ONE OF {allowed} OR NONE",
                 ending=ending,
@@ -151,7 +151,7 @@ def save_document(document: Document, text: str, archive: VersionArchive, may_ov
 
     Raises FileOperationError if the file cannot be read or written.
     """
-    there = read_if_exists(document.path)
+    there = read_file_if_exists(document.path)
     foreign = there is not None and not _matches_opened(document, there)
     if foreign and not may_overwrite:
         return CHANGED_EXTERNALLY

@@ -24,9 +24,9 @@ from app.editor.edited_document import (
     CHANGED_EXTERNALLY,
     Document,
     DraftStore,
-    InvalidNameError,
+    InvalidProgramNameError,
+    add_final_newline,
     create_document,
-    end_last_line,
     open_document,
     save_document,
 )
@@ -77,14 +77,16 @@ class EditorModel:
     stage: EditorStage = EditorStage.CLOSED
     document: Document | None = None
     message: str = ""
-    text_number: int = 0  # counts the texts that the model puts into the field: opened, created or restored
+    loaded_text_count: int = (
+        0  # counts the texts that the model puts into the field: opened, created or restored
+    )
     text: str = ""  # the last of these texts
     pending_name: str = ""  # name typed on another page, for which the editor is opened
     source_drawing: Path | None = (
         None  # file from which an optional feature generates the text of this program
     )
-    is_restored: bool = False  # the text replaces the typed text as one step that can be undone
-    has_block_delete: bool = False
+    is_replacement_undoable: bool = False  # the text replaces the typed text as one step that can be undone
+    is_block_delete_on: bool = False
     default_extension: str = ".nc"  # extension of new programs, from the language of the machine
     live_proof: LiveProof = field(init=False)
     draft_store: DraftStore = field(init=False)
@@ -123,13 +125,13 @@ class EditorModel:
     def open_program(self, path: Path, block_delete: bool = False) -> None:
         """Start reading a program into the editor."""
         self.clear_message()
-        self.has_block_delete = block_delete
+        self.is_block_delete_on = block_delete
         self.stage = EditorStage.READING
         self.worker.enqueue_work(
             lambda: open_document(path, self.samples_folder), self._opened, self._not_opened
         )
 
-    def offer_new(self, typed_name: str) -> None:
+    def offer_new_document(self, typed_name: str) -> None:
         """Ask the operator whether to create a new file with the typed name."""
         self.clear_message()
         self.stage, self._offered = EditorStage.OFFERED, typed_name
@@ -141,7 +143,7 @@ class EditorModel:
             return
         try:
             document = create_document(self.programs_folder, self._offered, self.default_extension)
-        except InvalidNameError as error:
+        except InvalidProgramNameError as error:
             self.message = Message("{error}. ESC: BACK", error=error)
             return
         if document.path.exists():
@@ -150,7 +152,7 @@ class EditorModel:
         self.clear_message()
         self._opened(document)
 
-    def cancel_offer(self) -> None:
+    def cancel_document_offer(self) -> None:
         """Withdraw the offer to create a new document (Esc)."""
         if self.stage is EditorStage.OFFERED:
             self.clear_message()
@@ -170,8 +172,8 @@ class EditorModel:
         self.message = why
 
     def _put(self, text: str, *, restored: bool = False) -> None:
-        self.text, self.is_restored = text, restored
-        self.text_number += 1
+        self.text, self.is_replacement_undoable = text, restored
+        self.loaded_text_count += 1
 
     # --- editing -------------------------------------------------------------------------------------
 
@@ -187,13 +189,13 @@ class EditorModel:
 
     def update_text(self, text: str) -> None:
         """Prove the changed text and store it as a draft."""
-        self.live_proof.submit_text(self.name, end_last_line(text), self.has_block_delete)
+        self.live_proof.submit_text(self.name, add_final_newline(text), self.is_block_delete_on)
         if self.document is not None:
             self.draft_store.set_text(self.document, text)
 
     def preview_text(self, text: str) -> None:
         """Prove the text that a form would produce, without storing that text."""
-        self.live_proof.submit_text(self.name, end_last_line(text), self.has_block_delete)
+        self.live_proof.submit_text(self.name, add_final_newline(text), self.is_block_delete_on)
 
     def is_dirty(self, text: str) -> bool:
         """Return whether the text has unsaved changes."""
@@ -239,7 +241,7 @@ class EditorModel:
             path = create_document(
                 self.programs_folder, typed_name, document.path.suffix or self.default_extension
             ).path
-        except InvalidNameError as error:
+        except InvalidProgramNameError as error:
             self.message = str(error)
             return False
         if path.exists():
@@ -320,7 +322,7 @@ class EditorModel:
 
     def _go(self, document: Document) -> None:
         self._shut()
-        text = end_last_line(document.text)
+        text = add_final_newline(document.text)
         self.on_closed(ClosedProgram(document.path, self._changed, self._to_desk, text))
 
     def _shut(self) -> None:
@@ -347,9 +349,9 @@ def open_editor(desk: Desk, editor: EditorModel) -> bool:
     desk.clear_prompt_line()
     editor.on_closed = partial(_handle_closed, desk)
     if path is None:
-        editor.offer_new(name)
+        editor.offer_new_document(name)
     else:
-        editor.open_program(path, now.has_block_delete)
+        editor.open_program(path, now.is_block_delete_on)
     return True
 
 
@@ -358,7 +360,9 @@ def find_load_label(desk: Desk, editor: EditorModel, *, is_dirty: bool) -> str:
     if is_dirty:
         return "SAV+LOAD"
     document, now = editor.document, desk.program_loader.loaded_program
-    other = document is not None and document.path == now.path and desk.storage_state.read_file_difference()
+    other = (
+        document is not None and document.path == now.path and desk.storage_state.describe_file_difference()
+    )
     return "LOAD" if editor.is_saved_since_open or other or now.path is None else "LEAVE"
 
 
@@ -378,7 +382,7 @@ def _handle_closed(desk: Desk, closed: ClosedProgram) -> None:
             tr(messages.RELOAD_AFTER_RUN)
         )  # A cycle was started at the operator station in the meantime.
     elif path == now.path:
-        desk.program_loader.start_loading(path, now.has_block_delete)
+        desk.program_loader.start_loading(path, now.is_block_delete_on)
     else:
         desk.program_choice.load_path(path)
 
@@ -407,4 +411,4 @@ def _is_loaded(text: str, current: LoadedProgram) -> bool:
     if current.source is None:
         return False
     loaded = current.source.text.replace("\r\n", "\n").replace("\r", "\n")
-    return end_last_line(loaded) == text
+    return add_final_newline(loaded) == text

@@ -29,7 +29,7 @@ from app.screen.panel import Panel, RedrawingAttribute
 from app.screen.screen_theme import ALIGN_CENTER, ALIGN_RIGHT, ScreenTheme, ThemedPainter
 from app.screen.table_panel import RowPanel
 from app.screen.window_layout import FINGERTIP_PX, Rect
-from app.working_plane.plane_instant import describe_plane, make_line_instant
+from app.working_plane.plane_instant import describe_plane, make_instant_after_line
 from app.working_plane.working_plane_view import WorkingPlaneView
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import guess_dialect
@@ -78,10 +78,10 @@ class EditorPathView(PathView):
         self._followed = (picture, line)
         block = picture.find_block_for_line(line)
         if not block and self.part_player is not None:
-            self.part_player.request_time(0.0)  # before the first move
+            self.part_player.request_part_at_time(0.0)  # before the first move
         at = max(0, picture.count_finished_points(block) - 1)
-        self.show_tip(TipPosition(block, float(picture.z[at]), float(picture.x[at])))
-        self.mark(picture.find_blocks_for_line(line))
+        self.show_tool_tip(TipPosition(block, float(picture.z[at]), float(picture.x[at])))
+        self.mark(picture.find_block_ranges(line))
 
     def jump_to_path_line(self) -> str:
         """Move the cursor to the source line of the path element at the crosshair.
@@ -94,7 +94,7 @@ class EditorPathView(PathView):
         self._picked_block(block)
         return ""
 
-    def function_keys(self) -> dict[int, FunctionKey]:
+    def make_function_keys(self) -> dict[int, FunctionKey]:
         """Return the function keys that apply while the path has the keyboard focus."""
         return {
             2: FunctionKey("FEED HOLD", self._set_measured_point),
@@ -113,7 +113,7 @@ class EditorPathView(PathView):
     def _set_measured_point(self) -> None:
         """Set one point of a measurement to the position of the crosshair."""
         if self.measurement is not None:
-            self.measurement.set_point()
+            self.measurement.set_measured_point()
             self.update()
 
     def _picked_block(self, block: int) -> None:
@@ -122,7 +122,7 @@ class EditorPathView(PathView):
             self._go_to(line)
 
     def _find_tip_position(self, pane: PathPane, tip: TipPosition) -> PlanePosition | None:
-        return pane.find_block_end(tip.active_block)
+        return pane.find_block_end(tip.active_block_number)
 
 
 FINDING_ROW_HEIGHT = 5.2  # units: two lines of text, at least a fingertip high
@@ -283,7 +283,7 @@ class EditorLayout(NamedTuple):
     """Rectangles of the areas on the editor page.
 
     - ``question_line`` is empty if no question is shown.
-    - ``keyboard`` is empty while the drawn keyboard is hidden.
+    - ``keyboard_area`` is empty while the drawn keyboard is hidden.
     - ``code_strip`` explains the code at the cursor, and ``code_list`` is the list of codes.
     - ``path_area`` contains all pictures of the program.
     """
@@ -295,7 +295,7 @@ class EditorLayout(NamedTuple):
     code_strip: Rect
     code_list: Rect
     question_line: Rect
-    keyboard: Rect
+    keyboard_area: Rect
     body_area: Rect  # text, path and findings together; the history uses this area
 
 
@@ -360,7 +360,7 @@ class EditorParts(Page):
             self.text_field.blockCount(),
         )
         if self.mode is EditorMode.PANEL:  # of the text including the lines of the form
-            line, count = self.editor_panel.model.path_line, self.editor_panel.model.text.count("\n") + 1
+            line, count = self.editor_panel.model.path_end_line, self.editor_panel.model.text.count("\n") + 1
         place = Message("LINE {line} OF {count}  ·  COL {column}", line=line, count=count, column=column)
         self.head_line.heading = EditorHeading(editor.name, self.text_synchronizer.mark, place)
         self.head_line.panel_keys = tuple(self.editor_panel.make_header_keys(editor.name))
@@ -369,27 +369,27 @@ class EditorParts(Page):
         self.text_field.show_findings(findings.line_findings)
         self.finding_list.show_findings(findings, line)
         if self.mode is EditorMode.TEXT:
-            self.code_strip.entry = self.code_list.update_code()
+            self.code_strip.code_entry = self.code_list.update_code()
         self._show_path(findings.picture, line)
 
     def _show_path(self, picture: ProgramPicture | None, line: int) -> None:
         """Show the path up to the cursor line. On a mill, show the working plane of that line in 3D."""
-        scene = picture.scene if picture is not None else None
+        scene = picture.mill_scene if picture is not None else None
         self.plane_view.show_scene(scene)
         self.plane_view.setVisible(
             scene is not None and self.mode is not EditorMode.NEW_FILE and not self.is_keyboard_shown
         )
         self.path_view.show_picture(picture if scene is None else None)
         if scene is not None:
-            here = make_line_instant(scene, line)
+            here = make_instant_after_line(scene, line)
             self.plane_view.show_instant(here, describe_plane(here.plane_position))
             return
         self.path_view.follow_line(line)
-        self.path_view.draw_slice()
+        self.path_view.continue_drawing()
 
     def show_mode(self) -> None:
         """Show the parts that belong to the current mode."""
-        self.path_view.set_measuring(is_on=self.mode is EditorMode.PATH)
+        self.path_view.switch_measuring(is_on=self.mode is EditorMode.PATH)
         self.version_list.setVisible(self.mode is EditorMode.HISTORY)
         self.code_list.setVisible(self.mode is EditorMode.CODES)
         self.editor_panel.setVisible(self.mode is EditorMode.PANEL)
@@ -444,7 +444,7 @@ class EditorParts(Page):
             (self.editor_panel, at.text),
             (self.version_list, at.body_area),
             (self.question_line, at.question_line),
-            (self.letter_pad, at.keyboard),
+            (self.letter_pad, at.keyboard_area),
         ):
             part.setGeometry(*rect)
             part.update()

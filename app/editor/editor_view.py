@@ -94,13 +94,13 @@ class EditorPage(EditorParts):
         self._target = page_table.AUTOMATIC
         self.enter_mode(EditorMode.TEXT)
 
-    def try_leave(self) -> bool:
+    def try_leave_page(self) -> bool:
         """Start saving the text, and return whether the page can close now.
 
         If the result is False, the page closes after the file is saved.
         """
         if self.editor.stage is EditorStage.OFFERED:
-            self.editor.cancel_offer()
+            self.editor.cancel_document_offer()
         if self.editor.stage is not EditorStage.CLOSED:
             self._target = page_table.AUTOMATIC
             self.editor.save_and_leave(self.text_synchronizer.read_text())
@@ -138,7 +138,7 @@ class EditorPage(EditorParts):
         if self._moving and self.is_esc_stop_key():
             self.desk.start_feed_hold()  # Esc must do the safe action on every page.
         elif self.editor.stage is EditorStage.OFFERED:
-            self.editor.cancel_offer()
+            self.editor.cancel_document_offer()
         elif self.mode is not EditorMode.TEXT:
             if self.mode is not EditorMode.PANEL or not self.editor_panel.model.handle_escape():
                 self.return_to_text()
@@ -220,16 +220,16 @@ class EditorPage(EditorParts):
         )
         undo = {8: FunctionKey("UNDO", self.text_field.undo), 9: FunctionKey("REDO", self.text_field.redo)}
         of_mode: dict[EditorMode, Callable[[], ModeKeys]] = {
-            EditorMode.FIND: lambda: self.text_finder.function_keys() | undo,
+            EditorMode.FIND: lambda: self.text_finder.make_function_keys() | undo,
             EditorMode.HISTORY: lambda: {
                 2: FunctionKey("RESTORE", self.restore_version),
-                **self.version_list.function_keys(),
+                **self.version_list.make_function_keys(),
             },
-            EditorMode.CODES: self.code_list.function_keys,
-            EditorMode.PANEL: self.editor_panel.model.function_keys,
+            EditorMode.CODES: self.code_list.make_function_keys,
+            EditorMode.PANEL: self.editor_panel.model.make_function_keys,
             EditorMode.PATH: lambda: {
                 3: FunctionKey("GO TO LINE", self._jump_to_line),
-                **self.path_view.function_keys(),
+                **self.path_view.make_function_keys(),
             },
         }
         if self.mode is EditorMode.PANEL and not self.editor_panel.model.is_list_shown:
@@ -240,7 +240,7 @@ class EditorPage(EditorParts):
         if self.mode is EditorMode.NEW_FILE:
             return {
                 1: FunctionKey("CREATE", self.editor.create_document),
-                10: FunctionKey("ABORT", self.editor.cancel_offer),
+                10: FunctionKey("ABORT", self.editor.cancel_document_offer),
             }
         if self.mode is EditorMode.TEXT:
             return {1: menu, **self._text_keys(), **undo, 10: FunctionKey("DISCARD", self.discard_and_leave)}
@@ -458,10 +458,10 @@ class EditorPage(EditorParts):
             asking |= dict.fromkeys((Qt.Key.Key_Tab, Qt.Key.Key_Backtab), tab)
             return asking.get(key)
         if self.mode is EditorMode.CODES:
-            return self.code_list.arrow_actions().get(key)
+            return self.code_list.make_arrow_actions().get(key)
         if self.mode is EditorMode.HISTORY:
             restore: KeyActionMap = dict.fromkeys((Qt.Key.Key_Return, Qt.Key.Key_Enter), self.restore_version)
-            return (self.version_list.arrow_actions() | restore).get(key)
+            return (self.version_list.make_arrow_actions() | restore).get(key)
         return None
 
     def _make_chord_actions(self) -> KeyActionMap:

@@ -53,7 +53,7 @@ class ProofFindings:
         return sum(d.severity is Severity.WARNING for d in self.diagnostics)
 
 
-def map_by_line(diagnostics: tuple[Diagnostic, ...]) -> dict[int, Diagnostic]:
+def map_findings_by_line(diagnostics: tuple[Diagnostic, ...]) -> dict[int, Diagnostic]:
     """Return the most severe finding of each line, by line number.
 
     If several findings of a line have the same severity, the first one is returned. Line 0 represents the
@@ -126,7 +126,13 @@ class LiveProof:
         before = self._now.picture
         book = get_code_book(source.dialect).compile_patterns()
         findings = ProofFindings(
-            number, found, map_by_line(found), before, proof.cycle_time_s, proof.block_count, code_book=book
+            number,
+            found,
+            map_findings_by_line(found),
+            before,
+            proof.cycle_time_s,
+            proof.block_count,
+            code_book=book,
         )
         request.publish_result(partial(self._show, findings))
         picture = self.loading_steps.draw_path(job, request)
@@ -136,7 +142,7 @@ class LiveProof:
         if part is None:
             return findings
         found = part.merge_diagnostics(found)
-        return replace(findings, diagnostics=found, line_findings=map_by_line(found))
+        return replace(findings, diagnostics=found, line_findings=map_findings_by_line(found))
 
     def _show(self, findings: ProofFindings) -> None:
         if findings.number >= self._now.number:

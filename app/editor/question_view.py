@@ -84,7 +84,7 @@ def following(positions: tuple[int, ...], start: int) -> int | None:
     return positions[bisect_left(positions, start) % len(positions)]
 
 
-def find_preceding(positions: tuple[int, ...], start: int) -> int | None:
+def find_preceding_position(positions: tuple[int, ...], start: int) -> int | None:
     """Return the last match position before ``start``, wrapping to the last position.
 
     Returns None if there are no positions.
@@ -199,7 +199,7 @@ class TextFinder:
             after = cursor.selectionEnd() if cursor.hasSelection() else cursor.position()
             self._show(following(places, after))
         else:
-            self._show(find_preceding(places, cursor.selectionStart()))
+            self._show(find_preceding_position(places, cursor.selectionStart()))
 
     def replace_match(self) -> None:
         """Replace the selected match and select the next one."""
@@ -208,7 +208,7 @@ class TextFinder:
         length = len(self._search.search_text)
         if cursor.hasSelection() and start in places and cursor.selectionEnd() - start == length:
             by = self._ask.second_field.text()
-            self._field.replace_ranges((start,), length, by)
+            self._field.replace_text_ranges((start,), length, by)
             self._show(following(self._places(), start + len(by)))
         else:
             self.select_match(1)
@@ -217,7 +217,9 @@ class TextFinder:
         """Replace all matches as one step of the undo history."""
         places = self._places()
         if places:
-            self._field.replace_ranges(places, len(self._search.search_text), self._ask.second_field.text())
+            self._field.replace_text_ranges(
+                places, len(self._search.search_text), self._ask.second_field.text()
+            )
         self._ask.message_text = (
             Message("{places_count} REPLACED", places_count=len(places)) if places else "NOT FOUND"
         )
@@ -227,7 +229,7 @@ class TextFinder:
         self.matches_whole_words = not self.matches_whole_words
         self.count_matches()
 
-    def function_keys(self) -> dict[int, FunctionKey]:
+    def make_function_keys(self) -> dict[int, FunctionKey]:
         """Return the function keys that apply during a search."""
         return {
             2: FunctionKey("NEXT", partial(self.select_match, 1)),

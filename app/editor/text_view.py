@@ -185,7 +185,7 @@ class ProgramTextField(QPlainTextEdit):
         cursor.endEditBlock()
         self.setTextCursor(cursor)
 
-    def replace_ranges(self, positions: tuple[int, ...], length: int, replacement: str) -> None:
+    def replace_text_ranges(self, positions: tuple[int, ...], length: int, replacement: str) -> None:
         """Replace several ranges with ``replacement``, as one step of the undo history.
 
         The ranges start at ``positions`` and have the same ``length``.
@@ -398,10 +398,10 @@ class TextSynchronizer:
         """
         editor, field = self._editor, self._field
         self._update_dialect()
-        if editor.text_number != self._taken:
-            self._taken = editor.text_number
+        if editor.loaded_text_count != self._taken:
+            self._taken = editor.loaded_text_count
             self._taking = True
-            field.replace_text(editor.text, as_new=not editor.is_restored)
+            field.replace_text(editor.text, as_new=not editor.is_replacement_undoable)
             self._taking = False
             field.setFocus()
             self.is_stale = True

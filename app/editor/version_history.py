@@ -10,7 +10,7 @@ from typing import Protocol
 from app.desk.background_work import LatestRequestWorker, ProgressCallback
 from core.message import Message
 from core.store.store_errors import StoreError
-from core.store.store_rows import VersionRow
+from core.store.store_rows import ProgramVersionRow
 
 
 class VersionArchive(Protocol):
@@ -20,7 +20,7 @@ class VersionArchive(Protocol):
     fails.
     """
 
-    def versions(self, name: str) -> Sequence[VersionRow]:
+    def versions(self, name: str) -> Sequence[ProgramVersionRow]:
         """Return all versions of a program, newest first."""
         ...
 
@@ -36,10 +36,10 @@ class VersionArchive(Protocol):
         ...
 
 
-class NullArchive:
+class NullVersionArchive:
     """Archive without versions, for scripts, and for TurnDesk if its store cannot be opened."""
 
-    def versions(self, _name: str) -> Sequence[VersionRow]:
+    def versions(self, _name: str) -> Sequence[ProgramVersionRow]:
         """Return an empty tuple because this archive stores no versions."""
         return ()
 
@@ -126,7 +126,7 @@ class VersionHistory:
     worker: LatestRequestWorker
     program_name: str = ""
     current_text: str = ""
-    rows: tuple[VersionRow, ...] = ()
+    rows: tuple[ProgramVersionRow, ...] = ()
     marked: int = 0
     text: str | None = None  # text of the selected version once it is read
     changes: tuple[DifferenceRow, ...] = ()
@@ -149,11 +149,11 @@ class VersionHistory:
         self.text, self.changes, self.error_text = None, (), ""
         name, now, number = self.program_name, self.current_text, self.rows[self.marked].number
 
-        def compare(_watch: ProgressCallback) -> tuple[str, tuple[DifferenceRow, ...]]:
+        def compare_version(_watch: ProgressCallback) -> tuple[str, tuple[DifferenceRow, ...]]:
             text = decode_text(self.archive.read_version_text(name, number))
             return text, compare_texts(*self.order_texts(text, now))
 
-        self.worker.request_work(compare, self._compared, self._failed)
+        self.worker.request_work(compare_version, self._compared, self._failed)
 
     def order_texts(self, selected: str, current: str) -> tuple[str, str]:
         """Return the two texts to compare, the older text first."""
@@ -178,7 +178,7 @@ class VersionHistory:
             return "COMPARING"
         return "" if self.changes else "IDENTICAL TO THE TEXT IN THE EDITOR"
 
-    def _listed(self, rows: tuple[VersionRow, ...]) -> None:
+    def _listed(self, rows: tuple[ProgramVersionRow, ...]) -> None:
         self.rows = rows
         self.mark(0)
 

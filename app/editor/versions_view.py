@@ -22,7 +22,7 @@ from app.screen.screen_theme import (
 )
 from app.screen.table_panel import RowPanel
 from core.message import Message
-from core.store.store_rows import VersionRow
+from core.store.store_rows import ProgramVersionRow
 
 VERSION_ROW_HEIGHT = 5.2  # units: height of a version, at least a fingertip
 COMPARISON_LINE_HEIGHT = 2.9  # units: height of a line of the comparison
@@ -70,7 +70,7 @@ class VersionList(RowPanel):
             self.add_target(box, partial(history.mark, first + place), kind="row", is_on=marked)
         self._comparison(painter)
 
-    def _version(self, painter: ThemedPainter, box: QRectF, version: VersionRow, marked: bool) -> None:
+    def _version(self, painter: ThemedPainter, box: QRectF, version: ProgramVersionRow, marked: bool) -> None:
         u = self.theme.unit_px
         if marked:
             painter.fill_rect(box, "lit")
@@ -111,7 +111,7 @@ class VersionList(RowPanel):
         painter.draw_text_line(sign, change.sign, 2.0, SIGN_COLORS[change.sign], bold=change.sign in "+-")
         draw_raw_text(painter, row.adjusted(14 * u, 0, 0, 0), ALIGN_LEFT, change.text.expandtabs(4))
 
-    def function_keys(self) -> dict[int, FunctionKey]:
+    def make_function_keys(self) -> dict[int, FunctionKey]:
         """Return the function keys for selecting and scrolling."""
         history = self._history
         return {
@@ -121,12 +121,12 @@ class VersionList(RowPanel):
             7: FunctionKey("DOWN", lambda: self.scroll_by(self.rows)),
         }
 
-    def arrow_actions(self) -> dict[int, Callable[[], None]]:
+    def make_arrow_actions(self) -> dict[int, Callable[[], None]]:
         """Return the actions of the arrow and page keys, which are the same as those of F4 to F7.
 
         Home selects the newest version, and End the oldest.
         """
-        by = {number: key.action for number, key in self.function_keys().items()}
+        by = {number: key.action for number, key in self.make_function_keys().items()}
         return {
             Qt.Key.Key_Up: by[4],
             Qt.Key.Key_Down: by[5],

@@ -17,10 +17,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
-from app.desk.late_presses import StartingAction
+from app.desk.late_presses import BlockedLateAction
 from app.desk.status.formats import MM_PER_INCH
 from app.desk.translation import tr
-from app.offsets.offset_values import ValueMode
+from app.offsets.offset_values import UnitMode
 from core.executor.commands import Command, Jog, JogByStep, StopJog
 from core.executor.hand_motion.jog_line import Direction
 from core.executor.snapshot import MachineState, Snapshot
@@ -67,7 +67,7 @@ class JogSpeeds:
     def _turns(self, axis: str) -> bool:
         return self.machine.find_axis(axis).is_rotary
 
-    def find_step_length(self, axis: str, value_mode: ValueMode, step_index: int | None = None) -> float:
+    def find_step_length(self, axis: str, value_mode: UnitMode, step_index: int | None = None) -> float:
         """Return the travel of the axis in one step, in mm or degrees.
 
         If X is displayed as a diameter, the displayed diameter changes by the selected length, so the
@@ -79,7 +79,7 @@ class JogSpeeds:
         length = MM_STEPS[step_index] if value_mode.is_metric else INCH_STEPS[step_index] * MM_PER_INCH
         return length / 2 if axis == "X" and value_mode.is_diameter else length
 
-    def format_step(self, axis: str, value_mode: ValueMode, step_index: int) -> str:
+    def format_step(self, axis: str, value_mode: UnitMode, step_index: int) -> str:
         """Return the length of a jog step for one axis as text."""
         return (
             _short(DEGREE_STEPS[step_index])
@@ -93,7 +93,7 @@ class JogSpeeds:
             return min(ROTARY_STEP_SPEED_DEG_S, self.machine.find_axis(axis).max_speed)
         return min(STEP_SPEED_MM_S, self.machine.limits.manual_rapid)
 
-    def find_velocity(self, axis: str, value_mode: ValueMode, *, is_rapid: bool) -> float:
+    def find_continuous_speed(self, axis: str, value_mode: UnitMode, *, is_rapid: bool) -> float:
         """Return the speed of a continuous jog in mm/s or degrees/s."""
         if self._turns(axis):
             return min(
@@ -110,12 +110,12 @@ class JogSpeeds:
         return min(slow / 60, self.machine.limits.manual_rapid)
 
 
-def make_step_labels(value_mode: ValueMode) -> tuple[str, ...]:
+def make_step_labels(value_mode: UnitMode) -> tuple[str, ...]:
     """Return the lengths of the jog steps as key labels."""
     return tuple(_short(step) for step in (MM_STEPS if value_mode.is_metric else INCH_STEPS))
 
 
-def make_speed_labels(value_mode: ValueMode) -> tuple[str, ...]:
+def make_speed_labels(value_mode: UnitMode) -> tuple[str, ...]:
     """Return the jog speeds of linear axes as key labels, in mm or inches per minute."""
     return tuple(f"{speed:g}" for speed in (MM_SPEEDS if value_mode.is_metric else INCH_SPEEDS))
 
@@ -125,9 +125,9 @@ def make_rotary_speed_labels() -> tuple[str, ...]:
     return tuple(f"{60 * speed:g}" for speed in ROTARY_SPEEDS_DEG_S)
 
 
-def format_rapid_speed(machine: Machine, value_mode: ValueMode) -> str:
+def format_rapid_speed(machine: Machine, value_mode: UnitMode) -> str:
     """Return the manual rapid speed as text, in mm or inches per minute."""
-    return f"{machine.limits.manual_rapid * 60 / value_mode.unit_mm:.0f}"
+    return f"{machine.limits.manual_rapid * 60 / value_mode.unit_length_mm:.0f}"
 
 
 def _short(step: float) -> str:
@@ -148,14 +148,14 @@ class JogDirection:
     ``key_name`` is the Qt name of the key, and ``label`` is the text on the key.
     """
 
-    axis: str
+    axis_name: str
     direction_sign: int
     cell_column: int
     cell_row: int
     key_name: str
     label: str
-    arrow_point: ArrowPoint = _NO_ARROW
-    displayed_axis: str = ""  # The displayed name of the axis, if it differs.
+    arrow_direction: ArrowPoint = _NO_ARROW
+    displayed_axis_name: str = ""  # The displayed name of the axis, if it differs.
 
 
 # A lathe from above: X+ points toward the operator, Z+ to the right.
@@ -192,7 +192,8 @@ def make_jog_directions(machine: Machine) -> tuple[JogDirection, ...]:
     """
     if machine.kind != "mill":
         turning = tuple(
-            replace(each, displayed_axis=machine.get_displayed_axis_name("C")) for each in _LATHE_C_DIRECTIONS
+            replace(each, displayed_axis_name=machine.get_displayed_axis_name("C"))
+            for each in _LATHE_C_DIRECTIONS
         )
         return _LATHE_DIRECTIONS + (turning if machine.is_c_enabled else ())
     found = list(_MILL_DIRECTIONS)
@@ -213,14 +214,14 @@ RENEWALS_PER_LEASE = 4  # Renewals per lease.
 class ActiveJog:
     """Continuous jog that remains active while its key or touch is held down."""
 
-    key_source: str
-    axis: str
+    input_source: str
+    axis_name: str
     velocity: float
     is_rapid: bool
     start_time_s: float
-    post_time_s: float
-    update_time_s: float
-    repeat_time_s: float | None = None  # Time of the last key repeat; None before the first repeat.
+    last_post_time_s: float
+    last_update_time_s: float
+    key_repeat_time_s: float | None = None  # Time of the last key repeat; None before the first repeat.
     is_moving: bool = False
     direction: Direction | None = None
 
@@ -229,31 +230,31 @@ class ActiveJog:
 class HeldJog:
     """Jog that runs while a key or touch is held down.
 
-    ``lease_s`` is the time in seconds after which the motion ends unless the lease is renewed.
+    ``motion_lease_s`` is the time in seconds after which the motion ends unless the lease is renewed.
     ``find_refusal`` returns the reason why jogging is not possible now, or an empty string. ``read_clock``
     returns a monotonic time in seconds.
     """
 
-    starting_action: ClassVar[StartingAction] = StartingAction.JOG
+    starting_action: ClassVar[BlockedLateAction] = BlockedLateAction.JOG
     jog_speeds: JogSpeeds
-    lease_s: float
+    motion_lease_s: float
     post_command: Callable[[Command], None]
     show_message: Callable[[str], None]
     clear_message: Callable[[], None]
     read_clock: Callable[[], float]
     find_refusal: Callable[[], str]
-    value_mode: ValueMode = field(default_factory=ValueMode)
+    value_mode: UnitMode = field(default_factory=UnitMode)
     # Direction in a tilted plane (3D-ROT).
     find_direction: Callable[[str], Direction | None] = field(default=lambda _axis: None)
     # Returns whether a late press must not start the action.
-    refuses_late_press: Callable[[StartingAction], bool] = field(default=lambda _starting: False)
+    refuses_late_press: Callable[[BlockedLateAction], bool] = field(default=lambda _starting: False)
     active_jog: ActiveJog | None = None
     is_rapid_armed: bool = False  # Rapid was selected on the screen, for the next jog only.
     last_button_name: str = ""  # Input name of the last press, if it was a button at the machine.
     pressed_keys: set[str] = field(default_factory=set)  # Keys and touches that are pressed.
     _ended: str = ""  # Reason for the end of the last jog, shown again when the axis is at rest.
 
-    def press_direction(
+    def handle_direction_press(
         self, key_source: str, axis: str, direction_sign: int, *, is_rapid: bool, button_name: str = ""
     ) -> None:
         """Handle a press on a jog direction.
@@ -299,10 +300,14 @@ class HeldJog:
         )
 
     def _begin(self, source: str, axis: str, sign: int, rapid: bool) -> None:
-        velocity = sign * self.jog_speeds.find_velocity(axis, self.value_mode, is_rapid=rapid)
+        velocity = sign * self.jog_speeds.find_continuous_speed(axis, self.value_mode, is_rapid=rapid)
         along = self.find_direction(axis)
         self._hold(
-            source, axis, velocity, rapid, Jog(axis, velocity, self.lease_s, self.last_button_name, along)
+            source,
+            axis,
+            velocity,
+            rapid,
+            Jog(axis, velocity, self.motion_lease_s, self.last_button_name, along),
         )
 
     def _hold(self, source: str, axis: str, velocity: float, rapid: bool, command: Command) -> None:
@@ -312,15 +317,15 @@ class HeldJog:
         self.active_jog = ActiveJog(source, axis, velocity, rapid, now, now, now, direction=along)
         self.post_command(command)
 
-    def record_repeat(self, key_source: str) -> None:
+    def record_key_repeat(self, key_source: str) -> None:
         """Store the time of a key repeat. A repeat shows that the key is still held down."""
-        if self.active_jog is not None and self.active_jog.key_source == key_source:
-            self.active_jog.repeat_time_s = self.read_clock()
+        if self.active_jog is not None and self.active_jog.input_source == key_source:
+            self.active_jog.key_repeat_time_s = self.read_clock()
 
     def release_key(self, key_source: str) -> None:
         """Handle the release of a key or touch."""
         self.pressed_keys.discard(key_source)
-        if self.active_jog is not None and self.active_jog.key_source == key_source:
+        if self.active_jog is not None and self.active_jog.input_source == key_source:
             self.stop_jog("")
 
     def stop_for_other_key(self) -> None:
@@ -331,12 +336,12 @@ class HeldJog:
         if self.active_jog is not None:
             self.stop_jog(tr("JOG STOPPED: ANOTHER KEY WAS PRESSED"))
 
-    def release_shift(self) -> None:
+    def release_shift_key(self) -> None:
         """Stop a rapid jog when Shift is released."""
         if self.active_jog is not None and self.active_jog.is_rapid:
             self.stop_jog(tr("SHIFT RELEASED. RAPID STOPPED"))
 
-    def release_all(self, reason: str = "") -> None:
+    def release_all_keys(self, reason: str = "") -> None:
         """Treat all keys as released and stop the jog, because release events may be lost."""
         self.pressed_keys.clear()
         if self.active_jog is not None:
@@ -359,15 +364,15 @@ class HeldJog:
 
         This method is called once per frame.
         """
-        self.value_mode = ValueMode(snapshot.modal.metric, snapshot.shows_diameter)
+        self.value_mode = UnitMode(snapshot.modal.metric, snapshot.shows_diameter)
         held, now = self.active_jog, self.read_clock()
         if held is None:
             self._repeat_reason(snapshot)
             return
-        away, held.update_time_s = now - held.update_time_s, now
-        if away > self.lease_s:
+        away, held.last_update_time_s = now - held.last_update_time_s, now
+        if away > self.motion_lease_s:
             self.stop_jog(tr("SCREEN FROZE. JOG STOPPED"))
-        elif held.repeat_time_s is not None and now - held.repeat_time_s > REPEAT_TIMEOUT_S:
+        elif held.key_repeat_time_s is not None and now - held.key_repeat_time_s > REPEAT_TIMEOUT_S:
             self.stop_jog(tr("JOG KEY SIGNAL LOST. RELEASE THE KEY, THEN PRESS IT AGAIN"))
         elif snapshot.state is MachineState.JOG:
             held.is_moving = True
@@ -387,9 +392,9 @@ class HeldJog:
             self._ended = ""
 
     def _renew(self, held: ActiveJog, now: float) -> None:
-        if now - held.post_time_s >= self.lease_s / RENEWALS_PER_LEASE:
-            held.post_time_s = now
+        if now - held.last_post_time_s >= self.motion_lease_s / RENEWALS_PER_LEASE:
+            held.last_post_time_s = now
             self.post_command(self._renewal(held))
 
     def _renewal(self, held: ActiveJog, /) -> Command:
-        return Jog(held.axis, held.velocity, self.lease_s, self.last_button_name, held.direction)
+        return Jog(held.axis_name, held.velocity, self.motion_lease_s, self.last_button_name, held.direction)

@@ -76,8 +76,8 @@ class JogCross(TouchPanel):
 
     def _target(self, painter: ThemedPainter, box: QRectF, direction: JogDirection) -> None:
         u, held = self.theme.unit_px, self._hold.active_jog
-        axis, sign, arrow = direction.axis, direction.direction_sign, direction.arrow_point
-        moving = held is not None and held.axis == axis and held.velocity * sign > 0
+        axis, sign, arrow = direction.axis_name, direction.direction_sign, direction.arrow_direction
+        moving = held is not None and held.axis_name == axis and held.velocity * sign > 0
         painter.draw_box(
             box.adjusted(0.1 * u, 0.1 * u, -0.1 * u, -0.1 * u),
             "run" if moving else "accent",
@@ -93,7 +93,7 @@ class JogCross(TouchPanel):
         up = 0.0 if low else 0.16
         aside = box.translated(-arrow[0] * 0.16 * box.width(), -arrow[1] * up * box.height())
         mark = self.axis_suffix if axis in "XYZ" else ""
-        name = f"{direction.displayed_axis or axis}{mark}{'+' if sign > 0 else '−'}"
+        name = f"{direction.displayed_axis_name or axis}{mark}{'+' if sign > 0 else '−'}"
         painter.draw_text_line(aside, name, 3.4, "on_state" if moving else "text", at=ALIGN_CENTER)
         corner = box.adjusted(0.8 * u, 0.3 * u, 0, 2.4 * u - box.height())
         painter.draw_text_line(corner, direction.label, 1.5, "on_state" if moving else "soft")
@@ -107,14 +107,14 @@ class JogCross(TouchPanel):
         hold = self._hold
         source = f"finger {axis}{sign}"
 
-        def follow_finger(at: QPointF) -> None:
+        def follow_touch(at: QPointF) -> None:
             if not box.contains(at):
                 hold.release_key(source)
 
         return TouchControl(
             box,
             lambda _at: self._finger_on(source, axis, sign),
-            follow_finger,
+            follow_touch,
             lambda: hold.release_key(source),
         )
 
@@ -146,7 +146,7 @@ class HeldKeysModel(PageModel, Protocol):
         """Return whether a key is held down or the handwheel is selected."""
         ...
 
-    def release_all(self) -> None:
+    def release_all_keys(self) -> None:
         """Stop the motion, because the page will not receive the key releases."""
         ...
 
@@ -165,7 +165,7 @@ class HeldKeysPage(ModelPage):
         super().__init__(host, parent)
         self.model = model
         self._arrows = {
-            Key.__members__[f"Key_{each.key_name}"]: (each.axis, each.direction_sign)
+            Key.__members__[f"Key_{each.key_name}"]: (each.axis_name, each.direction_sign)
             for each in model.directions
         }
         self._was_active = False  # Whether the window was active before a key was pressed.
@@ -183,7 +183,7 @@ class HeldKeysPage(ModelPage):
                 model.held_jog.stop_for_other_key()
             return self.handle_other_key(event)
         if event.isAutoRepeat():
-            model.held_jog.record_repeat(key.name)
+            model.held_jog.record_key_repeat(key.name)
         elif event.modifiers() & CHORD_MODIFIERS:
             model.held_jog.stop_for_other_key()
         elif event.modifiers() & Qt.KeyboardModifier.KeypadModifier:
@@ -192,7 +192,7 @@ class HeldKeysPage(ModelPage):
         else:
             axis, sign = self._arrows[key]
             rapid = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
-            model.held_jog.press_direction(key.name, axis, sign, is_rapid=rapid)
+            model.held_jog.handle_direction_press(key.name, axis, sign, is_rapid=rapid)
         return True
 
     def handle_other_key(self, _event: QKeyEvent) -> bool:
@@ -210,16 +210,16 @@ class HeldKeysPage(ModelPage):
         if key in self._arrows:
             self.model.held_jog.release_key(key.name)
         elif key == Key.Key_Shift:
-            self.model.held_jog.release_shift()
+            self.model.held_jog.release_shift_key()
 
-    def stop_held_actions(self) -> None:
+    def stop_held_key_actions(self) -> None:
         """Stop the motion because another key or touch was pressed."""
         self.model.held_jog.stop_for_other_key()
 
-    def release_all(self) -> None:
+    def release_all_keys(self) -> None:
         """Release all keys and touches because the window has lost the keyboard focus."""
-        self.jog_cross.release_all()
-        self.model.release_all()
+        self.jog_cross.release_all_controls()
+        self.model.release_all_keys()
 
     def _has_keyboard(self) -> bool:
         """Return whether this page has the keyboard focus, and not a dialog, a menu or another window.
@@ -233,10 +233,10 @@ class HeldKeysPage(ModelPage):
         covered = QApplication.activeModalWidget() or QApplication.activePopupWidget()
         return covered is None and (active or not self._was_active)
 
-    def release_if_active(self) -> None:
+    def stop_if_active(self) -> None:
         """Stop the motion if a key is held down or the handwheel is selected.
 
         Another window could receive the release event of the key, and the motion would then not stop.
         """
         if self.model.is_active:
-            self.release_all()
+            self.release_all_keys()

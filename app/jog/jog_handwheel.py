@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from app.desk.late_presses import StartingAction
+from app.desk.late_presses import BlockedLateAction
 from app.desk.pages.table_content import following
 from app.desk.translation import tr
 from app.jog.held_jog import CONTINUOUS_STEP_INDEX, MOTION_TIMEOUT_S, RENEWALS_PER_LEASE, HeldJog, JogSpeeds
@@ -105,12 +105,12 @@ class JogHandwheel:
             self.held_jog.show_message(tr("THIS MACHINE HAS NO HANDWHEEL"))
         elif self.has_axis_switch:
             self.held_jog.show_message(tr("SELECT THE HANDWHEEL AXIS WITH THE OPERATOR PANEL SWITCH"))
-        elif axis and self.held_jog.refuses_late_press(StartingAction.HANDWHEEL):
+        elif axis and self.held_jog.refuses_late_press(BlockedLateAction.HANDWHEEL):
             pass
         elif axis and (why := self.find_refusal()):
             self.held_jog.show_message(why)
         else:
-            self.held_jog.release_all()
+            self.held_jog.release_all_keys()
             self.turn_off("")
             self._by_hand = axis
             if axis and self._speeds.step_index in {CONTINUOUS_STEP_INDEX, _LONG_STEP_INDEX}:
@@ -135,7 +135,7 @@ class JogHandwheel:
         if not self.is_available:
             return
         wanted = self._find_wanted_choice(snapshot)
-        if self.wheel_choice is not None and away > self.held_jog.lease_s:
+        if self.wheel_choice is not None and away > self.held_jog.motion_lease_s:
             self.turn_off(tr("SCREEN FROZE. HANDWHEEL IS OFF"))
         elif self.wheel_choice is not None and (why := self.find_refusal()):
             self.turn_off(why)
@@ -171,7 +171,7 @@ class JogHandwheel:
     def _renew(self, wanted: WheelChoice, now: float) -> None:
         if self.wheel_choice is None:
             self._asked = now
-        elif now - self._posted < self.held_jog.lease_s / RENEWALS_PER_LEASE:
+        elif now - self._posted < self.held_jog.motion_lease_s / RENEWALS_PER_LEASE:
             return
         self.wheel_choice, self._posted = wanted, now
         axis, step = wanted
@@ -179,7 +179,7 @@ class JogHandwheel:
             SelectHandwheel(
                 axis,
                 self._speeds.find_step_length(axis, self.held_jog.value_mode, step),
-                self.held_jog.lease_s,
+                self.held_jog.motion_lease_s,
             )
         )
 
@@ -222,7 +222,7 @@ class MachineJogButtons:
                 self.held_jog.show_message(tr("SCREEN FROZE. RELEASE THE BUTTON, THEN PRESS AGAIN"))
             return
         if JOG_RAPID_INPUT in before and JOG_RAPID_INPUT not in on:
-            self.held_jog.release_shift()
+            self.held_jog.release_shift_key()
         for name in on - before:
             self._press(name, on)
 
@@ -236,4 +236,6 @@ class MachineJogButtons:
                 self.held_jog.show_message(tr("ENABLING SWITCH NOT PRESSED. HOLD IT AND PRESS JOG BUTTON"))
                 return
             axis, sign = self.jog_buttons[name]
-            self.held_jog.press_direction(name, axis, sign, is_rapid=JOG_RAPID_INPUT in on, button_name=name)
+            self.held_jog.handle_direction_press(
+                name, axis, sign, is_rapid=JOG_RAPID_INPUT in on, button_name=name
+            )

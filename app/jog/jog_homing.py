@@ -47,7 +47,7 @@ class HomingQuestion:
     @property
     def is_open(self) -> bool:
         """Return whether the homing question is open."""
-        return self._asked and self.desk.confirm_key == "Enter"
+        return self._asked and self.desk.confirmation_key == "Enter"
 
     @property
     def homing_axes(self) -> tuple[Axis, ...]:
@@ -61,7 +61,7 @@ class HomingQuestion:
             if a.name != "C" or self.machine.is_c_enabled or self.machine.kind != "lathe"
         )
 
-    def find_states(self, snapshot: Snapshot) -> dict[str, HomingState]:
+    def find_homing_states(self, snapshot: Snapshot) -> dict[str, HomingState]:
         """Return the homing state of every axis."""
         homed = dict(zip(snapshot.axes, snapshot.homed, strict=True))
         lost = sorted((a for a in self.homing_axes if not homed[a.name]), key=lambda axis: axis.home_order)
@@ -76,7 +76,7 @@ class HomingQuestion:
 
     def find_unhomed_axes(self, snapshot: Snapshot) -> list[str]:
         """Return the names of the axes that are not homed yet, in the order of homing."""
-        known = self.find_states(snapshot)
+        known = self.find_homing_states(snapshot)
         order = sorted(self.homing_axes, key=lambda axis: axis.home_order)
         return [
             axis.name for axis in order if known[axis.name] in {HomingState.NOT_HOMED, HomingState.HOMING}

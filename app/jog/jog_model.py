@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from app.desk.desk import Desk
-from app.desk.late_presses import StartingAction
+from app.desk.late_presses import BlockedLateAction
 from app.desk.status import prompt_line
 from app.desk.status.prompt_line import RELEASE_STOP_KEY
 from app.desk.translation import tr
@@ -13,7 +13,7 @@ from app.jog.held_jog import CONTINUOUS_STEP_INDEX, JogDirection, JogSpeeds, mak
 from app.jog.jog_handwheel import JogHandwheel, MachineJogButtons
 from app.jog.jog_homing import HomingQuestion
 from app.jog.manual_functions import ManualFunctions
-from app.jog.skim_cut_and_setter import HeldTouchOff, SetterTouchOff, SkimCut
+from app.jog.skim_cut_and_setter import HeldTouchOff, SkimCut, ToolSetterTouchOff
 from app.jog.tilted_jog import TiltedJog
 from app.jog.tool_setting import TOOL_QUESTION, ToolSetting
 from app.jog.tool_touch_off import TOUCH_X, TOUCH_Z
@@ -50,7 +50,7 @@ class JogModel:
     tool_setting: ToolSetting = field(init=False)
     skim_cut: SkimCut = field(init=False)
     manual_functions: ManualFunctions = field(init=False)
-    setter_touch: SetterTouchOff = field(init=False)
+    tool_setter_touch_off: ToolSetterTouchOff = field(init=False)
     pendant_buttons: MachineJogButtons = field(init=False)
     tilted_jog: TiltedJog = field(init=False)
     directions: tuple[JogDirection, ...] = ()
@@ -59,7 +59,7 @@ class JogModel:
         desk = self.desk
         self.jog_speeds = JogSpeeds(self.machine)
         self.directions = make_jog_directions(self.machine)
-        lease = min(self.machine.timing.lease, MAX_LEASE_S)
+        lease = min(self.machine.timing.motion_lease_s, MAX_LEASE_S)
         self.held_jog = HeldTouchOff(
             self.jog_speeds,
             lease,
@@ -70,7 +70,7 @@ class JogModel:
             self.find_jog_refusal,
             refuses_late_press=desk.window_state.late_presses.refuse_late_press,
         )
-        moved = {each.axis for each in self.directions}
+        moved = {each.axis_name for each in self.directions}
         names = tuple(axis.name for axis in self.machine.axes if axis.name in moved)
         self.handwheel = JogHandwheel(self.machine, self.held_jog, names, self._find_wheel_refusal)
         self.homing_question = HomingQuestion(self.machine, desk)
@@ -80,10 +80,14 @@ class JogModel:
         if hand is None:
             raise RuntimeError("the desk was put together without functions by hand")
         self.manual_functions = hand
-        self.setter_touch = SetterTouchOff(desk, self.machine, self.tool_setting, lease, self.directions)
-        self.held_jog.setter_touch = self.setter_touch
+        self.tool_setter_touch_off = ToolSetterTouchOff(
+            desk, self.machine, self.tool_setting, lease, self.directions
+        )
+        self.held_jog.tool_setter_touch_off = self.tool_setter_touch_off
         self.pendant_buttons = MachineJogButtons(self.machine, self.held_jog, self.handwheel, names)
-        self.tilted_jog = TiltedJog(MillTouchCalculator.find_for(desk).kinematics, self._end_hold, desk.say)
+        self.tilted_jog = TiltedJog(
+            MillTouchCalculator.get_for_desk(desk).kinematics, self._end_hold, desk.say
+        )
         self.held_jog.find_direction = self.tilted_jog.find_direction
 
     @property
@@ -100,7 +104,7 @@ class JogModel:
         This method cancels an open homing question.
         """
         state = self.desk.read_snapshot().state
-        if self.desk.window_state.is_stop_held():
+        if self.desk.window_state.is_stop_key_held():
             return tr(RELEASE_STOP_KEY)
         if self.is_entry_open:
             return tr("ARROWS DO NOT JOG WHILE YOU TYPE A VALUE. PRESS ENTER OR ESC")
@@ -128,7 +132,7 @@ class JogModel:
         self.held_jog.update(snapshot)
         self.pendant_buttons.update(snapshot)
         self.handwheel.update(snapshot)
-        self.setter_touch.update(snapshot)
+        self.tool_setter_touch_off.update(snapshot)
         self.tool_setting.update(snapshot)
         self.skim_cut.update(snapshot)
         self.manual_functions.update(snapshot)
@@ -140,7 +144,7 @@ class JogModel:
 
     def prompt_text(self, snapshot: Snapshot) -> str:
         """Return the prompt of the Jog page for the current state."""
-        if self.tool_setting.is_setter_result:
+        if self.tool_setting.is_tool_setter_result:
             return tr("ENTER: SAVE MEASURED VALUE   ESC: DISCARD")
         if self.tool_setting.question_name:
             return tr("TYPE VALUE OR EXPRESSION (.5-.002), PRESS ENTER. ESC: CANCEL")
@@ -151,7 +155,7 @@ class JogModel:
         hand = self.manual_functions
         if hand.is_asking_speed or hand.selected_function or hand.is_line_running(snapshot):
             return hand.prompt_text(snapshot)
-        words = self.skim_cut.make_step_prompt(snapshot) or self.setter_touch.prompt_text(snapshot)
+        words = self.skim_cut.make_step_prompt(snapshot) or self.tool_setter_touch_off.prompt_text(snapshot)
         return (find_jog_refusal(snapshot.state) or words) if words else hand.prompt_text(snapshot)
 
     def _prompt_of_jog(self, snapshot: Snapshot) -> str:
@@ -202,15 +206,17 @@ class JogModel:
         self._another_speed()
         self.held_jog.is_rapid_armed = not self.held_jog.is_rapid_armed
 
-    def press_direction(self, key_source: str, axis: str, direction_sign: int) -> None:
+    def handle_direction_press(self, key_source: str, axis: str, direction_sign: int) -> None:
         """Handle a touch or mouse press on a jog direction."""
-        self.held_jog.press_direction(key_source, axis, direction_sign, is_rapid=self.held_jog.is_rapid_armed)
+        self.held_jog.handle_direction_press(
+            key_source, axis, direction_sign, is_rapid=self.held_jog.is_rapid_armed
+        )
 
     def _another_step(self) -> None:
-        self.held_jog.release_all(tr("JOG STOPPED: STEP CHANGED"))
+        self.held_jog.release_all_keys(tr("JOG STOPPED: STEP CHANGED"))
 
     def _another_speed(self) -> None:
-        self.held_jog.release_all(tr("JOG STOPPED: SPEED CHANGED"))
+        self.held_jog.release_all_keys(tr("JOG STOPPED: SPEED CHANGED"))
 
     # --- keys ----------------------------------------------------------------------------------------
 
@@ -229,7 +235,7 @@ class JogModel:
         """
         return self.machine.kind == "mill"
 
-    def toggle_tilt(self) -> None:
+    def toggle_tilted_jog(self) -> None:
         """Turn jogging in the tilted coordinate system (3D-ROT) on or off.
 
         The handwheel is turned off in both cases.
@@ -238,37 +244,37 @@ class JogModel:
         self.tilted_jog.toggle_tilted_frame(find_jog_refusal(self.desk.read_snapshot().state))
 
     def _end_hold(self, why: str) -> None:
-        self.held_jog.release_all(why)
+        self.held_jog.release_all_keys(why)
 
-    def press_function(self, name: str) -> None:
+    def select_manual_function(self, name: str) -> None:
         """Select the touched manual function, and stop the jog."""
         self.held_jog.stop_for_other_key()
         self.manual_functions.select_function(name)
 
-    def ask_spindle_speed(self) -> None:
+    def ask_for_spindle_speed(self) -> None:
         """Ask for the spindle speed and stop the jog."""
         self.held_jog.stop_for_other_key()
-        self.manual_functions.ask_speed()
+        self.manual_functions.ask_spindle_speed()
 
     def toggle_manual_functions(self) -> None:
         """Show or hide the manual functions and stop the jog."""
         self.held_jog.stop_for_other_key()
         self.manual_functions.toggle_panel()
 
-    def ask_master(self) -> None:
+    def ask_to_toggle_master(self) -> None:
         """Ask whether to make the selected tool the master tool, and stop the jog."""
         self.held_jog.stop_for_other_key()
-        self.tool_setting.ask_master()
+        self.tool_setting.ask_to_toggle_master()
 
-    def start_setter_touch(self) -> None:
+    def toggle_setter_touch_off(self) -> None:
         """Arm or cancel a touch-off at the tool setter, stop the jog, and turn the handwheel off."""
         self.held_jog.stop_for_other_key()
         self.handwheel.turn_off("")
         self.homing_question.cancel()
-        self.setter_touch.toggle_armed()
+        self.tool_setter_touch_off.toggle_touch_off()
 
     @property
-    def is_wheel_shown(self) -> bool:
+    def is_handwheel_shown(self) -> bool:
         """Return whether the on-screen handwheel is shown and can move an axis now.
 
         The handwheel is on the screen only if the operator station is simulated.
@@ -279,15 +285,15 @@ class JogModel:
         """Turn the handwheel on the screen by a number of clicks."""
         station = self.desk.station_controls.station
         if (
-            self.is_wheel_shown
+            self.is_handwheel_shown
             and station is not None
-            and not self.desk.window_state.late_presses.refuse_late_press(StartingAction.HANDWHEEL)
+            and not self.desk.window_state.late_presses.refuse_late_press(BlockedLateAction.HANDWHEEL)
         ):
             station.turn_handwheel(clicks * self.handwheel.counts_per_click)
 
     def handle_home_key(self) -> None:
         """Stop all manual motion, and ask which axes to home."""
-        self.held_jog.release_all()
+        self.held_jog.release_all_keys()
         self.handwheel.turn_off("")
         self.homing_question.handle_home_key(self.desk.read_snapshot(), self._no_homing())
 
@@ -296,7 +302,7 @@ class JogModel:
 
         The first touch asks for confirmation, and the second touch homes the axis.
         """
-        self.held_jog.release_all()
+        self.held_jog.release_all_keys()
         self.handwheel.turn_off("")
         self.homing_question.handle_axis_touch(axis, self.desk.read_snapshot(), self._no_homing())
 
@@ -331,9 +337,9 @@ class JogModel:
         elif self.is_mill:
             return False
         elif key in {"p", "P"}:
-            self.start_setter_touch()
+            self.toggle_setter_touch_off()
         elif key in {"m", "M"}:
-            self.tool_setting.ask_master()
+            self.tool_setting.ask_to_toggle_master()
         elif key.lower() in QUESTION_LETTERS:
             self.ask_tool_value(QUESTION_LETTERS[key.lower()])
         else:
@@ -353,10 +359,10 @@ class JogModel:
         Esc stops the jog, or cancels a question or an entry.
         """
         if self.held_jog.active_jog is not None:
-            self.held_jog.release_all()
+            self.held_jog.release_all_keys()
             return True
-        if self.setter_touch.is_armed:
-            self.setter_touch.cancel()
+        if self.tool_setter_touch_off.is_armed:
+            self.tool_setter_touch_off.cancel()
             return True
         if self.handwheel.wheel_choice is not None:
             self.handwheel.turn_off(tr("HANDWHEEL IS OFF"))
@@ -374,9 +380,9 @@ class JogModel:
         """Return whether a key is held down or the handwheel is selected."""
         return self.held_jog.active_jog is not None or self.handwheel.wheel_choice is not None
 
-    def release_all(self) -> None:
+    def release_all_keys(self) -> None:
         """Stop the jog and turn the handwheel off, because the page will not receive key releases."""
-        self.held_jog.release_all(tr("JOG STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
+        self.held_jog.release_all_keys(tr("JOG STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
         self.handwheel.turn_off(tr("HANDWHEEL IS OFF: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
         self.held_jog.is_rapid_armed = False
         self._stop_step()
@@ -391,7 +397,7 @@ class JogModel:
         Held jog keys are treated as released in any case. If the page can close, all manual motion ends,
         and open questions and entries are canceled.
         """
-        self.held_jog.release_all()
+        self.held_jog.release_all_keys()
         if not self.manual_functions.try_leave():
             return False
         self.handwheel.turn_off("")
@@ -399,7 +405,7 @@ class JogModel:
         self.homing_question.cancel()
         self.held_jog.is_rapid_armed = False
         self.tilted_jog.turn_off()
-        self.setter_touch.cancel()
+        self.tool_setter_touch_off.cancel()
         self.skim_cut.cancel()
         self.tool_setting.cancel_new_tool()
         self.desk.clear_prompt_line()

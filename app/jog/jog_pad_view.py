@@ -22,7 +22,7 @@ from app.jog.held_jog import (
 from app.jog.held_keys_view import JogCross, draw_jog_mode
 from app.jog.jog_homing import HomingState
 from app.jog.jog_model import JogModel
-from app.offsets.offset_values import ValueMode
+from app.offsets.offset_values import UnitMode
 from app.screen.panel import RedrawingAttribute, TouchControl, make_press_control
 from app.screen.screen_theme import ALIGN_CENTER, ScreenTheme, ThemedPainter
 from app.screen.window_layout import FINGERTIP_PX
@@ -109,22 +109,22 @@ class HandwheelDial:
         self._at = 0.0  # Angle of the touch in degrees.
         self._rest = 0.0  # Remaining degrees of an incomplete click.
 
-    def make_control(self, box: QRectF) -> TouchControl:
+    def make_touch_control(self, box: QRectF) -> TouchControl:
         """Return the touch control that turns the handwheel."""
 
-        def bearing(at: QPointF) -> float:
+        def calculate_touch_angle(at: QPointF) -> float:
             away = at - box.center()
             return math.degrees(math.atan2(away.y(), away.x()))
 
-        def down(at: QPointF) -> None:
-            self._at, self._rest = bearing(at), 0.0
+        def start_touch(at: QPointF) -> None:
+            self._at, self._rest = calculate_touch_angle(at), 0.0
 
-        def follow_finger(at: QPointF) -> None:
-            here = bearing(at)
+        def follow_touch(at: QPointF) -> None:
+            here = calculate_touch_angle(at)
             self._turn((here - self._at + 180.0) % 360.0 - 180.0)
             self._at = here
 
-        return TouchControl(box, down, follow_finger, name="HANDWHEEL", kind="slider")
+        return TouchControl(box, start_touch, follow_touch, name="HANDWHEEL", kind="slider")
 
     def turn_by_mouse_wheel(self, delta: int) -> None:
         """Turn the handwheel with the mouse wheel.
@@ -167,14 +167,14 @@ class JogPad(JogCross):
     _known: RedrawingAttribute[Mapping[str, HomingState]] = RedrawingAttribute({})
 
     def __init__(self, theme: ScreenTheme, model: JogModel, parent: QWidget) -> None:
-        super().__init__(theme, model.held_jog, model.directions, model.press_direction, parent)
+        super().__init__(theme, model.held_jog, model.directions, model.handle_direction_press, parent)
         self._model = model
         self._dial = HandwheelDial(model.turn_handwheel)
 
     def show_state(self, snapshot: Snapshot) -> None:
         """Show the selected step and speed, the active target and the homing states."""
         model = self._model
-        self._known = model.homing_question.find_states(snapshot)
+        self._known = model.homing_question.find_homing_states(snapshot)
         held = model.held_jog.active_jog
         self._shown = (
             (
@@ -183,9 +183,9 @@ class JogPad(JogCross):
                 model.held_jog.is_rapid_armed,
                 model.held_jog.value_mode,
             ),
-            (held.axis, held.velocity) if held else None,
+            (held.axis_name, held.velocity) if held else None,
             (model.handwheel.wheel_choice, model.homing_question.is_open, snapshot.state),
-            (model.setter_touch.is_armed, snapshot.touch_phase, model.tilted_jog.is_on),
+            (model.tool_setter_touch_off.is_armed, snapshot.touch_phase, model.tilted_jog.is_on),
         )
         self.axis_suffix = "'" if model.tilted_jog.is_on else ""
 
@@ -301,14 +301,14 @@ class JogPad(JogCross):
         The steps and speeds of a rotary axis are in degrees.
         """
         held, wheel = self._model.held_jog.active_jog, self._model.handwheel.wheel_choice
-        axis = held.axis if held else wheel[0] if wheel else ""
+        axis = held.axis_name if held else wheel[0] if wheel else ""
         return axis if axis and self._model.machine.find_axis(axis).is_rotary else ""
 
     @property
     def _turning_rapid(self) -> str:
         model = self._model
         mode = model.held_jog.value_mode
-        velocity = model.jog_speeds.find_velocity(self._active_rotary_axis, mode, is_rapid=True)
+        velocity = model.jog_speeds.find_continuous_speed(self._active_rotary_axis, mode, is_rapid=True)
         return f"{60 * velocity:.0f}"
 
     def _draw_wheel(self, painter: ThemedPainter, row: QRectF) -> None:
@@ -324,7 +324,7 @@ class JogPad(JogCross):
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Turn the handwheel on the screen with the mouse wheel."""
-        if self._model.is_wheel_shown:
+        if self._model.is_handwheel_shown:
             self._dial.turn_by_mouse_wheel(event.angleDelta().y())
             self.update()
         event.accept()
@@ -343,10 +343,10 @@ class JogPad(JogCross):
             if known in {HomingState.NOT_HOMED, HomingState.HOMING}
         )
         chosen = 0 if model.homing_question.is_open else -1
-        armed = model.setter_touch.is_armed
-        if model.setter_touch.tool_setter is not None:
+        armed = model.tool_setter_touch_off.is_armed
+        if model.tool_setter_touch_off.tool_setter is not None:
             words.append(tr("SETTER (P)"))
-            presses.append(model.start_setter_touch)
+            presses.append(model.toggle_setter_touch_off)
             chosen = len(words) - 1 if armed else chosen
         self._tiles(painter, row, TileRow(("", ""), tuple(words), presses, chosen, armed, lost))
 
@@ -357,7 +357,7 @@ class JogPad(JogCross):
     def _draw_middle(self, painter: ThemedPainter, box: QRectF) -> None:
         """Draw the current jog mode with its values in the middle of the cross."""
         model = self._model
-        mode: ValueMode = model.held_jog.value_mode
+        mode: UnitMode = model.held_jog.value_mode
         step = model.jog_speeds.step_index
         words = (
             (tr("STEP"), make_step_labels(mode)[step])
@@ -370,11 +370,11 @@ class JogPad(JogCross):
                 tr(Message("HANDWHEEL {axis}", axis=axis)),
                 model.jog_speeds.format_step(axis, mode, step),
             )
-        if model.is_wheel_shown:
+        if model.is_handwheel_shown:
             self._dial.draw(painter, box, words[1])
-            self.controls.append(self._dial.make_control(box))
+            self.controls.append(self._dial.make_touch_control(box))
             return
-        if model.setter_touch.is_armed:
+        if model.tool_setter_touch_off.is_armed:
             draw_jog_mode(
                 painter,
                 box,
@@ -388,7 +388,7 @@ class JogPad(JogCross):
                 words = (tr("STEP"), model.jog_speeds.format_step(self._active_rotary_axis, mode, step))
         draw_jog_mode(painter, box, (*words, unit if step != CONTINUOUS_STEP_INDEX else f"{unit}/min"))
 
-    def _speed(self, mode: ValueMode) -> str:
+    def _speed(self, mode: UnitMode) -> str:
         model = self._model
         held = model.held_jog.active_jog
         rapid = held.is_rapid if held else model.held_jog.is_rapid_armed

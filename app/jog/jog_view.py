@@ -51,7 +51,7 @@ def draw_function_key(
     painter.draw_text_line(box.adjusted(3.2 * u, 0, -0.6 * u, 0), label, 2.1, ink, at=ALIGN_CENTER)
 
 
-class ManualPanel(TouchPanel):
+class ManualFunctionPanel(TouchPanel):
     """Panel of the manual functions.
 
     A touch selects a function, and the start buttons run it. STOP takes effect immediately, even if the
@@ -133,7 +133,7 @@ class ManualPanel(TouchPanel):
         painter.draw_text_line(
             box.adjusted(3.2 * u, 0, -0.6 * u, 0), tr("SPINDLE STOP"), 2.4, "alarm", at=ALIGN_CENTER
         )
-        stop = make_press_control(box, partial(self._model.press_function, STOP))
+        stop = make_press_control(box, partial(self._model.select_manual_function, STOP))
         self.controls.append(stop.make_stop_control())
 
     def _keys(self, painter: ThemedPainter, row: QRectF, *keys: tuple[str, str, str, bool]) -> None:
@@ -143,7 +143,11 @@ class ManualPanel(TouchPanel):
             box = QRectF(row.x() + number * wide, row.y(), wide - 0.6 * u, row.height())
             chosen = hand.selected_function == (name or SPEED_KEY)
             draw_function_key(painter, box, letter, words, is_selected=chosen, is_on=on)
-            press = partial(self._model.press_function, name) if name else self._model.ask_spindle_speed
+            press = (
+                partial(self._model.select_manual_function, name)
+                if name
+                else self._model.ask_for_spindle_speed
+            )
             self.controls.append(make_press_control(box, press))
 
 
@@ -152,7 +156,7 @@ def find_strip_key_height(theme: ScreenTheme) -> float:
     return max(float(FINGERTIP_PX), KEY_HEIGHT * theme.unit_px)
 
 
-class ManualStrip(TouchPanel):
+class ManualFunctionStrip(TouchPanel):
     """Strip below tool setting with keys for manual functions and for a skim cut.
 
     The strip is shown while no question is open.
@@ -169,7 +173,12 @@ class ManualStrip(TouchPanel):
         """Show the available keys, the last offset change, and the hint about further keys."""
         skim, hand = self._model.skim_cut, self._model.manual_functions
         self.change_text, self.footer_text = change_text, footer_text
-        self._shown = (skim.cut_step, skim.measured_axis, hand.is_shown, hand.is_spindle_turning(snapshot))
+        self._shown = (
+            skim.cut_step,
+            skim.measured_axis,
+            hand.is_panel_shown,
+            hand.is_spindle_turning(snapshot),
+        )
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the keys for manual functions and skim cut, with the last offset change or the hint above."""
@@ -185,7 +194,7 @@ class ManualStrip(TouchPanel):
             draw_function_key(painter, box, letter, words, is_selected=False, is_on=False)
             self.controls.append(make_press_control(box, partial(self._press, press)))
         text = QRectF(room.x() + u, room.y(), room.width() - 2 * u, low - 0.3 * u)
-        if self._model.skim_cut.is_open or not self.change_text:
+        if self._model.skim_cut.is_in_progress or not self.change_text:
             painter.draw_text_line(text, self.footer_text, 1.8, "soft", bold=False)
         else:
             painter.draw_text_line(text, self.change_text, 1.8, "accent")
@@ -199,19 +208,19 @@ class ManualStrip(TouchPanel):
         leave: StripKey = ("Esc", tr("CANCEL"), skim.handle_escape)
         hand: StripKey = (
             "B",
-            tr("TOOL SETTING") if model.manual_functions.is_shown else tr("MANUAL FUNCTIONS"),
+            tr("TOOL SETTING") if model.manual_functions.is_panel_shown else tr("MANUAL FUNCTIONS"),
             model.toggle_manual_functions,
         )
         if skim.cut_step is SkimCutStep.CHOOSE_AXIS:
             return (
-                ("X", tr("DIAMETER"), partial(skim.select_cut, TOUCH_X)),
-                ("Z", tr("FACE"), partial(skim.select_cut, TOUCH_Z)),
+                ("X", tr("DIAMETER"), partial(skim.select_cut_type, TOUCH_X)),
+                ("Z", tr("FACE"), partial(skim.select_cut_type, TOUCH_Z)),
                 leave,
             )
         if skim.cut_step is SkimCutStep.CUTTING:
             return (hand, ("↵", tr("CUT DONE"), skim.finish_cut), leave)
         if skim.cut_step is SkimCutStep.RETRACT:
-            return (hand, ("0", tr("SPINDLE STOP"), partial(model.press_function, STOP)), leave)
+            return (hand, ("0", tr("SPINDLE STOP"), partial(model.select_manual_function, STOP)), leave)
         return (hand,) if model.is_mill else (hand, ("C", tr("SKIM CUT"), skim.begin_skim_cut))
 
 
@@ -226,7 +235,7 @@ class JogPage(HeldKeysPage):
     """
 
     NAME = page_table.JOG
-    STARTS = True
+    CAN_START_CYCLES = True
     LABELS = (
         "MENU",
         "STEP",
@@ -252,8 +261,8 @@ class JogPage(HeldKeysPage):
         self.mill_panel = MillJogPanel(self.theme, self.model, self._to_tools, self._to_presets, self)
         self.tool_panel = ToolSettingPanel(self.theme, self.model, self)
         self.entry_panel = EntryPanel(self.theme, self)
-        self.manual_panel = ManualPanel(self.theme, self.model, self)
-        self.manual_strip = ManualStrip(self.theme, self.model, self)
+        self.manual_panel = ManualFunctionPanel(self.theme, self.model, self)
+        self.manual_strip = ManualFunctionStrip(self.theme, self.model, self)
 
     def _to_tools(self) -> None:
         self.host.open_page(page_table.TOOLS)
@@ -287,9 +296,9 @@ class JogPage(HeldKeysPage):
             "F10": self.desk.select_next_readout,
         }
         if model.is_mill:
-            return {**common, "F5": model.toggle_tilt}
+            return {**common, "F5": model.toggle_tilted_jog}
         touch = {"F5": lambda: model.ask_tool_value(TOUCH_X), "F6": lambda: model.ask_tool_value(TOUCH_Z)}
-        return {**common, **touch, "F4": model.tool_setting.ask_undo}
+        return {**common, **touch, "F4": model.tool_setting.ask_to_undo_change}
 
     def find_disabled_keys(self) -> frozenset[str]:
         """Return the disabled function keys: touch-off and undo, or 3D-ROT on a mill."""
@@ -314,29 +323,29 @@ class JogPage(HeldKeysPage):
         """Return the prompt of the model."""
         return self.model.prompt_text(self.desk.read_snapshot())
 
-    def try_leave(self) -> bool:
+    def try_leave_page(self) -> bool:
         """Release all keys, and return whether the page can close.
 
         The page cannot close while an MDI line is running.
         """
-        self.jog_cross.release_all()
+        self.jog_cross.release_all_controls()
         return self.model.try_leave()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
         """Update the model, which also renews the lease of the jog, and show the state of the model."""
         if not self._has_keyboard():
-            self.release_if_active()
+            self.stop_if_active()
         self.model.update(snapshot)
         entering, hand = self.model.is_entry_open, self.model.manual_functions
         self.jog_cross.setVisible(not entering)
         self.number_pad.setVisible(entering)
-        self.number_pad.page_key = (
-            ("L", tr("THIS TOOL ONLY")) if self.model.tool_setting.is_master_touched else None
+        self.number_pad.selected_page_key = (
+            ("L", tr("THIS TOOL ONLY")) if self.model.tool_setting.is_master_touch_off else None
         )
         self.jog_cross.show_state(snapshot)
-        self.manual_panel.setVisible(hand.is_shown)
-        self.mill_panel.setVisible(self.model.is_mill and not hand.is_shown)
-        self.tool_panel.setVisible(not self.model.is_mill and not hand.is_shown)
+        self.manual_panel.setVisible(hand.is_panel_shown)
+        self.mill_panel.setVisible(self.model.is_mill and not hand.is_panel_shown)
+        self.tool_panel.setVisible(not self.model.is_mill and not hand.is_panel_shown)
         self.entry_panel.setVisible(entering)
         self.manual_strip.setVisible(not entering)
         self.manual_panel.show_functions(snapshot)
@@ -360,7 +369,7 @@ class JogPage(HeldKeysPage):
         )
         if self.model.is_mill:
             foot = ""
-        text = tool.touch_off.change_reason if tool.is_setter_result else tool.text
+        text = tool.touch_off.change_reason if tool.is_tool_setter_result else tool.text
         self.entry_panel.entry_texts = EntryTexts(
             "", tool.make_question_text(), text, tool.describe_change(), foot
         )

@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from app.desk.arithmetic import EXPRESSION_CHARACTERS, MAX_LENGTH, EntryError, evaluate_expression
+from app.desk.arithmetic import EXPRESSION_CHARACTERS, MAX_LENGTH, InvalidEntryError, evaluate_expression
 from app.desk.desk import Desk
-from app.desk.pages.table_content import edit_text, refused
+from app.desk.pages.table_content import apply_edit_key, refused
 from app.desk.programs.prepared_line import PreparedMdiLine, ProveLine
 from app.desk.status import prompt_line
 from app.desk.status.readouts import TURNING_RPM
@@ -62,8 +62,8 @@ CODES_BY_LANGUAGE = {
 class ManualFunctions:
     """Manual functions, of which at most one is selected, prepared or running.
 
-    ``is_open`` is True while the Jog page is open. ``is_shown`` is True while the panel of the functions is
-    visible.
+    ``is_open`` is True while the Jog page is open. ``is_panel_shown`` is True while the panel of the
+    functions is visible.
     """
 
     desk: Desk
@@ -71,7 +71,7 @@ class ManualFunctions:
     prove_line: ProveLine
     prepared_line: PreparedMdiLine = field(init=False)
     is_open: bool = False
-    is_shown: bool = False
+    is_panel_shown: bool = False
     selected_function: str = ""
     entered_rpm: float = 0.0  # The speed that was entered last; 0: none.
     is_asking_speed: bool = False  # The speed is being entered.
@@ -124,7 +124,7 @@ class ManualFunctions:
             return False
         if self._armed:
             self.prepared_line.stop_line_mode()
-        self.is_open = self.is_shown = self._armed = False
+        self.is_open = self.is_panel_shown = self._armed = False
         self._forget()
         return True
 
@@ -142,7 +142,7 @@ class ManualFunctions:
         """Show the manual functions instead of tool setting, or show tool setting again."""
         self.cancel_selection()
         self.desk.clear_prompt_line()
-        self.is_shown = not self.is_shown
+        self.is_panel_shown = not self.is_panel_shown
 
     def select_function(self, function: str) -> None:
         """Select a manual function.
@@ -154,7 +154,7 @@ class ManualFunctions:
         elif function == COOLANT_OFF:
             self._coolant_off()
         elif function in {FORWARD, REVERSE} and not self.start_speed_rpm:
-            self.ask_speed()
+            self.ask_spindle_speed()
             self._wanted = function
         else:
             self._choose(function)
@@ -180,9 +180,9 @@ class ManualFunctions:
             return
         self.desk.clear_prompt_line()
         self.selected_function = name
-        self.prepared_line.prove_line(self.make_line(name), snapshot, self._failed)
+        self.prepared_line.prove_line(self.make_mdi_line(name), snapshot, self._failed)
 
-    def make_line(self, function: str) -> str:
+    def make_mdi_line(self, function: str) -> str:
         """Return the MDI line of a function."""
         words = self.function_codes
         lines = {
@@ -233,7 +233,7 @@ class ManualFunctions:
 
     # --- the speed -----------------------------------------------------------------------------------
 
-    def ask_speed(self) -> None:
+    def ask_spindle_speed(self) -> None:
         """Ask for the spindle speed."""
         self.cancel_selection()
         self.desk.clear_prompt_line()
@@ -245,15 +245,15 @@ class ManualFunctions:
             if key == "Enter":
                 self._enter()
             elif key in {"Back", "Delete"} or self.accepts_key(key):
-                self.text = edit_text(self.text, key, MAX_LENGTH)
+                self.text = apply_edit_key(self.text, key, MAX_LENGTH)
             else:
                 return False
             return True
         name = MANUAL_KEYS.get(key, "")
-        if name == STOP or (self.is_shown and name in self.available_functions):
+        if name == STOP or (self.is_panel_shown and name in self.available_functions):
             self.select_function(name)
-        elif self.is_shown and key == SPEED_KEY:
-            self.ask_speed()
+        elif self.is_panel_shown and key == SPEED_KEY:
+            self.ask_spindle_speed()
         elif key in {"b", "B"}:
             self.toggle_panel()
         else:
@@ -267,7 +267,7 @@ class ManualFunctions:
     def _enter(self) -> None:
         try:
             rpm = evaluate_expression(self.text)
-        except EntryError as error:
+        except InvalidEntryError as error:
             self.text = refused(self.text)
             self.desk.say(tr(Message("REJECTED: {why}", why=error)))
             return
@@ -322,7 +322,7 @@ class ManualFunctions:
         """
         if self.is_line_running(self.desk.read_snapshot()):
             return False
-        was, self.is_shown = self.is_shown, False
+        was, self.is_panel_shown = self.is_panel_shown, False
         return was
 
     def _refused(self, error: Diagnostic) -> None:
@@ -367,7 +367,7 @@ class ManualFunctions:
             return "" if self.is_line_running(snapshot) else prompt_line.START_ON_AUTOMATIC
         if snapshot.state is not MachineState.IDLE or self.prepared_line.ready_job is not None:
             return ""
-        if not self.is_shown:
+        if not self.is_panel_shown:
             return prompt_line.START_ON_AUTOMATIC
         return tr("NOTHING SELECTED. PICK 1–6, THEN CYCLE START")
 
@@ -397,7 +397,7 @@ class ManualFunctions:
             return tr("AXES WERE MOVED. PICK THE FUNCTION AGAIN")
         if self.is_spindle_turning(snapshot):
             return tr("SPINDLE IS TURNING. KEEP CLEAR. 0: STOP   HOLD AN ARROW: JOG")
-        if not self.is_shown:
+        if not self.is_panel_shown:
             return ""
         return tr("PICK 1–6, THEN CYCLE START. 9: RPM. B: TOOL SETTING")
 

@@ -21,14 +21,14 @@ from app.jog.held_jog import ActiveJog, HeldJog, JogDirection
 from app.jog.tool_setting import ToolSetting
 from app.jog.tool_touch_off import MOVE_TOLERANCE_MM, TOUCH_FIELDS, TOUCH_X, TOUCH_Z
 from app.offsets.offset_changes import find_change_refusal
-from app.offsets.offset_values import format_signed
+from app.offsets.offset_values import format_signed_length
 from core.executor.commands import Command, TouchOffTool
 from core.executor.snapshot import CYCLE_STATES, MachineState, Snapshot, TouchPhase, TouchResult
 from core.machine.machine_model import Machine
-from core.machine.setter_table import SetterModel
+from core.machine.setter_table import ToolSetterModel
 from core.message import Message
 from core.ports import PROBE_INPUT
-from core.store.store_rows import ToolRow
+from core.store.store_rows import ToolOffsetRow
 
 # Minimum cut in mm along the other axis with the spindle turning. A shorter cut cannot be measured.
 MIN_CUT_MM = 0.25
@@ -66,7 +66,7 @@ class SkimCut:
     _stands: tuple[float, float] | None = field(default=None)
 
     @property
-    def is_open(self) -> bool:
+    def is_in_progress(self) -> bool:
         """Return whether a skim cut is in progress."""
         return self.cut_step is not SkimCutStep.OFF
 
@@ -84,7 +84,7 @@ class SkimCut:
 
     def begin_skim_cut(self) -> None:
         """Ask whether to cut a diameter or a face, or show the reason why no tool can be set now."""
-        if self.is_open:
+        if self.is_in_progress:
             return
         why = self.tool_setting.find_refusal(TOUCH_X, self.desk.read_snapshot())
         if why:
@@ -93,7 +93,7 @@ class SkimCut:
         self.desk.clear_prompt_line()
         self.cut_step = SkimCutStep.CHOOSE_AXIS
 
-    def select_cut(self, quantity: str) -> None:
+    def select_cut_type(self, quantity: str) -> None:
         """Select the type of skim cut: a diameter or a face."""
         why = self.tool_setting.find_refusal(quantity, self.desk.read_snapshot())
         if why:
@@ -137,10 +137,10 @@ class SkimCut:
     def handle_key(self, key: str) -> bool:
         """Handle a key, and return False if the Jog page must handle the key."""
         if self.cut_step is SkimCutStep.CHOOSE_AXIS and key.lower() in {"x", "z"}:
-            self.select_cut(TOUCH_X if key.lower() == "x" else TOUCH_Z)
+            self.select_cut_type(TOUCH_X if key.lower() == "x" else TOUCH_Z)
         elif self.cut_step is SkimCutStep.CUTTING and key == "Enter":
             self.finish_cut()
-        elif not self.is_open and key in {"c", "C"}:
+        elif not self.is_in_progress and key in {"c", "C"}:
             self.begin_skim_cut()
         else:
             return False
@@ -148,7 +148,7 @@ class SkimCut:
 
     def handle_escape(self) -> bool:
         """Cancel the skim cut when Esc is pressed, and return whether a skim cut was in progress."""
-        was = self.is_open
+        was = self.is_in_progress
         if was:
             self.cancel()
             self.desk.say(tr("SKIM CUT CANCELED, NOTHING CHANGED"))
@@ -168,7 +168,7 @@ class SkimCut:
 
         This method is called once per frame.
         """
-        if not self.is_open or self.cut_step is SkimCutStep.CHOOSE_AXIS:
+        if not self.is_in_progress or self.cut_step is SkimCutStep.CHOOSE_AXIS:
             return
         why = self._find_failure(snapshot)
         if why:
@@ -219,7 +219,7 @@ class SkimCut:
 
     def _handle_moved(self, snapshot: Snapshot) -> None:
         """Discard the stored position, because the measured axis has moved after the cut."""
-        mode = self.tool_setting.offset_history.value_mode
+        mode = self.tool_setting.offset_history.unit_mode
         away = self._place(snapshot) - self.commanded_position_mm
         shown = format_length(
             2 * away if self.measured_axis == "X" and mode.is_diameter else away, mode.is_metric
@@ -286,7 +286,7 @@ _DIRECTIONS_BY_TIP: dict[int, tuple[TouchDirection, ...]] = {
 }
 
 
-def find_touch_directions(row: ToolRow | None) -> tuple[TouchDirection, ...]:
+def find_touch_off_directions(row: ToolOffsetRow | None) -> tuple[TouchDirection, ...]:
     """Return the directions in which a tool can be touched off.
 
     A tool that was never set can be touched off in all directions. A tool without a tip quadrant cannot be
@@ -296,7 +296,10 @@ def find_touch_directions(row: ToolRow | None) -> tuple[TouchDirection, ...]:
 
 
 def find_zero_position(
-    touch_position_mm: float, direction: TouchDirection, tool_setter: SetterModel, tool_row: ToolRow | None
+    touch_position_mm: float,
+    direction: TouchDirection,
+    tool_setter: ToolSetterModel,
+    tool_row: ToolOffsetRow | None,
 ) -> float:
     """Return the machine position in mm at which the tool tip would be at part zero.
 
@@ -313,7 +316,7 @@ def format_direction(direction: TouchDirection) -> str:
 
 
 @dataclass(slots=True)
-class SetterTouchOff:
+class ToolSetterTouchOff:
     """Touch-off of a tool at the tool setter.
 
     ``is_armed`` means that the next direction key starts a touch-off. ``directions`` contains the
@@ -323,22 +326,22 @@ class SetterTouchOff:
     desk: Desk
     machine: Machine
     tool_setting: ToolSetting
-    lease_s: float
+    motion_lease_s: float
     directions: tuple[JogDirection, ...]
     is_armed: bool = False
     _presses: int = 0
     _seen: int | None = None  # Number of the last touch-off that was processed.
 
     @property
-    def tool_setter(self) -> SetterModel | None:
+    def tool_setter(self) -> ToolSetterModel | None:
         """Return the tool setter of the machine, or None if no tool setter is connected to an input."""
         return (
-            self.machine.hardware.find_driver_table(SetterModel)
+            self.machine.hardware.find_driver_table(ToolSetterModel)
             if PROBE_INPUT in self.machine.inputs
             else None
         )
 
-    def toggle_armed(self) -> None:
+    def toggle_touch_off(self) -> None:
         """Arm the touch-off of the selected tool, or cancel the armed touch-off (P)."""
         if self.is_armed:
             self.cancel()
@@ -360,7 +363,7 @@ class SetterTouchOff:
             return why
         if not tool.tool_number:
             return tr("NO TOOL SELECTED. PRESS T AND TYPE ITS NUMBER")
-        if not find_touch_directions(tool.tool_row):
+        if not find_touch_off_directions(tool.tool_row):
             return tr(
                 Message("T{number}: TIP DIRECTION NOT SET. PRESS Q AND TYPE 1…9", number=tool.tool_number)
             )
@@ -371,13 +374,13 @@ class SetterTouchOff:
 
         If the touch-off is not possible, return the reason as text.
         """
-        ways = find_touch_directions(self.tool_setting.tool_row)
+        ways = find_touch_off_directions(self.tool_setting.tool_row)
         if (axis, direction_sign) not in ways:
             text = tr("TOUCH OFF T{number} ONLY IN DIRECTION {ways}")
             words = tr(" OR ").join(format_direction(direction) for direction in ways)
             return tr(Message(text, number=self.tool_setting.tool_number, ways=words))
         self._presses += 1
-        return TouchOffTool(axis, direction_sign, self.lease_s, self._presses, button_name)
+        return TouchOffTool(axis, direction_sign, self.motion_lease_s, self._presses, button_name)
 
     def update(self, snapshot: Snapshot) -> None:
         """Ask whether to save the result of a touch-off when the axis has stopped.
@@ -400,11 +403,11 @@ class SetterTouchOff:
             self.is_armed = False
             self._found(touched, touched.touch_position_mm, self.tool_setter)
 
-    def _found(self, touched: TouchResult, place: float, model: SetterModel) -> None:
+    def _found(self, touched: TouchResult, place: float, model: ToolSetterModel) -> None:
         touch_direction = (touched.axis, touched.sign)
         value = find_zero_position(place, touch_direction, model, self.tool_setting.tool_row)
-        metric = self.tool_setting.offset_history.value_mode.is_metric
-        about = format_signed(touched.uncertainty_mm, metric).removeprefix("+")
+        metric = self.tool_setting.offset_history.unit_mode.is_metric
+        about = format_signed_length(touched.uncertainty_mm, metric).removeprefix("+")
         cause = tr(
             Message(
                 "measured at the tool setter, direction {direction}, ±{error}",
@@ -412,7 +415,7 @@ class SetterTouchOff:
                 error=about,
             )
         )
-        self.tool_setting.ask_setter_result(TOUCH_X if touched.axis == "X" else TOUCH_Z, value, cause)
+        self.tool_setting.ask_to_save_measurement(TOUCH_X if touched.axis == "X" else TOUCH_Z, value, cause)
 
     def prompt_text(self, snapshot: Snapshot) -> str:
         """Return the prompt for the touch-off, or an empty string if no touch-off is armed."""
@@ -427,11 +430,11 @@ class SetterTouchOff:
         }
         if snapshot.touch_phase is not None:
             return words[snapshot.touch_phase]
-        ways = find_touch_directions(self.tool_setting.tool_row)
+        ways = find_touch_off_directions(self.tool_setting.tool_row)
         keys = tr(" OR ").join(
-            f"{each.label} ({format_direction((each.axis, each.direction_sign))})"
+            f"{each.label} ({format_direction((each.axis_name, each.direction_sign))})"
             for each in self.directions
-            if (each.axis, each.direction_sign) in ways
+            if (each.axis_name, each.direction_sign) in ways
         )
         text = tr("TOOL SETTER, T{number}: HOLD {keys} UNTIL THE AXIS RETRACTS. ESC: CANCEL")
         return tr(Message(text, number=self.tool_setting.tool_number, keys=keys))
@@ -439,17 +442,17 @@ class SetterTouchOff:
 
 @dataclass(slots=True)
 class HeldTouchOff(HeldJog):
-    """Held jog, in which a direction key starts a touch-off while ``setter_touch`` is armed."""
+    """Held jog, in which a direction key starts a touch-off while ``tool_setter_touch_off`` is armed."""
 
-    setter_touch: SetterTouchOff | None = None
+    tool_setter_touch_off: ToolSetterTouchOff | None = None
     _asked: Command | None = field(default=None)
 
     def _start_jog(self, source: str, axis: str, sign: int, rapid: bool) -> None:
         self._asked = None
-        if self.setter_touch is None or not self.setter_touch.is_armed:
+        if self.tool_setter_touch_off is None or not self.tool_setter_touch_off.is_armed:
             HeldJog._start_jog(self, source, axis, sign, rapid)
             return
-        asked = self.setter_touch.make_command(axis, sign, self.last_button_name)
+        asked = self.tool_setter_touch_off.make_command(axis, sign, self.last_button_name)
         if isinstance(asked, str):
             self.show_message(asked)
         elif rapid:

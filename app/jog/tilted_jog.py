@@ -10,7 +10,7 @@ from core.executor.hand_motion.jog_line import Direction
 from core.executor.snapshot import MANUAL_STATES, Snapshot
 from core.geometry.rotary_axes import Kinematics, RotaryAxis
 from core.geometry.rotation_frames import Matrix, make_rotation, multiply_matrices
-from core.interpreter.shared.working_plane import PlaneSystem
+from core.interpreter.shared.working_plane import PlaneCoordinateSystem
 from core.message import Message
 
 LINEAR_AXES = "XYZ"
@@ -71,7 +71,7 @@ def make_jog_frame(kinematics: Kinematics | None, snapshot: Snapshot) -> JogFram
     return JogFrame(multiply_matrices(*heads), tr("TOOL AXIS"))
 
 
-def _is_angle_different(system: PlaneSystem, axis: RotaryAxis, angle: float) -> bool:
+def _is_angle_different(system: PlaneCoordinateSystem, axis: RotaryAxis, angle: float) -> bool:
     """Return whether a rotary axis is not at the angle that the tilted plane requires."""
     target = system.target_angles[_ROTARY.index(axis.name)]
     return (

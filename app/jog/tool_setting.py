@@ -4,33 +4,33 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from app.desk.arithmetic import EXPRESSION_CHARACTERS, MAX_LENGTH, EntryError, evaluate_expression
+from app.desk.arithmetic import EXPRESSION_CHARACTERS, MAX_LENGTH, InvalidEntryError, evaluate_expression
 from app.desk.desk import Desk
-from app.desk.pages.table_content import edit_text, refused
+from app.desk.pages.table_content import apply_edit_key, refused
 from app.desk.translation import tr
-from app.jog.tool_touch_off import TOUCH_FIELDS, TOUCH_X, TOUCH_Z, TouchOff, find_touch_refusal
+from app.jog.tool_touch_off import TOUCH_FIELDS, TOUCH_X, TOUCH_Z, TouchOff, find_touch_off_refusal
 from app.offsets.change_rules import CORRECTION_FIELDS
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_changes import (
     ConfirmedOffsetChanges,
     OffsetHistory,
     find_change_refusal,
-    format_followers,
+    format_tools_following_master,
 )
 from app.offsets.offset_table import ToolFieldEditor
 from app.offsets.offset_values import (
     TOOL_FIELDS,
-    ValueMode,
-    describe_unset,
-    format_signed,
+    UnitMode,
+    describe_missing_offset,
+    format_signed_length,
     format_value,
     make_field_heading,
-    parse_value,
-    translate_field,
+    parse_field_value,
+    translate_field_name,
 )
 from core.executor.snapshot import Snapshot
 from core.message import Message
-from core.store.store_rows import MAX_REMARK_LENGTH, OFFSET_NUMBERS, FieldType, OffsetKind, ToolRow
+from core.store.store_rows import MAX_REMARK_LENGTH, OFFSET_NUMBERS, FieldType, OffsetKind, ToolOffsetRow
 from core.tool_edges import format_edge_name, format_edge_suffix
 
 TOOL_QUESTION = "tool"  # The question for the tool number.
@@ -59,21 +59,21 @@ class ToolSetting:
     # --- display -------------------------------------------------------------------------------------
 
     @property
-    def tool_row(self) -> ToolRow | None:
+    def tool_row(self) -> ToolOffsetRow | None:
         """Return the offset of the selected tool, or None if the tool was never set."""
         return self.offset_book.tool_offsets.get(self.tool_number)
 
     @property
-    def is_master_touched(self) -> bool:
+    def is_master_touch_off(self) -> bool:
         """Return whether the touch-off that is in progress is for the master tool."""
         return self.question_name in TOUCH_FIELDS and self.tool_row is not None and self.tool_row.master
 
     @property
-    def is_setter_result(self) -> bool:
+    def is_tool_setter_result(self) -> bool:
         """Return whether the open question is whether to save a measurement of the tool setter."""
         return self.question_name in TOUCH_FIELDS and self.touch_off.measured_position_mm is not None
 
-    def ask_setter_result(self, quantity: str, position_mm: float, reason: str) -> None:
+    def ask_to_save_measurement(self, quantity: str, position_mm: float, reason: str) -> None:
         """Ask whether to save a measurement of the tool setter.
 
         ``position_mm`` is the machine position in mm with the tool tip at part zero. If the value is
@@ -81,9 +81,9 @@ class ToolSetting:
         """
         self.question_name, self.text = quantity, ""
         self.touch_off.set_measurement(quantity, position_mm, reason)
-        if self.tool_row is not None and ConfirmedOffsetChanges(self.offset_history).find_touch_suspicions(
-            self.tool_number, self.touch_off.make_touch_position(position_mm)
-        ):
+        if self.tool_row is not None and ConfirmedOffsetChanges(
+            self.offset_history
+        ).find_suspicious_touch_changes(self.tool_number, self.touch_off.make_touch_position(position_mm)):
             self._enter()
 
     def ask_cut_size(self, quantity: str, position_mm: float) -> None:
@@ -93,7 +93,7 @@ class ToolSetting:
         """
         self.desk.clear_prompt_line()
         self.question_name, self.text = quantity, ""
-        self.touch_off.set_cut(quantity, position_mm)
+        self.touch_off.set_cut_position(quantity, position_mm)
 
     @property
     def offset_change_mm(self) -> float | None:
@@ -101,7 +101,11 @@ class ToolSetting:
 
         Returns None if there is no measurement of the tool setter or no current offset.
         """
-        if not self.is_setter_result or self.tool_row is None or self.touch_off.measured_position_mm is None:
+        if (
+            not self.is_tool_setter_result
+            or self.tool_row is None
+            or self.touch_off.measured_position_mm is None
+        ):
             return None
         return (
             self.touch_off.measured_position_mm - self.tool_row.offset["xz".index(self.touch_off.field_name)]
@@ -112,7 +116,7 @@ class ToolSetting:
         name = format_edge_name(self.tool_number)
         if self.question_name == TOOL_QUESTION:
             return tr("TOOL NUMBER?")
-        if self.is_setter_result:
+        if self.is_tool_setter_result:
             return tr(
                 Message(
                     "SAVE {tool} {axis} MEASURED AT THE TOOL SETTER?",
@@ -124,24 +128,25 @@ class ToolSetting:
             return tr(Message("{tool} MEASURED DIAMETER?", tool=name))
         if self.question_name == TOUCH_Z:
             return tr(Message("{tool} Z POSITION OF THE FACE?", tool=name))
-        return f"{name}  {translate_field(self.question_name)}?" if self.question_name else ""
+        return f"{name}  {translate_field_name(self.question_name)}?" if self.question_name else ""
 
     def make_note_text(self) -> str:
         """Return the note that the operator must read before answering, or an empty string."""
         number, new = self.tool_number, self.tool_fields.incomplete_tool
-        if self.is_master_touched and self.touch_off.skips_followers:
+        if self.is_master_touch_off and self.touch_off.moves_only_this_tool:
             return tr(
                 Message(
                     "ONLY T{number} CHANGES. L: APPLY TO ALL TOOLS",
                     number=format_edge_suffix(number),
                 )
             )
-        if self.is_master_touched:
+        if self.is_master_touch_off:
             return tr(
                 Message(
                     "T{number} IS THE MASTER. ALSO ADJUSTED: {others}. L: THIS TOOL ONLY",
                     number=format_edge_suffix(number),
-                    others=format_followers(self.offset_book.tool_offsets, number) or tr("no tools"),
+                    others=format_tools_following_master(self.offset_book.tool_offsets, number)
+                    or tr("no tools"),
                 )
             )
         if new.tool_number and new.tool_number == number:
@@ -157,7 +162,7 @@ class ToolSetting:
         if not self.question_name or self.question_name == TOOL_QUESTION:
             return self.offset_history.last_change_text
         mode, name, row = (
-            self.offset_history.value_mode,
+            self.offset_history.unit_mode,
             TOUCH_FIELDS.get(self.question_name, self.question_name),
             self.tool_row,
         )
@@ -165,21 +170,21 @@ class ToolSetting:
         was = (
             format_value(name, getattr(row, name), mode)
             if row
-            else describe_unset(is_unreadable=self.offset_book.has_read_failed)
+            else describe_missing_offset(is_unreadable=self.offset_book.has_read_failed)
         )
         try:
             value = (
                 self.touch_off.find_zero_position(self.text, mode)
                 if touched
-                else parse_value(name, self.text, mode)
+                else parse_field_value(name, self.text, mode)
             )
             ends = _describe_reset_wear(row, f"wear_{name}", mode) if touched else ""
             apart = self._format_difference(name, mode)
             return f"{title}  {was}  →  {format_value(name, value, mode)}{apart}{ends}"
-        except EntryError:
+        except InvalidEntryError:
             return f"{title}  {was}  →  …"  # An incomplete expression is not an error yet.
 
-    def _format_difference(self, name: str, mode: ValueMode) -> str:
+    def _format_difference(self, name: str, mode: UnitMode) -> str:
         """Return the measured offset minus the current offset as text.
 
         The result is an empty string if nothing was measured.
@@ -187,7 +192,7 @@ class ToolSetting:
         if self.offset_change_mm is None:
             return ""
         shown = 2 * self.offset_change_mm if name == "x" and mode.is_diameter else self.offset_change_mm
-        return f"   {tr('DIFFERENCE')} {format_signed(shown, mode.is_metric)}"
+        return f"   {tr('DIFFERENCE')} {format_signed_length(shown, mode.is_metric)}"
 
     def find_tip_position(self, snapshot: Snapshot) -> Pair | None:
         """Return the tip position relative to part zero in mm, or None if the tool was never set."""
@@ -201,7 +206,7 @@ class ToolSetting:
 
         Returns None unless both tools are set.
         """
-        master = self.offset_book.tool_offsets.get(self.offset_book.master_number)
+        master = self.offset_book.tool_offsets.get(self.offset_book.master_tool_number)
         if self.tool_row is None or master is None:
             return None
         (x, z), (mx, mz) = self.tool_row.offset, master.offset
@@ -214,9 +219,9 @@ class ToolSetting:
 
         This method is called once per frame.
         """
-        before = self.offset_history.value_mode
+        before = self.offset_history.unit_mode
         self.offset_history.update(snapshot)
-        if self.offset_history.value_mode != before and self.question_name:
+        if self.offset_history.unit_mode != before and self.question_name:
             self.close_question()
             self.desk.say(tr("UNITS OR DIAMETER/RADIUS CHANGED. NOT SAVED. RE-ENTER VALUE"))
         if snapshot.modal.tool != self._active:
@@ -246,7 +251,7 @@ class ToolSetting:
         if quantity == "remark" and self.tool_row is not None:
             self.text = self.tool_row.remark
         if quantity in TOUCH_FIELDS:
-            self.touch_off.begin_touch(quantity, snapshot)
+            self.touch_off.store_touch_position(quantity, snapshot)
 
     def find_refusal(self, quantity: str, snapshot: Snapshot) -> str:
         """Return the reason why a value of the tool cannot be changed now, or an empty string."""
@@ -256,7 +261,7 @@ class ToolSetting:
         if why or not self.tool_number:
             return why or _which_tool()
         if quantity in TOUCH_FIELDS:
-            return find_touch_refusal(quantity, snapshot)
+            return find_touch_off_refusal(quantity, snapshot)
         if self.tool_row is None:
             return tr(
                 Message(
@@ -278,7 +283,7 @@ class ToolSetting:
     def accepts_key(self, key: str) -> bool:
         """Return whether a character can be entered in the open question."""
         return self.question_name == "remark" or (
-            bool(self.question_name) and not self.is_setter_result and key in EXPRESSION_CHARACTERS
+            bool(self.question_name) and not self.is_tool_setter_result and key in EXPRESSION_CHARACTERS
         )
 
     def handle_key(self, key: str) -> bool:
@@ -286,11 +291,11 @@ class ToolSetting:
         if key == "Enter":
             self._enter()
         elif key in {"Back", "Delete"} or (len(key) == 1 and self.accepts_key(key)):
-            self.text = edit_text(
+            self.text = apply_edit_key(
                 self.text, key, MAX_REMARK_LENGTH if self.question_name == "remark" else MAX_LENGTH
             )
-        elif key in {"l", "L"} and self.is_master_touched:
-            self.touch_off.skips_followers = not self.touch_off.skips_followers
+        elif key in {"l", "L"} and self.is_master_touch_off:
+            self.touch_off.moves_only_this_tool = not self.touch_off.moves_only_this_tool
         else:
             return False
         return True
@@ -298,7 +303,7 @@ class ToolSetting:
     def _enter(self) -> None:
         try:
             why = self._save_answer()
-        except EntryError as error:
+        except InvalidEntryError as error:
             self.text = refused(self.text)
             why = tr(Message("REJECTED: {why}", why=error))
         if why:
@@ -308,7 +313,7 @@ class ToolSetting:
         """Process the entered answer, and return the message to show, or an empty string.
 
         The message is the reason why the answer is rejected or, after a touch-off, the note that the
-        operator must read. Raises EntryError if the entered text is invalid.
+        operator must read. Raises InvalidEntryError if the entered text is invalid.
         """
         if self.question_name == TOOL_QUESTION:
             return self._tool()
@@ -321,15 +326,15 @@ class ToolSetting:
     def _tool(self) -> str:
         value = evaluate_expression(self.text)
         if value not in OFFSET_NUMBERS:
-            raise EntryError(tr(Message("T{number:g} does not exist; tools are T1…32", number=value)))
+            raise InvalidEntryError(tr(Message("T{number:g} does not exist; tools are T1…32", number=value)))
         self._choose(int(value))
         self.close_question()
         return ""
 
     def _touched(self, snapshot: Snapshot) -> str:
-        if self.touch_off.has_moved(snapshot):
+        if self.touch_off.has_axis_moved(snapshot):
             return tr("AXIS MOVED AFTER TOUCH-OFF. PRESS ESC, THEN TOUCH OFF AGAIN")
-        why = self.touch_off.save_touch(
+        why = self.touch_off.save_touch_off(
             self.tool_number, self.text, self.offset_history, self.tool_fields.incomplete_tool
         )
         if not why:
@@ -342,24 +347,26 @@ class ToolSetting:
         why = "" if keeps else self.tool_fields.save_field(self.tool_number, name, text)
         if not why:
             self.close_question()
-            self.question_name = "" if self.desk.confirm_key else _NEXT_QUESTIONS.get(name, "")
+            self.question_name = "" if self.desk.confirmation_key else _NEXT_QUESTIONS.get(name, "")
         return why
 
-    def ask_master(self) -> None:
+    def ask_to_toggle_master(self) -> None:
         """Ask whether to make the selected tool the master tool.
 
         If it already is the master tool, ask whether to use no master tool.
         """
         why = self.find_refusal("master", self.desk.read_snapshot())
         self.close_question()
-        self.offset_history.show_refusal(why or self.tool_fields.ask_master(self.tool_number))
+        self.offset_history.show_refusal(why or self.tool_fields.ask_to_toggle_master(self.tool_number))
 
-    def ask_undo(self) -> None:
+    def ask_to_undo_change(self) -> None:
         """Ask whether to undo the last change of the selected tool."""
         self.close_question()
         self.offset_history.show_refusal(
             self.find_undo_refusal()
-            or ConfirmedOffsetChanges(self.offset_history).ask_undo(OffsetKind.TOOL, self.tool_number)
+            or ConfirmedOffsetChanges(self.offset_history).ask_to_undo_change(
+                OffsetKind.TOOL, self.tool_number
+            )
         )
 
     def find_undo_refusal(self) -> str:
@@ -385,7 +392,7 @@ def _which_tool() -> str:
     return tr("NO TOOL SELECTED. PRESS T AND TYPE ITS NUMBER")
 
 
-def _describe_reset_wear(row: ToolRow | None, name: str, mode: ValueMode) -> str:
+def _describe_reset_wear(row: ToolOffsetRow | None, name: str, mode: UnitMode) -> str:
     """Return a text about the wear that a touch-off resets to zero, or an empty string without wear.
 
     The touch-off resets the wear because the new geometry offset includes it.
@@ -393,6 +400,6 @@ def _describe_reset_wear(row: ToolRow | None, name: str, mode: ValueMode) -> str
     if row is None or not getattr(row, name):
         return ""
     return (
-        f"   {translate_field(name)}  {format_value(name, getattr(row, name), mode)}  →  "
+        f"   {translate_field_name(name)}  {format_value(name, getattr(row, name), mode)}  →  "
         f"{format_value(name, 0.0, mode)}"
     )

@@ -15,12 +15,12 @@ from app.jog.tilted_jog import LINEAR_AXES
 from app.jog.tool_setting import TOOL_QUESTION
 from app.jog.tool_touch_off import TOUCH_X, TOUCH_Z
 from app.offsets.offset_values import (
-    ValueMode,
-    describe_unset,
+    UnitMode,
+    describe_missing_offset,
     find_x_symbol,
-    format_signed,
+    format_signed_length,
     format_value,
-    translate_field,
+    translate_field_name,
 )
 from app.screen.drawings import draw_tool_tip
 from app.screen.panel import Panel, RedrawingAttribute
@@ -50,7 +50,7 @@ class ToolSettingPanel(Panel):
 
     _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
     _tip: RedrawingAttribute[tuple[float, float] | None] = RedrawingAttribute(None)
-    _mode = RedrawingAttribute(ValueMode())
+    _mode = RedrawingAttribute(UnitMode())
 
     def __init__(self, theme: ScreenTheme, model: JogModel, parent: QWidget) -> None:
         super().__init__(theme, parent)
@@ -59,37 +59,37 @@ class ToolSettingPanel(Panel):
     def show_tool(self, snapshot: Snapshot) -> None:
         """Show the selected tool and the position of its tip."""
         tool = self._model.tool_setting
-        self._mode = tool.offset_history.value_mode
+        self._mode = tool.offset_history.unit_mode
         self._tip = tool.find_tip_position(snapshot)
         self._shown = (
             tool.tool_number,
             tool.tool_row,
             tool.question_name,
             tool.find_master_difference(),
-            tool.offset_book.master_number,
+            tool.offset_book.master_tool_number,
         )
 
     @property
-    def displayed_mode(self) -> ValueMode:
+    def displayed_unit_mode(self) -> UnitMode:
         """Return the unit of length of the position display, and whether X is a diameter.
 
         The panel uses this unit, so the page never shows positions in two units.
         """
-        return ValueMode(
+        return UnitMode(
             self._model.desk.settings_store.display_units.metric(self._mode.is_metric), self._mode.is_diameter
         )
 
     @property
-    def tip_heading(self) -> str:
+    def tip_position_heading(self) -> str:
         """Return the heading of the tip position.
 
         The heading contains the unit if it differs from the unit of the control.
         """
-        if self.displayed_mode.is_metric == self._mode.is_metric:
+        if self.displayed_unit_mode.is_metric == self._mode.is_metric:
             return tr("TIP POSITION FROM PART ZERO")
         return (
             tr("TIP POSITION FROM PART ZERO, MM")
-            if self.displayed_mode.is_metric
+            if self.displayed_unit_mode.is_metric
             else tr("TIP POSITION FROM PART ZERO, INCH")
         )
 
@@ -124,21 +124,21 @@ class ToolSettingPanel(Panel):
         side = area.height()
         tip = QRectF(box.right() + 0.8 * u, area.y(), side, side)
         quadrant = tool.tool_row.quadrant if tool.tool_row else 0
-        name = f"{translate_field('quadrant')} {quadrant or ''}"
+        name = f"{translate_field_name('quadrant')} {quadrant or ''}"
         self._target(painter, tip, partial(self._model.ask_tool_value, "quadrant"), name, lit=False)
         draw_tool_tip(painter, tip.adjusted(0.6 * u, 0.6 * u, -0.6 * u, -0.6 * u), quadrant)
         self._stands(painter, area.adjusted(tip.right() + 1.2 * u - area.x(), 0, 0, 0))
 
     def _stands(self, painter: ThemedPainter, room: QRectF) -> None:
-        u, mode = self.theme.unit_px, self.displayed_mode
+        u, mode = self.theme.unit_px, self.displayed_unit_mode
         painter.draw_text_line(
-            QRectF(room.x(), room.y(), room.width(), 2.0 * u), self.tip_heading, 1.5, "soft"
+            QRectF(room.x(), room.y(), room.width(), 2.0 * u), self.tip_position_heading, 1.5, "soft"
         )
         high = (room.height() - 2.0 * u) / 2
         if self._tip is None:
             painter.draw_text_line(
                 room.adjusted(0, 2 * u, 0, 0),
-                describe_unset(is_unreadable=self._model.tool_setting.offset_book.has_read_failed),
+                describe_missing_offset(is_unreadable=self._model.tool_setting.offset_book.has_read_failed),
                 2.8,
                 "soft",
             )
@@ -169,11 +169,11 @@ class ToolSettingPanel(Panel):
         model, tool = self._model, self._model.tool_setting
         asks = _FIELD_QUESTIONS.get(name, name)
         press: Callable[[], None] = (
-            model.ask_master if name == "master" else partial(model.ask_tool_value, asks)
+            model.ask_to_toggle_master if name == "master" else partial(model.ask_tool_value, asks)
         )
         self._target(painter, box, press, lit=tool.question_name == asks)
         mark = find_x_symbol(name, mode)
-        label = {"x": tr("TOUCH OFF X"), "z": tr("TOUCH OFF Z")}.get(name, translate_field(name)) + (
+        label = {"x": tr("TOUCH OFF X"), "z": tr("TOUCH OFF Z")}.get(name, translate_field_name(name)) + (
             f" {mark}" if mark else ""
         )
         self._key(painter, box, key)
@@ -193,7 +193,7 @@ class ToolSettingPanel(Panel):
     def _describe_master(self) -> str:
         """Return a text with the master tool and the offset of the selected tool relative to it."""
         tool, mode = self._model.tool_setting, self._mode
-        master = tool.offset_book.master_number
+        master = tool.offset_book.master_tool_number
         if not master:
             return tr("none")
         if master == tool.tool_number:
@@ -201,8 +201,8 @@ class ToolSettingPanel(Panel):
         apart = tool.find_master_difference()
         if apart is None:
             return f"T{master}"
-        x = format_signed(2 * apart[0] if mode.is_diameter else apart[0], mode.is_metric)
-        return f"T{master}   X {x}  Z {format_signed(apart[1], mode.is_metric)}"
+        x = format_signed_length(2 * apart[0] if mode.is_diameter else apart[0], mode.is_metric)
+        return f"T{master}   X {x}  Z {format_signed_length(apart[1], mode.is_metric)}"
 
     def _target(
         self, painter: ThemedPainter, box: QRectF, press: Callable[[], None], name: str = "", *, lit: bool
@@ -313,7 +313,7 @@ class MillJogPanel(Panel):
             "F5",
             Message("3D-ROT {state}", state=state),
             words,
-            self._model.toggle_tilt,
+            self._model.toggle_tilted_jog,
             lit=tilt.is_on,
         )
 

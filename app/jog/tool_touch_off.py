@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.desk.arithmetic import EntryError, evaluate_expression
+from app.desk.arithmetic import InvalidEntryError, evaluate_expression
 from app.desk.translation import tr
 from app.offsets.offset_changes import ConfirmedOffsetChanges, OffsetHistory
 from app.offsets.offset_table import IncompleteTool
-from app.offsets.offset_values import TOOL_FIELDS, ValueMode, convert_to_mm, translate_field
+from app.offsets.offset_values import TOOL_FIELDS, UnitMode, convert_to_mm, translate_field_name
 from core.executor.snapshot import MachineState, Snapshot
 from core.message import Message
 from core.store.offsets.touch_off import TouchPosition
@@ -20,7 +20,7 @@ MOVE_TOLERANCE_MM = (
 )
 
 
-def find_touch_refusal(quantity: str, snapshot: Snapshot) -> str:
+def find_touch_off_refusal(quantity: str, snapshot: Snapshot) -> str:
     """Return the reason why an axis cannot be touched off now, or an empty string."""
     axis = TOUCH_FIELDS[quantity].upper()
     if not snapshot.homed[snapshot.axes.index(axis)]:
@@ -47,7 +47,7 @@ class TouchOff:
 
     measured_quantity: str = ""
     touch_position_mm: float = 0.0
-    skips_followers: bool = False  # Only this tool changes, although it is the master.
+    moves_only_this_tool: bool = False  # Only this tool changes, although it is the master.
     measured_position_mm: float | None = None
     change_reason: str = ""
     is_skim_cut: bool = False  # The entered size was measured on a skim cut.
@@ -57,18 +57,22 @@ class TouchOff:
         """Return the name of the tool field that the touch-off sets."""
         return TOUCH_FIELDS[self.measured_quantity]
 
-    def begin_touch(self, quantity: str, snapshot: Snapshot) -> None:
+    def store_touch_position(self, quantity: str, snapshot: Snapshot) -> None:
         """Store the current position of the axis as the touch position."""
-        self.measured_quantity, self.touch_position_mm, self.skips_followers = (
+        self.measured_quantity, self.touch_position_mm, self.moves_only_this_tool = (
             quantity,
             find_axis_position(quantity, snapshot),
             False,
         )
         self.measured_position_mm, self.change_reason, self.is_skim_cut = None, "", False
 
-    def set_cut(self, quantity: str, position_mm: float) -> None:
+    def set_cut_position(self, quantity: str, position_mm: float) -> None:
         """Store the machine position in mm during a skim cut as the touch position."""
-        self.measured_quantity, self.touch_position_mm, self.skips_followers = quantity, position_mm, False
+        self.measured_quantity, self.touch_position_mm, self.moves_only_this_tool = (
+            quantity,
+            position_mm,
+            False,
+        )
         self.measured_position_mm, self.change_reason, self.is_skim_cut = None, "", True
 
     def set_measurement(self, quantity: str, position_mm: float, reason: str) -> None:
@@ -80,7 +84,7 @@ class TouchOff:
             self.measured_quantity,
             self.measured_position_mm,
             self.change_reason,
-            self.skips_followers,
+            self.moves_only_this_tool,
             self.is_skim_cut,
         ) = (
             quantity,
@@ -90,10 +94,10 @@ class TouchOff:
             False,
         )
 
-    def find_zero_position(self, text: str, value_mode: ValueMode) -> float:
+    def find_zero_position(self, text: str, value_mode: UnitMode) -> float:
         """Return the machine position in mm at which the tool tip is at part zero, with X as a radius.
 
-        Raises EntryError if the text is invalid or the position is out of range.
+        Raises InvalidEntryError if the text is invalid or the position is out of range.
         """
         if self.measured_position_mm is not None:
             return self._within(self.measured_position_mm)
@@ -102,25 +106,25 @@ class TouchOff:
 
     def _within(self, place: float) -> float:
         if not TOOL_FIELDS[self.field_name].is_valid_value(place):
-            raise EntryError(
+            raise InvalidEntryError(
                 tr(
                     Message(
                         "the {axis} offset would be outside the allowed range",
-                        axis=translate_field(self.field_name),
+                        axis=translate_field_name(self.field_name),
                     )
                 )
             )
         return place
 
-    def save_touch(
+    def save_touch_off(
         self, tool_number: int, text: str, history: OffsetHistory, new_tool: IncompleteTool
     ) -> str:
         """Save the touch-off, and return the reason if it is rejected, or an empty string.
 
-        X and Z of a new tool are saved together. Raises EntryError if the entry is invalid.
+        X and Z of a new tool are saved together. Raises InvalidEntryError if the entry is invalid.
         """
         place, book, ask = (
-            self.find_zero_position(text, history.value_mode),
+            self.find_zero_position(text, history.unit_mode),
             history.offset_book,
             ConfirmedOffsetChanges(history),
         )
@@ -128,7 +132,7 @@ class TouchOff:
             return ask.touch_off(
                 tool_number,
                 self.make_touch_position(place),
-                self._make_reason(text, history.value_mode),
+                self._make_reason(text, history.unit_mode),
                 self._find_tip_x(place),
             )
         values = new_tool.add_value(tool_number, self.field_name, place)
@@ -152,9 +156,9 @@ class TouchOff:
         ``zero_position_mm`` is the machine position in mm with the tool tip at part zero.
         """
         return (
-            TouchPosition(zero_position_mm, None, self.skips_followers)
+            TouchPosition(zero_position_mm, None, self.moves_only_this_tool)
             if self.field_name == "x"
-            else TouchPosition(None, zero_position_mm, self.skips_followers)
+            else TouchPosition(None, zero_position_mm, self.moves_only_this_tool)
         )
 
     def _find_tip_x(self, place: float) -> float | None:
@@ -165,7 +169,7 @@ class TouchOff:
             else None
         )
 
-    def has_moved(self, snapshot: Snapshot) -> bool:
+    def has_axis_moved(self, snapshot: Snapshot) -> bool:
         """Return whether the axis has moved since the touch.
 
         For a measurement of the tool setter, the result is always False. It is also False for a skim cut,
@@ -178,10 +182,10 @@ class TouchOff:
             > MOVE_TOLERANCE_MM
         )
 
-    def _make_reason(self, text: str, mode: ValueMode) -> str:
+    def _make_reason(self, text: str, mode: UnitMode) -> str:
         """Return the text that describes the touch-off in the offset history."""
         if self.change_reason:
-            return f"{self.change_reason}{tr(', this tool only') if self.skips_followers else ''}"
+            return f"{self.change_reason}{tr(', this tool only') if self.moves_only_this_tool else ''}"
         unit = "MM " if mode.is_metric else ""
         names = (
             (tr("skim cut Ø"), tr("skim cut Z"))
@@ -189,4 +193,4 @@ class TouchOff:
             else (tr("touch-off Ø"), tr("touch-off Z"))
         )
         what = names[self.measured_quantity != TOUCH_X]
-        return f"{unit}{what} {text.strip()}{tr(', this tool only') if self.skips_followers else ''}"
+        return f"{unit}{what} {text.strip()}{tr(', this tool only') if self.moves_only_this_tool else ''}"

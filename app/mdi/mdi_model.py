@@ -39,7 +39,7 @@ class MdiInput:
     text: str = ""
     cursor_index: int = 0  # The cursor is before this character.
     history_lines: list[str] = field(default_factory=list)  # Oldest line first.
-    error_columns: dict[str, int] = field(
+    error_columns_by_line: dict[str, int] = field(
         default_factory=dict
     )  # Rejected lines with the column of the error, counted from 1; 0: the whole line.
     # Position of the recalled line in the history, counted from the newest; 0: the line is being typed.
@@ -98,9 +98,9 @@ class MdiInput:
         self.recall_index = index
         self.set_text(self.history_lines[-index] if index else self._draft)
 
-    def finish_line(self) -> None:
+    def store_started_line(self) -> None:
         """Add the line that has started running to the history, and clear the input line."""
-        self.error_columns.pop(self.text, None)
+        self.error_columns_by_line.pop(self.text, None)
         self._remember()
         self.set_text("")
         self.recall_index, self._draft = 0, ""
@@ -111,9 +111,9 @@ class MdiInput:
         The text also remains in the input line.
         """
         self._remember()
-        self.error_columns[self.text] = column
-        self.error_columns = {
-            line: at for line, at in self.error_columns.items() if line in self.history_lines
+        self.error_columns_by_line[self.text] = column
+        self.error_columns_by_line = {
+            line: at for line, at in self.error_columns_by_line.items() if line in self.history_lines
         }
         self.recall_index = 0
 
@@ -141,12 +141,12 @@ class LineCompletion:
     mdi_input: MdiInput
     read_code_book: Callable[[], CodeBook]
     code_help: CodeHelp = field(default_factory=CodeHelp)
-    is_open: bool = False
+    is_choice_list_open: bool = False
 
     def toggle_choices(self) -> None:
         """Open or close the list of codes that match the text before the cursor."""
-        self.is_open = not self.is_open
-        if self.is_open:
+        self.is_choice_list_open = not self.is_choice_list_open
+        if self.is_choice_list_open:
             self.code_help.update_for_cursor(
                 self.read_code_book(), self.mdi_input.text, self.mdi_input.cursor_index + 1
             )
@@ -158,10 +158,10 @@ class LineCompletion:
         Tab opens the list of choices. While it is open, the arrow keys select a choice. Any key without a
         function closes the list.
         """
-        if not self.is_open:
+        if not self.is_choice_list_open:
             if key == "Tab":
                 self.toggle_choices()
-            return self.is_open
+            return self.is_choice_list_open
         match key:
             case "Up" | "Down" | "Page up" | "Page down" | "Home" | "End":
                 self.code_help.mark(self.code_help.marked + ROW_STEPS[key])
@@ -170,12 +170,12 @@ class LineCompletion:
             case "Enter" | "Tab":
                 self.insert_code()
             case _:
-                self.is_open = False
-        return self.is_open or key in ("Enter", "Tab")
+                self.is_choice_list_open = False
+        return self.is_choice_list_open or key in ("Enter", "Tab")
 
     def insert_code(self) -> None:
         """Replace the partly typed code at the cursor with the selected code."""
-        self.is_open, chosen = False, self.code_help.selected_entry
+        self.is_choice_list_open, chosen = False, self.code_help.selected_entry
         if chosen is None:
             return
         text, at = self.mdi_input.text, self.mdi_input.cursor_index
@@ -235,7 +235,7 @@ class MdiModel:
         """
         self.is_open = True
         self.mdi_input.reload_history()
-        self.line_completion.is_open = False
+        self.line_completion.is_choice_list_open = False
         self.prepared_line.cancel_line()
 
     def try_leave(self) -> bool:
@@ -330,8 +330,8 @@ class MdiModel:
         Returns False if there was nothing to close, cancel or clear.
         """
         under_way = self.read_snapshot().state in prompt_line.ACTIVE_STATES
-        if self.line_completion.is_open:
-            self.line_completion.is_open = False
+        if self.line_completion.is_choice_list_open:
+            self.line_completion.is_choice_list_open = False
             return not under_way  # Closing the list does not delay feed hold.
         begun = self.prepared_line.ready_job or self.mdi_input.text or self.prepared_line.is_proving
         if under_way or not begun:
@@ -356,7 +356,7 @@ class MdiModel:
         if self.is_open:
             self.prepared_line.renew_line_mode(snapshot)
         if self.prepared_line.update(snapshot):
-            self.mdi_input.finish_line()
+            self.mdi_input.store_started_line()
 
     def prompt_text(self, snapshot: Snapshot, start_instruction: str) -> str:
         """Return the prompt of the page.
@@ -367,7 +367,7 @@ class MdiModel:
             return tr("DRIVES ARE OFF. F5: DRIVES ON. YOU CAN STILL TYPE A LINE")
         if snapshot.state is not MachineState.IDLE:
             return ""
-        if self.line_completion.is_open:
+        if self.line_completion.is_choice_list_open:
             return tr("ARROWS: SELECT CODE OR CHAPTER   ENTER: INSERT   ESC: BACK")
         return self._make_line_prompt(start_instruction)
 

@@ -165,7 +165,7 @@ class MdiHistoryPanel(RowPanel):
 LABEL_WIDTH_RATIO = 0.4  # Fraction of a row for its label.
 
 
-class ModalPanel(Panel):
+class ModalStatePanel(Panel):
     """Panel with all rows of the modal state, which are as large as the available area permits."""
 
     rows: RedrawingAttribute[tuple[ModalRow, ...]] = RedrawingAttribute(())
@@ -196,7 +196,7 @@ class MdiPage(ModelPage):
 
     NAME = page_table.MDI
     LABELS = ("MENU", "AUTO", "CODES", "READOUT", "DRIVES", "RESET", "ALARMS", "SPN STOP", "SECCMP", "SCOPE")
-    STARTS = True
+    CAN_START_CYCLES = True
     model: MdiModel
 
     def __init__(self, host: PageHost, model: MdiModel, parent: QWidget) -> None:
@@ -209,7 +209,7 @@ class MdiPage(ModelPage):
         self.path_view = PathView(self.theme, self)
         self.path_view.shows_whole_approach = True
         self.path_view.hide()
-        self.modal_panel = ModalPanel(self.theme, self)
+        self.modal_panel = ModalStatePanel(self.theme, self)
 
     def make_key_actions(self) -> KeyActions:
         """Return the key actions of the MDI page."""
@@ -260,7 +260,7 @@ class MdiPage(ModelPage):
         """
         return self.model.can_open()
 
-    def try_leave(self) -> bool:
+    def try_leave_page(self) -> bool:
         """Return whether the page can close.
 
         The page cannot close while a line is running.
@@ -280,9 +280,9 @@ class MdiPage(ModelPage):
             model.prepared_line.ready_job is not None,
         )
         history.history_lines, history.recall_index = tuple(typing.history_lines), typing.recall_index
-        history.error_columns = tuple(typing.error_columns.items())
+        history.error_columns = tuple(typing.error_columns_by_line.items())
         self._show_first_move(snapshot, loaded)
-        self.code_list.setVisible(model.line_completion.is_open)
+        self.code_list.setVisible(model.line_completion.is_choice_list_open)
         self.code_list.refresh()
         angle = snapshot.demand[2] - snapshot.modal.offset_c
         point = Checkpoint(snapshot.modal, c=angle, kept=snapshot.kept)
@@ -293,9 +293,11 @@ class MdiPage(ModelPage):
         legs = make_drawn_legs(self.model.prepared_line.first_move_result)
         if legs:
             self.path_view.show_picture(loaded.picture)
-            self.path_view.show_tip(find_tip_position(snapshot, loaded.job)._replace(active_block=0))
+            self.path_view.show_tool_tip(
+                find_tip_position(snapshot, loaded.job)._replace(active_block_number=0)
+            )
             self.path_view.show_approach(legs)
-            self.path_view.draw_slice()
+            self.path_view.continue_drawing()
         self.path_view.setVisible(bool(legs))
 
     def apply_theme(self) -> None:

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from core.interpreter.shared.job_setup import MillTool, SecondaryOffset, Setup, ToolOffset
-from core.store.store_rows import MillRow, PresetRow, SecondaryRow, ToolRow
+from core.interpreter.shared.job_setup import InterpreterSetup, MillTool, SecondaryOffset, ToolOffset
+from core.store.store_rows import MillToolRow, PresetRow, SecondaryOffsetRow, ToolOffsetRow
 
 if TYPE_CHECKING:
     from core.geometry.rotary_axes import DatumPreset
@@ -39,12 +39,12 @@ def find_active_preset(stored: object, presets: Mapping[int, PresetRow]) -> int:
     return stored if isinstance(stored, int) and stored in presets else 0
 
 
-def make_tool_offsets(rows: Mapping[int, ToolRow]) -> dict[int, ToolOffset]:
+def make_tool_offsets(rows: Mapping[int, ToolOffsetRow]) -> dict[int, ToolOffset]:
     """Return the tool offsets by number, each as the sum of geometry and wear."""
     return {n: ToolOffset(*row.offset, row.nose_radius, row.quadrant, row.remark) for n, row in rows.items()}
 
 
-def make_secondary_offsets(rows: Mapping[int, SecondaryRow]) -> dict[int, SecondaryOffset]:
+def make_secondary_offsets(rows: Mapping[int, SecondaryOffsetRow]) -> dict[int, SecondaryOffset]:
     """Return the secondary offsets by number, each with X, Z and nose radius."""
     return {n: SecondaryOffset(*row) for n, row in rows.items()}
 
@@ -56,12 +56,12 @@ class MillOffsets:
     Both tables are mappings by number. Preset 0 is the preset of the machine file.
     """
 
-    tools: Mapping[int, MillRow] = field(default_factory=dict)
+    tools: Mapping[int, MillToolRow] = field(default_factory=dict)
     presets: Mapping[int, PresetRow] = field(default_factory=dict)
     active_preset: int = 0
 
 
-def add_mill_offsets(job_setup: Setup, offsets: MillOffsets) -> Setup:
+def add_mill_offsets(job_setup: InterpreterSetup, offsets: MillOffsets) -> InterpreterSetup:
     """Return the job setup with the offset tables of a mill added.
 
     The setup of a lathe is returned unchanged. Only tools of the mill's tool table are used. Lathe tool
@@ -86,32 +86,34 @@ def add_mill_offsets(job_setup: Setup, offsets: MillOffsets) -> Setup:
     )
 
 
-def make_mill_rows(tools: Mapping[int, ToolRow]) -> dict[int, MillRow]:
+def make_mill_rows(tools: Mapping[int, ToolOffsetRow]) -> dict[int, MillToolRow]:
     """Return the tools of an offsets file as rows of a mill's tool table.
 
     Z becomes the length, and the remark becomes the name.
     """
-    return {number: MillRow(row.remark, row.z + row.wear_z, row.nose_radius) for number, row in tools.items()}
+    return {
+        number: MillToolRow(row.remark, row.z + row.wear_z, row.nose_radius) for number, row in tools.items()
+    }
 
 
 def make_datum_preset(row: PresetRow) -> DatumPreset:
     """Return a row of the preset table as the datum that the kinematics calculation uses."""
     from core.geometry.rotary_axes import DatumPreset
 
-    return DatumPreset((row.x, row.y, row.z), row.rotation, tuple(find_rotary_zeros(row).items()))
+    return DatumPreset((row.x, row.y, row.z), row.rotation, tuple(find_rotary_zero_positions(row).items()))
 
 
-def find_rotary_zeros(row: PresetRow) -> dict[str, float]:
+def find_rotary_zero_positions(row: PresetRow) -> dict[str, float]:
     """Return the machine positions at which the rotary axes read 0, in degrees by axis name."""
     return {"A": row.a, "B": row.b, "C": row.c}
 
 
-def _make_tool_offset(row: MillRow) -> ToolOffset:
+def _make_tool_offset(row: MillToolRow) -> ToolOffset:
     """Return the length and radius of a mill tool, each increased by its oversize (DL, DR)."""
     return ToolOffset(z=row.length + row.dl, nose_radius=max(row.radius + row.dr, 0.0), name=row.name)
 
 
-def _row(row: MillRow) -> MillTool:
+def _row(row: MillToolRow) -> MillTool:
     return MillTool(
         row.length, row.radius, row.corner, row.dl, row.dr, row.dr2, row.teeth, row.point, row.life
     )

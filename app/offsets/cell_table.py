@@ -6,10 +6,10 @@ from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from typing import ClassVar
 
-from app.desk.arithmetic import EXPRESSION_CHARACTERS, EntryError, evaluate_expression
+from app.desk.arithmetic import EXPRESSION_CHARACTERS, InvalidEntryError, evaluate_expression
 from app.desk.desk import Desk
-from app.desk.pages.table_content import ROW_STEPS, edit_text, refused
-from app.desk.status.machine_status import Tone
+from app.desk.pages.table_content import ROW_STEPS, apply_edit_key, refused
+from app.desk.status.machine_status import StatusTone
 from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
 from app.offsets.offset_changes import NUMBER_PREFIXES, find_change_refusal
@@ -79,9 +79,9 @@ class CellTable(OffsetTable):
         empty: FieldValue = "" if self.field_of(name).field_type is FieldType.TEXT else 0.0
         return empty if row is None else getattr(row, name)
 
-    def tone_at(self, _number: int, _name: str) -> Tone:
+    def tone_at(self, _number: int, _name: str) -> StatusTone:
         """Return the color tone of a cell, which shows whether its value needs attention."""
-        return Tone.OFF
+        return StatusTone.OFF
 
     @property
     def number(self) -> int:
@@ -89,7 +89,7 @@ class CellTable(OffsetTable):
         return self.numbers[self.row_index]
 
     @property
-    def selected_number(self) -> int | None:
+    def selected_row_number(self) -> int | None:
         """Return the number of the selected row, to which undo applies."""
         return self.number
 
@@ -134,13 +134,13 @@ class CellTable(OffsetTable):
         return self.value_at(self.number, self.name)
 
     @property
-    def change_text(self) -> str:
+    def change_description(self) -> str:
         """Return a description of the change being entered, or of the last change if nothing is entered."""
         if not self.text.strip():
             return self.offset_history.last_change_text
         try:
             new = self._value(self.text)
-        except EntryError:
+        except InvalidEntryError:
             return ""  # An incomplete expression is not an error yet.
         before, after = (format_cell(self.selected_field, value) for value in (self.stored_value, new))
         return f"{self.row_name} {self.selected_field.label}   {before}  →  {after}"
@@ -151,7 +151,7 @@ class CellTable(OffsetTable):
             return tr("TYPE THE TEXT. ENTER: SAVE   ESC: CANCEL")
         return tr("ENTER A NUMBER OR EXPRESSION   ARROWS, TAB: OTHER CELL")
 
-    def find_refusal(self, snapshot: Snapshot, *, is_correction: bool = False) -> str:
+    def find_change_refusal(self, snapshot: Snapshot, *, is_correction: bool = False) -> str:
         """Return the reason why this table cannot be changed now, or an empty string.
 
         A change moves a zero point or a tool tip. Changes are therefore allowed only between cycles.
@@ -190,7 +190,7 @@ class CellTable(OffsetTable):
         The arrow keys select a cell, and Enter saves the entered value.
         """
         if self.is_text_open and (len(key) == 1 or key in {"Back", "Delete"}):
-            self.text = edit_text(self.text, key, int(self.selected_field.maximum))
+            self.text = apply_edit_key(self.text, key, int(self.selected_field.maximum))
             return True
         if key in _PAGE_STEPS:
             self.choose(
@@ -264,7 +264,7 @@ class CellTable(OffsetTable):
         self.save_cell(lambda: on, "1" if on else "0")
 
     def _open(self) -> None:
-        if why := self.find_refusal(self.desk.read_snapshot()):
+        if why := self.find_change_refusal(self.desk.read_snapshot()):
             self.desk.say(why)
             return
         self.is_text_open, self.text = True, str(self.stored_value)
@@ -282,7 +282,7 @@ class CellTable(OffsetTable):
     def check_range(self, value: float) -> float:
         """Return the rounded value if it is in the range of the selected field.
 
-        Raises EntryError if the value is out of range.
+        Raises InvalidEntryError if the value is out of range.
         """
         field = self.selected_field
         if field.is_valid_value(value):
@@ -294,7 +294,7 @@ class CellTable(OffsetTable):
             FieldType.BOOLEAN: "",
         }.get(field.field_type, tr("mm"))
         named = f"{self.row_name} {field.label}"
-        raise EntryError(
+        raise InvalidEntryError(
             describe_range_error(named, format_zero_offset(value), unit, field.minimum, field.maximum)
         )
 
@@ -309,12 +309,12 @@ class CellTable(OffsetTable):
         A rejected text remains in the cell for correction. ``entered_text`` is recorded in the history.
         ``find_dependent_values`` returns the other fields of the row that depend on the new value.
         """
-        if why := self.find_refusal(self.desk.read_snapshot()):
+        if why := self.find_change_refusal(self.desk.read_snapshot()):
             self.desk.say(why)
             return False
         try:
             new = parse_value()
-        except EntryError as error:
+        except InvalidEntryError as error:
             self.text = refused(self.text)
             self.desk.say(tr(Message("REJECTED: {why}", why=error)))
             return False
@@ -334,7 +334,7 @@ class CellTable(OffsetTable):
 
         Returns the reason if the change is rejected, or an empty string on success.
         """
-        return self.offset_questions.change_fields(self.kind, self.number, values, reason)
+        return self.confirmed_changes.change_fields(self.kind, self.number, values, reason)
 
     def _reason(self, typed: str) -> str:
         return f"{self.selected_field.label} {typed}".strip()

@@ -12,7 +12,7 @@ from PySide6.QtCore import QRectF
 from PySide6.QtWidgets import QWidget
 
 from app.desk.programs.program_loading import LoadedProgram
-from app.desk.status.machine_status import MachineStatus, Tone
+from app.desk.status.machine_status import MachineStatus, StatusTone
 from app.offsets.cell_table import CellTable
 from app.offsets.mill_tools import MillToolTable
 from app.offsets.offset_values import format_cell
@@ -110,7 +110,7 @@ class CellPanel(RowPanel):
             here = (row, column) == self.selected_cell
             painter.fill_rect(cell, "here" if here else "key")
             text, tone = name in _TEXT_COLUMNS, self._model.tone_at(number, name)
-            if tone is not Tone.OFF:
+            if tone is not StatusTone.OFF:
                 painter.draw_box(cell, tone.value, 0.3, "here" if here else "key")
             value = self._model.value_at(number, name)
             ink = "text" if offset is not None or here else "soft"
@@ -145,14 +145,14 @@ class CellTablePage(OffsetPage):
     """
 
     model: CellTable
-    table_panel: CellPanel
+    content_panel: CellPanel
 
     def __init__(self, host: PageHost, parent: QWidget, model: CellTable) -> None:
         super().__init__(host, parent, model)
-        self.table_panel = CellPanel(self.theme, model, self)
+        self.content_panel = CellPanel(self.theme, model, self)
         if not model.page_key:
             # Selects the next cell, even if the pad leaves no room for its column.
-            self.number_pad.page_key = ("Tab", "→")
+            self.number_pad.selected_page_key = ("Tab", "→")
 
     def make_key_actions(self) -> KeyActions:
         """Return the key actions that all offset pages share, without F6 and F10."""
@@ -162,11 +162,11 @@ class CellTablePage(OffsetPage):
         """Update the table from the model."""
         super().refresh(snapshot, status, loaded)
         model = self.model
-        self.table_panel.stored_rows, self.table_panel.selected_cell = (
+        self.content_panel.stored_rows, self.content_panel.selected_cell = (
             model.offset_book.get_rows(model.kind),
             (model.row_index, model.column_index),
         )
-        self.table_panel.active_row = model.find_active_row(snapshot)
+        self.content_panel.active_row = model.find_active_row(snapshot)
 
 
 class ZeroOffsetsPage(CellTablePage):
@@ -190,11 +190,11 @@ class ZeroOffsetsPage(CellTablePage):
 
     def find_key_refusals(self) -> dict[str, object]:
         """Return the reason why each function key is disabled, including F2 (set from position)."""
-        return {**super().find_key_refusals(), "F2": self.model.find_position_refusal()}
+        return {**super().find_key_refusals(), "F2": self.model.find_touch_off_refusal()}
 
     def make_key_actions(self) -> KeyActions:
         """Return the key actions, including F2 (set from position)."""
-        return {**super().make_key_actions(), "F2": self.model.set_from_position}
+        return {**super().make_key_actions(), "F2": self.model.set_value_from_position}
 
 
 class MillToolsPage(CellTablePage):
@@ -214,12 +214,12 @@ class MillToolsPage(CellTablePage):
     def make_key_actions(self) -> KeyActions:
         """Return the key actions, including F2 (touch off the length)."""
         rest = {key: act for key, act in super().make_key_actions().items() if key not in {"F8", "F9"}}
-        return {**rest, "F2": self.model.set_from_position, "F9": partial(self._go, page_table.PRESETS)}
+        return {**rest, "F2": self.model.set_value_from_position, "F9": partial(self._go, page_table.PRESETS)}
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
         """Update the table, and the used tool life, which can change while the page is open."""
         super().refresh(snapshot, status, loaded)
-        self.table_panel.tool_lives = self.model.mill_lives.read_lives()
+        self.content_panel.tool_lives = self.model.mill_tool_lives.read_lives()
 
 
 class PresetsPage(CellTablePage):
@@ -240,12 +240,12 @@ class PresetsPage(CellTablePage):
         model = self.model
         return {
             **super().find_key_refusals(),
-            "F2": model.find_position_refusal(),
-            "F3": model.find_activate_refusal(),
+            "F2": model.find_touch_off_refusal(),
+            "F3": model.find_activation_refusal(),
         }
 
     def make_key_actions(self) -> KeyActions:
         """Return the key actions, including F2 (touch off) and F3 (activate a preset)."""
         rest = {key: act for key, act in super().make_key_actions().items() if key not in {"F8", "F9"}}
-        own = {"F2": self.model.set_from_position, "F3": self.model.activate_preset}
+        own = {"F2": self.model.set_value_from_position, "F3": self.model.activate_preset}
         return {**rest, **own, "F8": partial(self._go, page_table.MILL_TOOLS)}

@@ -20,11 +20,11 @@ from core.store.offsets.touch_off import TouchPosition
 from core.store.store_rows import (
     FIELDS_BY_KIND,
     FieldValue,
-    MillRow,
+    MillToolRow,
     OffsetKind,
     OffsetRow,
-    SecondaryRow,
-    ToolRow,
+    SecondaryOffsetRow,
+    ToolOffsetRow,
     replace_fields,
 )
 
@@ -36,7 +36,7 @@ _ROUNDING_TOLERANCE_MM = 1e-6  # Rounding tolerance in mm.
 TravelLimits = Mapping[str, tuple[float, float]]  # Travel of x and z in mm from home.
 
 
-class SuspicionKind(StrEnum):
+class SuspicionReason(StrEnum):
     """Reason why an offset change is suspicious, with the most serious reason first."""
 
     OUTSIDE_TRAVEL = "travel"  # The tip cannot reach part zero.
@@ -45,13 +45,13 @@ class SuspicionKind(StrEnum):
     NEW_MASTER = "master"  # Other tools will follow this tool.
 
 
-class Suspicion(NamedTuple):
+class SuspiciousChange(NamedTuple):
     """Suspicious change of one field of an offset, with the old and new values in mm.
 
     The old value is None if the field was not set.
     """
 
-    kind: SuspicionKind
+    kind: SuspicionReason
     row_number: int
     name: str
     old_value: FieldValue | None
@@ -73,12 +73,12 @@ def find_travel_limits(machine: Machine | None) -> TravelLimits:
     }
 
 
-def find_table_suspicions(
+def find_suspicious_table_changes(
     kind: OffsetKind,
     table: Mapping[int, OffsetRow],
     changes: Mapping[int, Mapping[str, FieldValue]],
     travel: TravelLimits,
-) -> tuple[Suspicion, ...]:
+) -> tuple[SuspiciousChange, ...]:
     """Return the suspicious fields of several changes to an offset table.
 
     Rows with a value out of range are omitted, because the store rejects them.
@@ -87,7 +87,7 @@ def find_table_suspicions(
     found = [
         each
         for number, row in new.items()
-        for each in find_suspicions(number, table.get(number), row, travel)
+        for each in find_suspicious_changes(number, table.get(number), row, travel)
     ]
     found += _check_new_master(table, new)
     return tuple(found)
@@ -104,37 +104,39 @@ def _make_changed_row(
     if not all(name in fields and fields[name].is_valid_value(value) for name, value in values.items()):
         return None
     if kind is OffsetKind.TOOL:
-        return replace_fields(old if isinstance(old, ToolRow) else ToolRow(), values)
+        return replace_fields(old if isinstance(old, ToolOffsetRow) else ToolOffsetRow(), values)
     if kind is OffsetKind.SECONDARY:
-        return replace_fields(old if isinstance(old, SecondaryRow) else SecondaryRow(), values)
+        return replace_fields(old if isinstance(old, SecondaryOffsetRow) else SecondaryOffsetRow(), values)
     if kind is OffsetKind.MILL_TOOL:
-        return replace_fields(old if isinstance(old, MillRow) else MillRow(), values)
+        return replace_fields(old if isinstance(old, MillToolRow) else MillToolRow(), values)
     return None
 
 
-def find_suspicions(
+def find_suspicious_changes(
     number: int, old: OffsetRow | None, new: OffsetRow, travel: TravelLimits
-) -> tuple[Suspicion, ...]:
+) -> tuple[SuspiciousChange, ...]:
     """Return the suspicious fields of a change from ``old`` to ``new``, the most serious first."""
-    found: list[Suspicion] = []
-    if isinstance(new, ToolRow):
-        found = list(_of_tool(number, old if isinstance(old, ToolRow) else None, new, travel))
-    elif isinstance(new, SecondaryRow):
-        before = old if isinstance(old, SecondaryRow) else SecondaryRow()
+    found: list[SuspiciousChange] = []
+    if isinstance(new, ToolOffsetRow):
+        found = list(_of_tool(number, old if isinstance(old, ToolOffsetRow) else None, new, travel))
+    elif isinstance(new, SecondaryOffsetRow):
+        before = old if isinstance(old, SecondaryOffsetRow) else SecondaryOffsetRow()
         found = list(_check_corrections(number, before, new, ("x", "z"), doubled="x"))
-    elif isinstance(new, MillRow):
-        found = list(_of_mill(number, old if isinstance(old, MillRow) else MillRow(), new))
-    order = list(SuspicionKind)
+    elif isinstance(new, MillToolRow):
+        found = list(_of_mill(number, old if isinstance(old, MillToolRow) else MillToolRow(), new))
+    order = list(SuspicionReason)
     return tuple(sorted(found, key=lambda each: order.index(each.kind)))
 
 
-def _of_tool(number: int, old: ToolRow | None, new: ToolRow, travel: TravelLimits) -> Iterator[Suspicion]:
+def _of_tool(
+    number: int, old: ToolOffsetRow | None, new: ToolOffsetRow, travel: TravelLimits
+) -> Iterator[SuspiciousChange]:
     yield from _beyond(number, old, new, travel)
     if old is None:
-        yield from _check_corrections(number, ToolRow(), new, ("wear_x", "wear_z"), doubled="wear_x")
+        yield from _check_corrections(number, ToolOffsetRow(), new, ("wear_x", "wear_z"), doubled="wear_x")
         return
     if old.x * new.x < -_ROUNDING_TOLERANCE_MM:
-        yield Suspicion(SuspicionKind.WRONG_SIDE, number, "x", old.x, new.x)
+        yield SuspiciousChange(SuspicionReason.WRONG_SIDE, number, "x", old.x, new.x)
     for at, name in enumerate("xz"):
         before, after = getattr(old, name), getattr(new, name)
         # A touch-off includes the wear in the new geometry, so the tip moves by the difference of the sums.
@@ -142,29 +144,31 @@ def _of_tool(number: int, old: ToolRow | None, new: ToolRow, travel: TravelLimit
             before != after
             and abs(new.offset[at] - old.offset[at]) > LARGE_CHANGE_MM + _ROUNDING_TOLERANCE_MM
         ):
-            yield Suspicion(SuspicionKind.LARGE_CHANGE, number, name, before, after)
+            yield SuspiciousChange(SuspicionReason.LARGE_CHANGE, number, name, before, after)
     worn = tuple(f"wear_{name}" for name in "xz" if getattr(old, name) == getattr(new, name))
     yield from _check_corrections(number, old, new, worn, doubled="wear_x")
 
 
-def _of_mill(number: int, old: MillRow, new: MillRow) -> Iterator[Suspicion]:
+def _of_mill(number: int, old: MillToolRow, new: MillToolRow) -> Iterator[SuspiciousChange]:
     measured = tuple(name for name in ("length", "radius", "corner") if getattr(old, name))  # 0: not entered.
     yield from _moved(number, old, new, measured, LARGE_CHANGE_MM)
     yield from _check_corrections(number, old, new, ("dl", "dr", "dr2"), doubled="")
 
 
-def _beyond(number: int, old: ToolRow | None, new: ToolRow, travel: TravelLimits) -> Iterator[Suspicion]:
+def _beyond(
+    number: int, old: ToolOffsetRow | None, new: ToolOffsetRow, travel: TravelLimits
+) -> Iterator[SuspiciousChange]:
     for at, name in enumerate("xz"):
         low, high = travel.get(name, (new.offset[at], new.offset[at]))
         moved = old is None or old.offset[at] != new.offset[at]
         if moved and not low <= new.offset[at] <= high:
             before = getattr(old, name) if old is not None else None
-            yield Suspicion(SuspicionKind.OUTSIDE_TRAVEL, number, name, before, getattr(new, name))
+            yield SuspiciousChange(SuspicionReason.OUTSIDE_TRAVEL, number, name, before, getattr(new, name))
 
 
 def _check_corrections(
     number: int, old: OffsetRow, new: OffsetRow, names: tuple[str, ...], doubled: str
-) -> Iterator[Suspicion]:
+) -> Iterator[SuspiciousChange]:
     """Yield the suspicious fields of a wear or secondary offset correction.
 
     ``doubled`` is the name of the field that the operator enters as a diameter.
@@ -176,63 +180,67 @@ def _check_corrections(
 
 def _moved(
     number: int, old: OffsetRow, new: OffsetRow, names: tuple[str, ...], limit: float
-) -> Iterator[Suspicion]:
+) -> Iterator[SuspiciousChange]:
     for name in names:
         before, after = getattr(old, name), getattr(new, name)
         if abs(after - before) > limit + _ROUNDING_TOLERANCE_MM:
-            yield Suspicion(SuspicionKind.LARGE_CHANGE, number, name, before, after)
+            yield SuspiciousChange(SuspicionReason.LARGE_CHANGE, number, name, before, after)
 
 
-def _check_new_master(table: Mapping[int, OffsetRow], new: Mapping[int, OffsetRow]) -> Iterator[Suspicion]:
+def _check_new_master(
+    table: Mapping[int, OffsetRow], new: Mapping[int, OffsetRow]
+) -> Iterator[SuspiciousChange]:
     """Yield a suspicion for each tool that would become the master tool while other tools exist.
 
     The other tools would then follow its touch-offs.
     """
     for number, row in new.items():
         old = table.get(number)
-        was = isinstance(old, ToolRow) and old.master
-        if isinstance(row, ToolRow) and row.master and not was and find_followers(table, number):
-            yield Suspicion(SuspicionKind.NEW_MASTER, number, "master", False, True)
+        was = isinstance(old, ToolOffsetRow) and old.master
+        if isinstance(row, ToolOffsetRow) and row.master and not was and find_following_tools(table, number):
+            yield SuspiciousChange(SuspicionReason.NEW_MASTER, number, "master", False, True)
 
 
 # --- several tools ---------------------------------------------------------------------------------------
 
 
-def apply_touch_off(tools: Mapping[int, ToolRow], tool_number: int, touch: TouchPosition) -> ToolRow:
+def apply_touch_off(
+    tools: Mapping[int, ToolOffsetRow], tool_number: int, touch: TouchPosition
+) -> ToolOffsetRow:
     """Return the row of a tool as the store will save it after a touch-off."""
     geometry = {name: value for name, value in (("x", touch.x), ("z", touch.z)) if value is not None}
     values: dict[str, FieldValue] = {**geometry, **{f"wear_{name}": 0.0 for name in geometry}}
-    return replace_fields(tools.get(tool_number, ToolRow()), values)
+    return replace_fields(tools.get(tool_number, ToolOffsetRow()), values)
 
 
-def find_followers(tools: Iterable[int], master: int) -> tuple[int, ...]:
+def find_following_tools(tools: Iterable[int], master: int) -> tuple[int, ...]:
     """Return the numbers of the tools that move with the master tool when it is touched off."""
     return tuple(number for number in sorted(tools) if number != master)
 
 
-def find_follower_suspicions(
-    tools: Mapping[int, ToolRow], master: int, new: ToolRow, travel: TravelLimits
-) -> tuple[Suspicion, ...]:
+def find_suspicious_follower_changes(
+    tools: Mapping[int, ToolOffsetRow], master: int, new: ToolOffsetRow, travel: TravelLimits
+) -> tuple[SuspiciousChange, ...]:
     """Return a suspicion for each tool that would move outside the travel with the master tool."""
     old = tools[master]
     x, z = (after - before for before, after in zip(old.offset, new.offset, strict=True))
-    found: list[Suspicion] = []
-    for number in find_followers(tools, master):
+    found: list[SuspiciousChange] = []
+    for number in find_following_tools(tools, master):
         row = tools[number]
         found += _beyond(number, row, replace_fields(row, {"x": row.x + x, "z": row.z + z}), travel)
     return tuple(found)
 
 
-def describe_suspicions(
-    suspicions: tuple[Suspicion, ...],
-    describe_field: Callable[[Suspicion], str],
-    describe_reason: Callable[[Suspicion], str],
+def describe_suspicious_changes(
+    suspicions: tuple[SuspiciousChange, ...],
+    describe_field: Callable[[SuspiciousChange], str],
+    describe_reason: Callable[[SuspiciousChange], str],
 ) -> str:
     """Return one text that describes all suspicious changes.
 
     Each field appears once, with its most serious reason.
     """
-    fields: dict[tuple[int, str], Suspicion] = {}
+    fields: dict[tuple[int, str], SuspiciousChange] = {}
     for each in suspicions:
         fields.setdefault((each.row_number, each.name), each)
     return ", ".join(f"{describe_field(each)} ({describe_reason(each)})" for each in fields.values())
@@ -257,7 +265,7 @@ _RIGHTS_BY_KIND = {
 }
 
 
-def find_required_right(kind: OffsetKind, fields: Collection[str] = ()) -> ProtectedChange:
+def find_required_access_right(kind: OffsetKind, fields: Collection[str] = ()) -> ProtectedChange:
     """Return the access right that is required to change fields of an offset table.
 
     Without ``fields``, this is the right to clear the table or undo a change.

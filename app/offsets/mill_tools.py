@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from app.desk.arithmetic import evaluate_expression
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.desk.translation import tr
 from app.offsets.cell_table import CellTable
 from app.offsets.mill_touch import MillToolLives, MillTouchCalculator
@@ -23,7 +23,7 @@ from core.store.store_rows import (
 
 CUTTING_TIME_FIELD = "used"  # The column of the cutting time, which is counted and is not part of the row.
 _USED_FIELD = RowField("CUR.TIME", 0.0, MAX_TOOL_LIFE_MINUTES, FieldType.MINUTES, name=CUTTING_TIME_FIELD)
-_LIFE_TONES = {ToolLifeState.WARNING: Tone.PAUSE, ToolLifeState.USED_UP: Tone.ALARM}
+_LIFE_TONES = {ToolLifeState.WARNING: StatusTone.PAUSE, ToolLifeState.USED_UP: StatusTone.ALARM}
 
 
 class MillToolTable(CellTable):
@@ -33,9 +33,9 @@ class MillToolTable(CellTable):
     numbers = MILL_TOOL_NUMBERS
 
     @property
-    def mill_lives(self) -> MillToolLives:
+    def mill_tool_lives(self) -> MillToolLives:
         """Return the tool life counters of the mill's tools."""
-        return MillToolLives.find_for(self.desk)
+        return MillToolLives.get_for_desk(self.desk)
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -54,16 +54,16 @@ class MillToolTable(CellTable):
         """
         if name != CUTTING_TIME_FIELD:
             return super().value_at(number, name)
-        life = self.mill_lives.read_lives().get(number)
+        life = self.mill_tool_lives.read_lives().get(number)
         return round(life.seconds / 60.0, 1) if life is not None else 0.0
 
-    def tone_at(self, number: int, name: str) -> Tone:
+    def tone_at(self, number: int, name: str) -> StatusTone:
         """Return the color tone of a cell.
 
         The tone of CUR.TIME shows when the tool life is almost or completely used up.
         """
-        life = self.mill_lives.read_lives().get(number) if name == CUTTING_TIME_FIELD else None
-        return Tone.OFF if life is None else _LIFE_TONES.get(life.state, Tone.OFF)
+        life = self.mill_tool_lives.read_lives().get(number) if name == CUTTING_TIME_FIELD else None
+        return StatusTone.OFF if life is None else _LIFE_TONES.get(life.state, StatusTone.OFF)
 
     @property
     def title(self) -> str:
@@ -100,22 +100,22 @@ class MillToolTable(CellTable):
             return tr(
                 Message("T{number} IS NOT IN THE TABLE YET: ENTER ITS LENGTH FIRST", number=self.number)
             )
-        self.mill_lives.set_cutting_time(self.number, 60.0 * float(values[CUTTING_TIME_FIELD]))
+        self.mill_tool_lives.set_cutting_time(self.number, 60.0 * float(values[CUTTING_TIME_FIELD]))
         return ""
 
     def find_position_refusal(self) -> str:
         """Return the reason why the tool length cannot be touched off now, or an empty string."""
         if self.name != "length":
             return tr("SELECT COLUMN L, THEN PRESS F2 TO TOUCH OFF THE LENGTH")
-        nose = MillTouchCalculator.find_for(self.desk).find_nose_height()
-        return nose if isinstance(nose, str) else self.find_refusal(self.desk.read_snapshot())
+        nose = MillTouchCalculator.get_for_desk(self.desk).find_spindle_nose_height()
+        return nose if isinstance(nose, str) else self.find_change_refusal(self.desk.read_snapshot())
 
-    def set_from_position(self) -> None:
+    def set_value_from_position(self) -> None:
         """Set the tool length by touch-off, so that the tip is at the entered height (F2).
 
         The height is relative to the active preset. Without an entry, it is 0.
         """
-        nose = MillTouchCalculator.find_for(self.desk).find_nose_height()
+        nose = MillTouchCalculator.get_for_desk(self.desk).find_spindle_nose_height()
         if isinstance(nose, str) or self.find_position_refusal():
             self.desk.say(self.find_position_refusal())
             return

@@ -11,7 +11,7 @@ from app.offsets.active_offsets import MillOffsets, add_mill_offsets
 from core.executor.snapshot import MachineState, Snapshot
 from core.geometry.rotary_axes import DatumPreset, Kinematics
 from core.geometry.rotation_frames import Vector
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.message import Message
 from core.production.tool_life import ToolLife
 
@@ -33,7 +33,7 @@ class MillTouchCalculator:
         """Do nothing because the calculator has no worker to stop."""
 
     @classmethod
-    def find_for(cls, desk: Desk) -> MillTouchCalculator:
+    def get_for_desk(cls, desk: Desk) -> MillTouchCalculator:
         """Return the calculator that is attached to TurnDesk, or else a calculator without kinematics."""
         found = desk.page_registry.find_model(cls)
         return found if found is not None else cls(desk, None)
@@ -80,12 +80,12 @@ class MillTouchCalculator:
         """Return the names of the rotary axes in alphabetical order."""
         return tuple(sorted(axis.name for axis in self.kinematics.rotary_axes)) if self.kinematics else ()
 
-    def find_angle(self, axis_name: str) -> float | str:
+    def find_axis_angle(self, axis_name: str) -> float | str:
         """Return the machine position of a rotary axis in degrees, or the reason why it is unknown."""
         stationary_state = self._find_stationary_state()
         return stationary_state if isinstance(stationary_state, str) else stationary_state[1][axis_name]
 
-    def find_nose_height(self) -> float | str:
+    def find_spindle_nose_height(self) -> float | str:
         """Return the height of the spindle nose above the zero point of the active preset in mm.
 
         This height is the length L of a tool whose tip touches the zero point. If the height is unknown,
@@ -110,7 +110,7 @@ class MillTouchCalculator:
         if why := _unknown(snapshot):
             return why
         setup = add_mill_offsets(
-            Setup(kinematics=self.kinematics), MillOffsets({}, book.presets, book.active_preset)
+            InterpreterSetup(kinematics=self.kinematics), MillOffsets({}, book.presets, book.active_preset)
         )
         assert setup.kinematics is not None
         at = dict(zip(snapshot.axes, snapshot.actual, strict=True))
@@ -146,7 +146,7 @@ class MillToolLives:
         """Do nothing because there is no worker to stop."""
 
     @classmethod
-    def find_for(cls, desk: Desk) -> MillToolLives:
+    def get_for_desk(cls, desk: Desk) -> MillToolLives:
         """Return the tool life counters that are attached to TurnDesk, or else counters without tools."""
         found = desk.page_registry.find_model(cls)
         return found if found is not None else cls()

@@ -9,22 +9,22 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from app.desk.access import UserAccess
 from app.offsets.active_offsets import PRESET_SETTING, find_active_preset
-from app.offsets.change_rules import find_required_right
+from app.offsets.change_rules import find_required_access_right
 from core.access.access_table import ProtectedChange
 from core.message import Message
 from core.store.offsets.touch_off import TouchPosition
 from core.store.store_errors import StoreError
 from core.store.store_rows import (
     FieldValue,
-    MillRow,
+    MillToolRow,
     OffsetChange,
     OffsetKind,
     OffsetRow,
     PresetRow,
-    SecondaryRow,
-    ShapeRow,
-    ToolRow,
-    ZeroRow,
+    SecondaryOffsetRow,
+    ToolOffsetRow,
+    ToolShapeRow,
+    ZeroOffsetRow,
 )
 
 if TYPE_CHECKING:
@@ -37,11 +37,11 @@ SAVE_IN_PROGRESS = "STILL SAVING THE PREVIOUS CHANGE. PRESS ENTER AGAIN"
 class OffsetRows(NamedTuple):
     """Rows of all offset tables in a store, read at one time."""
 
-    tool_offsets: dict[int, ToolRow]
-    secondary_offsets: dict[int, SecondaryRow]
-    zero_offsets: dict[int, ZeroRow]
-    tool_shapes: dict[int, ShapeRow]
-    mill_tools: dict[int, MillRow]
+    tool_offsets: dict[int, ToolOffsetRow]
+    secondary_offsets: dict[int, SecondaryOffsetRow]
+    zero_offsets: dict[int, ZeroOffsetRow]
+    tool_shapes: dict[int, ToolShapeRow]
+    mill_tools: dict[int, MillToolRow]
     presets: dict[int, PresetRow]
     active_preset: int
 
@@ -75,11 +75,11 @@ class OffsetBook:
 
     store: Store | None = None
     lock_reason: str = ""
-    tool_offsets: dict[int, ToolRow] = field(default_factory=dict)
-    secondary_offsets: dict[int, SecondaryRow] = field(default_factory=dict)
-    zero_offsets: dict[int, ZeroRow] = field(default_factory=dict)  # By the number of the G code.
-    tool_shapes: dict[int, ShapeRow] = field(default_factory=dict)
-    mill_tools: dict[int, MillRow] = field(default_factory=dict)
+    tool_offsets: dict[int, ToolOffsetRow] = field(default_factory=dict)
+    secondary_offsets: dict[int, SecondaryOffsetRow] = field(default_factory=dict)
+    zero_offsets: dict[int, ZeroOffsetRow] = field(default_factory=dict)  # By the number of the G code.
+    tool_shapes: dict[int, ToolShapeRow] = field(default_factory=dict)
+    mill_tools: dict[int, MillToolRow] = field(default_factory=dict)
     presets: dict[int, PresetRow] = field(default_factory=dict)
     active_preset: int = 0  # The preset in force on a mill; 0: the preset of the machine file.
     user_access: UserAccess = field(
@@ -110,7 +110,7 @@ class OffsetBook:
         return tables[kind]
 
     @property
-    def master_number(self) -> int:
+    def master_tool_number(self) -> int:
         """Return the number of the master tool, or 0 if there is no master tool."""
         return next((number for number, row in self.tool_offsets.items() if row.master), 0)
 
@@ -124,9 +124,9 @@ class OffsetBook:
         Reading does not block, even while the store is being written.
         """
         if self.store is not None:
-            self.show_rows(read_store_rows(self.store))
+            self.replace_rows(read_store_rows(self.store))
 
-    def show_rows(self, rows: OffsetRows) -> None:
+    def replace_rows(self, rows: OffsetRows) -> None:
         """Replace the displayed offsets with these rows.
 
         Without a store, the offsets can be displayed but not changed.
@@ -161,7 +161,7 @@ class OffsetBook:
     ) -> str:
         """Save some fields of an offset row, and leave its other fields unchanged."""
         return self._post(
-            find_required_right(kind, values),
+            find_required_access_right(kind, values),
             lambda store, who: store.offsets.get_table(kind).change_row(number, reason, values, who=who),
         )
 
@@ -177,7 +177,7 @@ class OffsetBook:
             ),
         )
 
-    def choose_master(self, tool_number: int, reason: str) -> str:
+    def set_master_tool(self, tool_number: int, reason: str) -> str:
         """Make a tool the master tool.
 
         The tool number 0 means that no tool is the master tool.
@@ -194,13 +194,13 @@ class OffsetBook:
         """
         before = self.active_preset
 
-        def choose(store: Store, _who: str) -> Future[None]:
+        def save_active_preset(store: Store, _who: str) -> Future[None]:
             self.user_access.persistence.log_change(
                 Message("active preset: {before} → {number}", before=before, number=preset_number)
             )
             return store.settings.save_setting(PRESET_SETTING, preset_number)
 
-        return self._post(ProtectedChange.PRESETS, choose)
+        return self._post(ProtectedChange.PRESETS, save_active_preset)
 
     def remove_shape(self, tool_number: int, reason: str) -> str:
         """Delete the shape of a tool."""
@@ -212,7 +212,7 @@ class OffsetBook:
     def clear_table(self, kind: OffsetKind, reason: str) -> str:
         """Delete all rows of an offset table."""
         return self._post(
-            find_required_right(kind),
+            find_required_access_right(kind),
             lambda store, who: store.offsets.get_table(kind).remove_all_rows(reason, author=who),
         )
 
@@ -227,7 +227,7 @@ class OffsetBook:
     def undo_step(self, kind: OffsetKind, number: int | None, step_number: int) -> str:
         """Undo one step of the offset history. Other steps remain unchanged."""
         return self._post(
-            find_required_right(kind),
+            find_required_access_right(kind),
             lambda store, who: store.offsets.get_table(kind).undo_step(number, step_number, author=who),
         )
 
@@ -235,13 +235,13 @@ class OffsetBook:
         """Return the reason why a change of this type cannot be saved now, or an empty string."""
         if self.store is None or self.is_saving:
             return self.lock_reason or SAVE_IN_PROGRESS
-        return self.user_access.find_refusal(change)
+        return self.user_access.find_refusal_reason(change)
 
     def _post(self, act: ProtectedChange, write: Callable[[Store, str], Future[Any]]) -> str:
         if (why := self.barred(act)) or self.store is None:
             return why
         try:
-            self._saving = write(self.store, self.user_access.recorded_user)
+            self._saving = write(self.store, self.user_access.history_user_name)
         except StoreError as error:
             return str(error)
         return ""
@@ -269,7 +269,7 @@ class OffsetBook:
             self.changes += 1
         return self._read_or_why() or (str(error) if error is not None else "")
 
-    def use_store(self, store: Store | None, error_text: str, rows: OffsetRows | None = None) -> None:
+    def switch_store(self, store: Store | None, error_text: str, rows: OffsetRows | None = None) -> None:
         """Use another store from the next call of ``poll_saving`` on.
 
         This method can be called from any thread. If ``store`` is None, ``error_text`` is the reason.
@@ -282,7 +282,7 @@ class OffsetBook:
         if store is not self.store or (rows is not None and rows != self._shown()):
             self.changes += 1
         if rows is not None:
-            self.show_rows(rows)
+            self.replace_rows(rows)
         self.store, self.has_read_failed = store, self.has_read_failed and store is None and rows is None
         self.lock_reason = (
             "" if store is not None else Message("OFFSETS CANNOT BE SAVED: {problem}", problem=error_text)

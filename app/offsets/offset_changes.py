@@ -17,24 +17,24 @@ from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
 from app.offsets.change_rules import (
     LARGE_CHANGE_MM,
-    Suspicion,
-    SuspicionKind,
+    SuspicionReason,
+    SuspiciousChange,
     apply_touch_off,
-    describe_suspicions,
-    find_follower_suspicions,
-    find_followers,
-    find_required_right,
-    find_suspicions,
-    find_table_suspicions,
+    describe_suspicious_changes,
+    find_following_tools,
+    find_required_access_right,
+    find_suspicious_changes,
+    find_suspicious_follower_changes,
+    find_suspicious_table_changes,
     find_travel_limits,
 )
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_values import (
-    ValueMode,
-    describe_unset,
+    UnitMode,
+    describe_missing_offset,
     format_cell,
-    format_change,
-    format_signed,
+    format_offset_change,
+    format_signed_length,
     format_value,
     make_field_heading,
 )
@@ -43,7 +43,7 @@ from core.executor.snapshot import MachineState, Snapshot
 from core.message import Message
 from core.store.offsets.touch_off import TouchPosition
 from core.store.store_errors import StoreError
-from core.store.store_rows import FIELDS_BY_KIND, FieldValue, OffsetChange, OffsetKind, ToolRow
+from core.store.store_rows import FIELDS_BY_KIND, FieldValue, OffsetChange, OffsetKind, ToolOffsetRow
 from core.tool_edges import format_edge_name
 
 NUMBER_PREFIXES = {
@@ -103,7 +103,7 @@ class OffsetHistory:
 
     desk: Desk
     kind: OffsetKind
-    value_mode: ValueMode = field(default_factory=ValueMode)  # Mode of the control at the last update.
+    unit_mode: UnitMode = field(default_factory=UnitMode)  # Mode of the control at the last update.
     key_hint: str = "F5"  # Keys that show the history on the page.
     last_changes: tuple[
         OffsetChange, ...
@@ -132,7 +132,7 @@ class OffsetHistory:
 
         This method is called once per frame.
         """
-        self.value_mode = ValueMode(snapshot.modal.metric, snapshot.shows_diameter)
+        self.unit_mode = UnitMode(snapshot.modal.metric, snapshot.shows_diameter)
         if self.offset_book.changes == self._seen:
             return
         self._seen = self.offset_book.changes
@@ -167,7 +167,7 @@ class OffsetHistory:
         at = format_local_time(change.at)
         who = "" if change.who == "operator" else f" ({change.who})"
         which = self._named(change)
-        return at, which, format_change(change.old, change.new, self.value_mode), f"{change.why}{who}"
+        return at, which, format_offset_change(change.old, change.new, self.unit_mode), f"{change.why}{who}"
 
     @property
     def last_change_text(self) -> str:
@@ -190,7 +190,7 @@ class OffsetHistory:
             else ""
         )
 
-    def toggle_list(self) -> None:
+    def toggle_change_list(self) -> None:
         """Show the history instead of the table, or the table again."""
         self.listed_changes = None if self.listed_changes is not None else self._read()
 
@@ -241,8 +241,8 @@ class ConfirmedOffsetChanges:
         table = book.get_rows(kind)
         return self._ask_if_intended(
             kind,
-            find_table_suspicions(kind, table, {number: values}, self._travel()),
-            find_required_right(kind, values),
+            find_suspicious_table_changes(kind, table, {number: values}, self._travel()),
+            find_required_access_right(kind, values),
             lambda: book.change_fields(kind, number, values, reason),
             lambda: book.get_rows(kind).get(number) == table.get(number),
         )
@@ -259,25 +259,25 @@ class ConfirmedOffsetChanges:
         tools = book.tool_offsets
         return self._ask_if_intended(
             OffsetKind.TOOL,
-            self.find_touch_suspicions(tool_number, touch, tip_x_mm),
+            self.find_suspicious_touch_changes(tool_number, touch, tip_x_mm),
             ProtectedChange.TOOLS,
             lambda: book.touch_off(tool_number, touch, reason),
             lambda: book.tool_offsets == tools,
             self._describe_followers(tool_number, touch),
         )
 
-    def find_touch_suspicions(
+    def find_suspicious_touch_changes(
         self, tool_number: int, touch: TouchPosition, tip_x_mm: float | None = None
-    ) -> tuple[Suspicion, ...]:
+    ) -> tuple[SuspiciousChange, ...]:
         """Return the suspicious fields of a touch-off."""
         tools, travel = self.offset_history.offset_book.tool_offsets, self._travel()
         old, new = tools.get(tool_number), apply_touch_off(tools, tool_number, touch)
-        found = find_suspicions(tool_number, old, new, travel)
-        if old is not None and old.master and not touch.moves_only_this_tool:
-            found += find_follower_suspicions(tools, tool_number, new, travel)
+        found = find_suspicious_changes(tool_number, old, new, travel)
+        if old is not None and old.master and not touch.applies_to_this_tool_only:
+            found += find_suspicious_follower_changes(tools, tool_number, new, travel)
         if tip_x_mm is not None and self._is_other_side(tool_number, tip_x_mm, new.x):
             found = (
-                Suspicion(SuspicionKind.WRONG_SIDE, tool_number, "x", old.x if old else None, new.x),
+                SuspiciousChange(SuspicionReason.WRONG_SIDE, tool_number, "x", old.x if old else None, new.x),
                 *found,
             )
         return found
@@ -288,8 +288,8 @@ class ConfirmedOffsetChanges:
         The result is an empty string if no other tool moves.
         """
         tools = self.offset_history.offset_book.tool_offsets
-        moves_all = number in tools and tools[number].master and not touch.moves_only_this_tool
-        return format_followers(tools, number) if moves_all else ""
+        moves_all = number in tools and tools[number].master and not touch.applies_to_this_tool_only
+        return format_tools_following_master(tools, number) if moves_all else ""
 
     def _is_other_side(self, number: int, tip: float, new_x: float) -> bool:
         """Return whether the tool would cut on the opposite side of the part after a touch-off."""
@@ -305,7 +305,7 @@ class ConfirmedOffsetChanges:
     def _ask_if_intended(
         self,
         kind: OffsetKind,
-        found: tuple[Suspicion, ...],
+        found: tuple[SuspiciousChange, ...],
         act: ProtectedChange,
         save: Callable[[], str],
         unchanged: Callable[[], bool],
@@ -318,7 +318,7 @@ class ConfirmedOffsetChanges:
         history = self.offset_history
         if (why := history.offset_book.barred(act)) or not found:
             return why or save()
-        changes = describe_suspicions(
+        changes = describe_suspicious_changes(
             found, lambda each: self._describe_field(kind, each), lambda each: _reason(each.kind)
         )
         text = tr("{changes}. Y: CHANGE   N: KEEP OLD VALUE")
@@ -330,31 +330,31 @@ class ConfirmedOffsetChanges:
         )
         return ""
 
-    def _describe_field(self, kind: OffsetKind, each: Suspicion) -> str:
+    def _describe_field(self, kind: OffsetKind, each: SuspiciousChange) -> str:
         """Return the text of a suspicious change, for example "T1 X Ø +0.50000 → −1.20000"."""
         title, shown = self._find_format(kind, each.name)
-        old = describe_unset() if each.old_value is None else shown(each.old_value)
+        old = describe_missing_offset() if each.old_value is None else shown(each.old_value)
         return f"{_row_name(kind, each.row_number)} {title} {old} → {shown(each.new_value)}"
 
     def _find_format(self, kind: OffsetKind, name: str) -> tuple[str, Callable[[FieldValue], str]]:
         """Return the title of a field, and the function that formats its values."""
-        mode = self.offset_history.value_mode
+        mode = self.offset_history.unit_mode
         if kind is OffsetKind.TOOL:
             return make_field_heading(name, mode), lambda value: format_value(name, value, mode)
         if kind is OffsetKind.SECONDARY:
-            return name.upper(), lambda value: format_signed(float(value), mode.is_metric)
+            return name.upper(), lambda value: format_signed_length(float(value), mode.is_metric)
         field = FIELDS_BY_KIND[kind][name]
         return field.label, lambda value: format_cell(field, value)
 
     # --- the master ----------------------------------------------------------------------------------
 
-    def ask_master(self, tool_number: int) -> str:
+    def ask_to_toggle_master(self, tool_number: int) -> str:
         """Ask whether to make a tool the master tool, or to have no master tool if it already is.
 
         The question names the tools that follow the master tool.
         """
         book = self.offset_history.offset_book
-        tools, before = book.tool_offsets, book.master_number
+        tools, before = book.tool_offsets, book.master_tool_number
         if why := book.barred(ProtectedChange.TOOLS):
             return why
         chosen = 0 if before == tool_number else tool_number
@@ -362,7 +362,7 @@ class ConfirmedOffsetChanges:
         self.offset_history.desk.ask_operator(
             self._master_question(before, chosen),
             lambda: self.offset_history.show_refusal(
-                book.choose_master(chosen, reason) if book.tool_offsets == tools else _changed_meanwhile()
+                book.set_master_tool(chosen, reason) if book.tool_offsets == tools else _changed_meanwhile()
             ),
         )
         return ""
@@ -375,28 +375,28 @@ class ConfirmedOffsetChanges:
             "MASTER {before} → {tool}. TOOLS ADJUSTED WITH THE MASTER: {others}. TOUCH-OFF "
             "CHANGES OVER {limit} {unit} MUST BE CONFIRMED. Y: CHANGE   N: KEEP"
         )
-        mode = self.offset_history.value_mode
+        mode = self.offset_history.unit_mode
         return tr(
             Message(
                 text,
                 before=format_edge_name(before) if before else tr("none"),
                 tool=format_edge_name(chosen),
-                others=format_followers(self.offset_history.offset_book.tool_offsets, chosen)
+                others=format_tools_following_master(self.offset_history.offset_book.tool_offsets, chosen)
                 or tr("no tools"),
-                limit=f"{LARGE_CHANGE_MM / mode.unit_mm:.2g}",
+                limit=f"{LARGE_CHANGE_MM / mode.unit_length_mm:.2g}",
                 unit=mode.name.upper(),
             )
         )
 
     # --- undo ----------------------------------------------------------------------------------------
 
-    def ask_undo(self, kind: OffsetKind, number: int | None, on_done: str = "") -> str:
+    def ask_to_undo_change(self, kind: OffsetKind, number: int | None, on_done: str = "") -> str:
         """Ask whether to undo the last change of a row, or of the table if ``number`` is None.
 
         ``on_done`` is the message after the undo, for pages that do not report changes to the table.
         """
         book = self.offset_history.offset_book
-        if why := book.barred(find_required_right(kind)):
+        if why := book.barred(find_required_access_right(kind)):
             return why
         try:
             step = book.find_undoable_changes(kind, number)
@@ -430,12 +430,12 @@ class ConfirmedOffsetChanges:
             self.offset_history.desk.show_success(done)
 
 
-def _reason(doubt: SuspicionKind) -> str:
+def _reason(doubt: SuspicionReason) -> str:
     words = {
-        SuspicionKind.OUTSIDE_TRAVEL: tr("OUTSIDE AXIS TRAVEL"),
-        SuspicionKind.WRONG_SIDE: tr("CUTS ON THE OPPOSITE SIDE OF THE PART"),
-        SuspicionKind.LARGE_CHANGE: tr("LARGE CHANGE"),
-        SuspicionKind.NEW_MASTER: tr("OTHER TOOLS ARE ADJUSTED WITH THIS TOOL"),
+        SuspicionReason.OUTSIDE_TRAVEL: tr("OUTSIDE AXIS TRAVEL"),
+        SuspicionReason.WRONG_SIDE: tr("CUTS ON THE OPPOSITE SIDE OF THE PART"),
+        SuspicionReason.LARGE_CHANGE: tr("LARGE CHANGE"),
+        SuspicionReason.NEW_MASTER: tr("OTHER TOOLS ARE ADJUSTED WITH THIS TOOL"),
     }
     return words[doubt]
 
@@ -453,9 +453,11 @@ def _table_or_row(kind: OffsetKind, number: int | None) -> str:
     return tr("THIS TABLE") if number is None else _row_name(kind, number)
 
 
-def format_followers(tools: Mapping[int, ToolRow], master: int) -> str:
+def format_tools_following_master(tools: Mapping[int, ToolOffsetRow], master: int) -> str:
     """Return the names of the tools that follow the master tool, shortened if there are many."""
-    return ", ".join(_shorten_names([format_edge_name(number) for number in find_followers(tools, master)]))
+    return ", ".join(
+        _shorten_names([format_edge_name(number) for number in find_following_tools(tools, master)])
+    )
 
 
 def _shorten_names(names: list[str]) -> list[str]:

@@ -21,17 +21,17 @@ from app.offsets.offset_table import OffsetTable
 from core.executor.job import Job
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.message import Message
-from core.store.store_rows import OffsetChange, OffsetKind, SecondaryRow, ToolRow
+from core.store.store_rows import OffsetChange, OffsetKind, SecondaryOffsetRow, ToolOffsetRow
 
 if TYPE_CHECKING:
     from app.path.path_picture import ProgramPicture
-    from core.proving.offset_comparison import ComparedPart
+    from core.proving.offset_comparison import OffsetComparisonResult
 
     # Arguments: the job with old and new offsets. Returns None if the program makes no part.
-    ComparePart = Callable[[Job, Job, ProgressCallback], ComparedPart | None]
+    ComparePart = Callable[[Job, Job, ProgressCallback], OffsetComparisonResult | None]
 
 EQUALITY_TOLERANCE_MM = 1e-9  # Millimeters.
-OffsetRowT = TypeVar("OffsetRowT", ToolRow, SecondaryRow)
+OffsetRowT = TypeVar("OffsetRowT", ToolOffsetRow, SecondaryOffsetRow)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +72,7 @@ def compare_pictures(before: ProgramPicture, after: ProgramPicture) -> ComparedP
 
 
 @dataclass(slots=True)
-class OffsetEffect:
+class OffsetEffectWorker:
     """Calculation of the effect of an offset change, which runs on a worker.
 
     The screen reads only ``compared_paths``, ``compared_part``, ``is_busy`` and ``error_text``.
@@ -81,7 +81,7 @@ class OffsetEffect:
     draw_path: DrawPaths
     compare_part: ComparePart | None = None  # None: parts cannot be compared.
     compared_paths: ComparedPaths | None = None
-    compared_part: ComparedPart | None = None
+    compared_part: OffsetComparisonResult | None = None
     error_text: str = ""
     worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("effect"))
 
@@ -100,13 +100,13 @@ class OffsetEffect:
         A calculation in progress is canceled.
         """
 
-        def pair(watch: ProgressCallback) -> ComparedPaths:
+        def draw_both_paths(watch: ProgressCallback) -> ComparedPaths:
             return compare_pictures(
                 *(self.draw_path(_with(job, each), before.tool_offsets, watch) for each in (before, after))
             )
 
         self.compared_paths, self.compared_part, self.error_text = None, None, ""
-        self.worker.request_work(pair, self._drawn, self._failed)
+        self.worker.request_work(draw_both_paths, self._drawn, self._failed)
 
     def request_part(
         self, compare_part: ComparePart, job: Job, before: OffsetTables, after: OffsetTables
@@ -119,7 +119,7 @@ class OffsetEffect:
         work = partial(compare_part, _with(job, before), _with(job, after))
         self.worker.request_work(work, self._compared, self._failed)
 
-    def _compared(self, part: ComparedPart | None) -> None:
+    def _compared(self, part: OffsetComparisonResult | None) -> None:
         self.compared_part = part
         self.error_text = "" if part is not None else tr("THIS PROGRAM DOES NOT MAKE A PART")
 
@@ -158,14 +158,14 @@ class EffectDisplay:
 
     offset_table: OffsetTable
     is_open: bool = False
-    is_close_up: bool = False  # Close-up of the largest change.
+    is_close_up_shown: bool = False  # Close-up of the largest change.
     is_part_shown: bool = False  # Effect on the features of the part.
     _asked: tuple[OffsetTables, OffsetTables] | None = None
 
     @property
-    def offset_effect(self) -> OffsetEffect | None:
+    def offset_effect(self) -> OffsetEffectWorker | None:
         """Return the calculation of effects, or None if effects cannot be displayed."""
-        return self.offset_table.desk.page_registry.find_model(OffsetEffect)
+        return self.offset_table.desk.page_registry.find_model(OffsetEffectWorker)
 
     def show_next_view(self) -> None:
         """Show the next view of the effect (F6)."""
@@ -173,8 +173,8 @@ class EffectDisplay:
             self._open()
         elif self.is_part_shown or self.compared_paths is None or self.compared_paths.has_no_effect:
             self.close_view()
-        elif not self.is_close_up:
-            self.is_close_up = True
+        elif not self.is_close_up_shown:
+            self.is_close_up_shown = True
         else:
             self._open_part()
 
@@ -189,7 +189,7 @@ class EffectDisplay:
             effect.request_part(effect.compare_part, now.job, *self._asked)
             self.is_part_shown = True
 
-    def find_refusal(self) -> str:
+    def find_display_refusal(self) -> str:
         """Return the reason why no effect can be displayed now.
 
         The result is an empty string if an effect can be or is already displayed.
@@ -209,11 +209,11 @@ class EffectDisplay:
             self._make_tables_pair(),
         )
         if effect is None or job is None or pair is None:
-            self.offset_table.desk.say(self.find_refusal())
+            self.offset_table.desk.say(self.find_display_refusal())
             return
         self.offset_table.desk.clear_prompt_line()
         effect.request_paths(job, *pair)
-        self.is_open, self.is_close_up, self.is_part_shown, self._asked = True, False, False, pair
+        self.is_open, self.is_close_up_shown, self.is_part_shown, self._asked = True, False, False, pair
 
     def _make_tables_pair(self) -> tuple[OffsetTables, OffsetTables] | None:
         """Return the old and new offsets, or None if there is no change to show.
@@ -229,12 +229,14 @@ class EffectDisplay:
         if not last:
             return None
         if self.offset_table.kind is OffsetKind.TOOL:
-            return _tables(_restore_rows(book.tool_offsets, last, ToolRow), book.secondary_offsets), now
-        return _tables(book.tool_offsets, _restore_rows(book.secondary_offsets, last, SecondaryRow)), now
+            return _tables(_restore_rows(book.tool_offsets, last, ToolOffsetRow), book.secondary_offsets), now
+        return _tables(
+            book.tool_offsets, _restore_rows(book.secondary_offsets, last, SecondaryOffsetRow)
+        ), now
 
     def close_view(self) -> None:
         """Close the view of the effect, and show the offset table again."""
-        self.is_open = self.is_close_up = self.is_part_shown = False
+        self.is_open = self.is_close_up_shown = self.is_part_shown = False
         if self.offset_effect is not None:
             self.offset_effect.clear_results()
 
@@ -245,7 +247,7 @@ class EffectDisplay:
         return None if not self.is_open or effect is None or effect.is_busy else effect.compared_paths
 
     @property
-    def compared_part(self) -> ComparedPart | None:
+    def compared_part(self) -> OffsetComparisonResult | None:
         """Return the comparison of the parts that result from the old and the new offsets.
 
         The result is None if this view is not shown or the comparison is not available yet.
@@ -253,7 +255,7 @@ class EffectDisplay:
         effect = self.offset_effect
         return None if not self.is_part_shown or effect is None or effect.is_busy else effect.compared_part
 
-    def _words_of_part(self, effect: OffsetEffect) -> str:
+    def _words_of_part(self, effect: OffsetEffectWorker) -> str:
         part = self.compared_part
         if effect.error_text:
             return tr(
@@ -289,11 +291,11 @@ class EffectDisplay:
             return tr("DRAWING THE OLD AND NEW PATHS")
         if pair.has_no_effect:
             return tr("THE CHANGE DOES NOT AFFECT THE LOADED PROGRAM. F6: SHOW TABLE")
-        mode = self.offset_table.value_mode
+        mode = self.offset_table.unit_mode
         if pair.largest_distance_mm == float("inf"):
             return tr("THE TWO PATHS HAVE DIFFERENT MOVES. F6: SHOW TABLE")
         far = f"{format_length(pair.largest_distance_mm, mode.is_metric)} {mode.name}"
-        if not self.is_close_up:
+        if not self.is_close_up_shown:
             text = tr("PATHS DIFFER BY {far} (CIRCLED). F6: CLOSE-UP   ESC: TABLE")
             return tr(Message(text, far=far))
         text = tr("PATHS DIFFER BY UP TO {far}. Z: ZOOM   F6: SHOW TABLE")
@@ -302,7 +304,7 @@ class EffectDisplay:
         return tr(Message(text, far=far))
 
 
-def _tables(tools: Mapping[int, ToolRow], secondary: Mapping[int, SecondaryRow]) -> OffsetTables:
+def _tables(tools: Mapping[int, ToolOffsetRow], secondary: Mapping[int, SecondaryOffsetRow]) -> OffsetTables:
     return OffsetTables(make_tool_offsets(tools), make_secondary_offsets(secondary))
 
 

@@ -10,27 +10,27 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import ClassVar
 
-from app.desk.arithmetic import EXPRESSION_CHARACTERS, MAX_LENGTH, EntryError
+from app.desk.arithmetic import EXPRESSION_CHARACTERS, MAX_LENGTH, InvalidEntryError
 from app.desk.desk import Desk
-from app.desk.pages.table_content import edit_text, refused
+from app.desk.pages.table_content import apply_edit_key, refused
 from app.desk.translation import tr
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_changes import ConfirmedOffsetChanges, OffsetHistory, find_change_refusal
 from app.offsets.offset_values import (
     TOOL_FIELDS,
-    ValueMode,
+    UnitMode,
     format_value,
     make_field_heading,
-    parse_increment,
-    parse_value,
-    translate_field,
+    parse_field_increment,
+    parse_field_value,
+    translate_field_name,
 )
 from core.executor.snapshot import Snapshot
 from core.message import Message
-from core.store.store_rows import FieldType, FieldValue, OffsetKind, SecondaryRow, ToolRow
+from core.store.store_rows import FieldType, FieldValue, OffsetKind, SecondaryOffsetRow, ToolOffsetRow
 from core.tool_edges import format_edge_name, format_edge_suffix
 
-ProposedOffsets = tuple[Mapping[int, ToolRow], Mapping[int, SecondaryRow]]
+ProposedOffsets = tuple[Mapping[int, ToolOffsetRow], Mapping[int, SecondaryOffsetRow]]
 
 
 class OffsetTable(ABC):
@@ -40,11 +40,11 @@ class OffsetTable(ABC):
     """
 
     kind: ClassVar[OffsetKind]
-    clear_question: ClassVar[str] = (
+    clear_table_question: ClassVar[str] = (
         ""  # Question before C clears the whole table; empty if C has no function.
     )
     page_key: str = ""  # A letter with a function on this page, for the number pad.
-    clear_reason: ClassVar[str] = ""  # Reason for the history.
+    clear_table_reason: ClassVar[str] = ""  # Reason for the history.
     text: str = ""  # The entered text.
 
     def __init__(self, desk: Desk) -> None:
@@ -57,17 +57,17 @@ class OffsetTable(ABC):
         return self.desk.offset_book
 
     @property
-    def value_mode(self) -> ValueMode:
+    def unit_mode(self) -> UnitMode:
         """Return the unit of length of the control, and whether X values are diameters."""
-        return self.offset_history.value_mode
+        return self.offset_history.unit_mode
 
     @property
-    def offset_questions(self) -> ConfirmedOffsetChanges:
+    def confirmed_changes(self) -> ConfirmedOffsetChanges:
         """Return the object that changes offsets and asks the operator to confirm suspicious changes."""
         return ConfirmedOffsetChanges(self.offset_history)
 
     @property
-    def selected_number(self) -> int | None:
+    def selected_row_number(self) -> int | None:
         """Return the number of the selected row, to which undo applies, or None if no row is selected."""
         return None
 
@@ -100,7 +100,7 @@ class OffsetTable(ABC):
 
     @property
     @abstractmethod
-    def change_text(self) -> str:
+    def change_description(self) -> str:
         """Return a description of the change being entered, or of the last change if nothing is entered."""
 
     @property
@@ -145,19 +145,21 @@ class OffsetTable(ABC):
         """Return whether the entry is a correction, which is allowed while parts run."""
         return True
 
-    def find_refusal(self, snapshot: Snapshot, *, is_correction: bool) -> str:
+    def find_change_refusal(self, snapshot: Snapshot, *, is_correction: bool) -> str:
         """Return the reason why the table cannot be changed now, or an empty string."""
         return self.offset_book.lock_reason or find_change_refusal(snapshot, is_correction=is_correction)
 
     def find_undo_refusal(self) -> str:
         """Return the reason why the last change cannot be undone now, or an empty string."""
-        return self.find_refusal(self.desk.read_snapshot(), is_correction=self.kind is OffsetKind.SECONDARY)
+        return self.find_change_refusal(
+            self.desk.read_snapshot(), is_correction=self.kind is OffsetKind.SECONDARY
+        )
 
     # --- the page ------------------------------------------------------------------------------------
 
     def prompt_text(self, snapshot: Snapshot) -> str:
         """Return the prompt of the page, or the reason why the table cannot be changed."""
-        if why := self.find_refusal(snapshot, is_correction=self.is_correction):
+        if why := self.find_change_refusal(snapshot, is_correction=self.is_correction):
             return why
         if self.offset_history.listed_changes is not None:
             return tr("PAGE UP, PAGE DOWN: SCROLL   F5 OR ESC: CLOSE HISTORY")
@@ -172,14 +174,14 @@ class OffsetTable(ABC):
 
     def handle_key(self, key: str) -> bool:
         """Handle a key, and return False if the window must handle the key."""
-        if key in {"c", "C"} and self.clear_question:
+        if key in {"c", "C"} and self.clear_table_question:
             self.clear_table()
             return True
         return self.handle_entry_key(key)
 
     def edit_entry(self, key: str, max_length: int = MAX_LENGTH) -> None:
         """Apply one key press to the entered text."""
-        self.text = edit_text(self.text, key, max_length)
+        self.text = apply_edit_key(self.text, key, max_length)
 
     def handle_undo(self) -> None:
         """Discard the entry, or ask whether to undo the last change if there is no entry.
@@ -189,19 +191,21 @@ class OffsetTable(ABC):
         why = self.find_undo_refusal()
         if why or not self.cancel_entry():
             self.offset_history.show_refusal(
-                why or self.offset_questions.ask_undo(self.kind, self.selected_number)
+                why or self.confirmed_changes.ask_to_undo_change(self.kind, self.selected_row_number)
             )
 
     def clear_table(self) -> None:
         """Clear the whole table after confirmation (C)."""
-        if why := self.find_refusal(self.desk.read_snapshot(), is_correction=False):
+        if why := self.find_change_refusal(self.desk.read_snapshot(), is_correction=False):
             self.desk.say(why)
         else:
-            self.desk.ask_operator(tr(self.clear_question), self._clear_all)
+            self.desk.ask_operator(tr(self.clear_table_question), self._clear_all)
 
     def _clear_all(self) -> None:
-        why = self.find_refusal(self.desk.read_snapshot(), is_correction=False)
-        self.offset_history.show_refusal(why or self.offset_book.clear_table(self.kind, self.clear_reason))
+        why = self.find_change_refusal(self.desk.read_snapshot(), is_correction=False)
+        self.offset_history.show_refusal(
+            why or self.offset_book.clear_table(self.kind, self.clear_table_reason)
+        )
 
     def handle_escape(self) -> bool:
         """Close the history, or cancel a question or the entry, when Esc is pressed.
@@ -210,7 +214,7 @@ class OffsetTable(ABC):
         """
         if self.offset_history.listed_changes is not None:
             self.offset_history.listed_changes = None
-        elif self.desk.confirm_key:
+        elif self.desk.confirmation_key:
             self.desk.clear_prompt_line()
         else:
             return self.cancel_entry()
@@ -276,20 +280,20 @@ class ToolFieldEditor:
     ) -> str:
         """Set a field of a tool to the entered value, or increase it by this value.
 
-        ``is_increment`` means that the value is added. Raises EntryError if the value is invalid.
+        ``is_increment`` means that the value is added. Raises InvalidEntryError if the value is invalid.
         """
         mode, row = (
-            self.offset_history.value_mode,
+            self.offset_history.unit_mode,
             self.offset_history.offset_book.tool_offsets.get(tool_number),
         )
         if row is None:
             return self._save_first_value(
-                tool_number, field_name, parse_value(field_name, entered_text, mode)
+                tool_number, field_name, parse_field_value(field_name, entered_text, mode)
             )
         value = (
-            parse_increment(field_name, row, entered_text, mode)
+            parse_field_increment(field_name, row, entered_text, mode)
             if is_increment
-            else parse_value(field_name, entered_text, mode)
+            else parse_field_value(field_name, entered_text, mode)
         )
         if value == getattr(row, field_name):
             self.offset_history.desk.say(
@@ -297,7 +301,7 @@ class ToolFieldEditor:
             )
             return ""
         typed = (
-            f"{'MM ' if mode.is_metric else ''}{translate_field(field_name)} "
+            f"{'MM ' if mode.is_metric else ''}{translate_field_name(field_name)} "
             f"{'+ ' if is_increment else ''}{entered_text.strip()}"
         )
         return ConfirmedOffsetChanges(self.offset_history).change_fields(
@@ -315,7 +319,7 @@ class ToolFieldEditor:
                 tr(
                     Message(
                         text,
-                        axis=translate_field(self.incomplete_tool.missing_axis),
+                        axis=translate_field_name(self.incomplete_tool.missing_axis),
                         number=format_edge_suffix(number),
                     )
                 )
@@ -328,11 +332,11 @@ class ToolFieldEditor:
             self.incomplete_tool.discard_values()
         return why
 
-    def ask_master(self, tool_number: int) -> str:
+    def ask_to_toggle_master(self, tool_number: int) -> str:
         """Ask whether to make a tool the master tool, or to have no master tool if it already is."""
         if tool_number not in self.offset_history.offset_book.tool_offsets:
             return self.describe_unset_tool(tool_number)
-        return ConfirmedOffsetChanges(self.offset_history).ask_master(tool_number)
+        return ConfirmedOffsetChanges(self.offset_history).ask_to_toggle_master(tool_number)
 
 
 class ToolFieldTable(OffsetTable):
@@ -341,7 +345,7 @@ class ToolFieldTable(OffsetTable):
     A text field accepts letters after the operator opens it with Enter.
     """
 
-    text_hint: ClassVar[str]  # Message for a letter before the text is open.
+    open_text_hint: ClassVar[str]  # Message for a letter before the text is open.
     is_text_open = False  # A text is being edited.
 
     @property
@@ -350,12 +354,12 @@ class ToolFieldTable(OffsetTable):
         return self.offset_book.at
 
     @property
-    def selected_number(self) -> int | None:
+    def selected_row_number(self) -> int | None:
         """Return the number of the selected tool, to which undo applies."""
         return self.tool_number
 
     @property
-    def tool_row(self) -> ToolRow | None:
+    def tool_row(self) -> ToolOffsetRow | None:
         """Return the offset of the selected tool, or None if the tool was never set."""
         return self.offset_book.tool_offsets.get(self.tool_number)
 
@@ -376,7 +380,7 @@ class ToolFieldTable(OffsetTable):
 
     def find_cell_refusal(self) -> str:
         """Return the reason why the selected field cannot be changed now, or an empty string."""
-        return self.find_refusal(self.desk.read_snapshot(), is_correction=self.is_correction)
+        return self.find_change_refusal(self.desk.read_snapshot(), is_correction=self.is_correction)
 
     @property
     def accepts_any_text(self) -> bool:
@@ -387,16 +391,18 @@ class ToolFieldTable(OffsetTable):
     @property
     def question_text(self) -> str:
         """Return the prompt for a value, with the name of the tool and of the selected field."""
-        return f"{format_edge_name(self.tool_number)}  {make_field_heading(self.name, self.value_mode)}?"
+        return f"{format_edge_name(self.tool_number)}  {make_field_heading(self.name, self.unit_mode)}?"
 
     @property
-    def change_text(self) -> str:
+    def change_description(self) -> str:
         """Return the old and the entered value of the field, or the last change if nothing is entered."""
         if not (self.text or self.is_text_open):
             return self.offset_history.last_change_text
         try:
-            new = format_value(self.name, parse_value(self.name, self.text, self.value_mode), self.value_mode)
-        except EntryError:
+            new = format_value(
+                self.name, parse_field_value(self.name, self.text, self.unit_mode), self.unit_mode
+            )
+        except InvalidEntryError:
             new = "…"  # An incomplete expression is not an error yet.
         return f"{self.stored_value_text}  →  {new}"
 
@@ -429,7 +435,7 @@ class ToolFieldTable(OffsetTable):
 
     def _add(self, key: str) -> None:
         if self.accepts_any_text and not self.is_text_open:
-            self.desk.say(tr(self.text_hint))
+            self.desk.say(tr(self.open_text_hint))
             return
         if not self.text:
             self.desk.clear_prompt_line()
@@ -449,7 +455,7 @@ class ToolFieldTable(OffsetTable):
         barred = self.find_cell_refusal()
         try:
             why = barred or save_value()
-        except EntryError as error:
+        except InvalidEntryError as error:
             why = tr(Message("REJECTED: {why}", why=error))
         if why:
             self.text = self.text if barred else refused(self.text)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from app.desk.arithmetic import EntryError, evaluate_expression
+from app.desk.arithmetic import InvalidEntryError, evaluate_expression
 from app.desk.status import formats
 from app.desk.status.formats import MINUS_SIGN, MM_PER_INCH
 from app.desk.translation import tr
@@ -17,15 +17,15 @@ from core.store.store_rows import (
     FIELDS_BY_KIND,
     FieldType,
     FieldValue,
-    MillRow,
+    MillToolRow,
     OffsetKind,
     OffsetRow,
     PresetRow,
     RowField,
-    SecondaryRow,
-    ShapeRow,
-    ToolRow,
-    ZeroRow,
+    SecondaryOffsetRow,
+    ToolOffsetRow,
+    ToolShapeRow,
+    ZeroOffsetRow,
 )
 
 TOOL_FIELDS = {
@@ -36,14 +36,14 @@ ZERO_OFFSET_DECIMALS = 3
 
 
 @dataclass(frozen=True, slots=True)
-class ValueMode:
+class UnitMode:
     """Length unit of the control, and whether X values are diameters, at one moment."""
 
     is_metric: bool = False
     is_diameter: bool = False
 
     @property
-    def unit_mm(self) -> float:
+    def unit_length_mm(self) -> float:
         """Return the length of 1 inch (25.4) or 1 mm (1.0) in millimeters, as selected on the control."""
         return 1.0 if self.is_metric else MM_PER_INCH
 
@@ -56,12 +56,12 @@ class ValueMode:
 UNKNOWN_VALUE = "?"  # Replaces a value that could not be read.
 
 
-def describe_unset(*, is_unreadable: bool = False) -> str:
+def describe_missing_offset(*, is_unreadable: bool = False) -> str:
     """Return "not set" for an offset that was never entered, or "unreadable"."""
     return tr("unreadable") if is_unreadable else tr("not set")
 
 
-def format_signed(mm: float, is_metric: bool) -> str:
+def format_signed_length(mm: float, is_metric: bool) -> str:
     """Return a length in mm as text with a plus or minus sign.
 
     The plus sign distinguishes an offset from a dimension.
@@ -102,36 +102,36 @@ def describe_range_error(field: str, value: str, unit: str, low: float, high: fl
 # =
 
 
-def format_offset(offset: OffsetRow | None, mode: ValueMode) -> str:
+def format_offset(offset: OffsetRow | None, mode: UnitMode) -> str:
     """Return the values of an offset as one line of text.
 
     X of a tool offset is a diameter or a radius, as on the control. The wear in X is a diameter. All other
     X values are radii.
     """
     if offset is None:
-        return describe_unset()
-    if isinstance(offset, ToolRow):
+        return describe_missing_offset()
+    if isinstance(offset, ToolOffsetRow):
         return (
             f"{_pair(offset.x, offset.z, mode.is_metric, mode.is_diameter)}"
             f"{_format_more_fields(offset, mode)}"
         )
-    if isinstance(offset, SecondaryRow):
+    if isinstance(offset, SecondaryOffsetRow):
         x, z, r = offset
         return (
-            f"X {format_signed(x, mode.is_metric)}  Z {format_signed(z, mode.is_metric)}  R "
+            f"X {format_signed_length(x, mode.is_metric)}  Z {format_signed_length(z, mode.is_metric)}  R "
             f"{formats.format_length(r, mode.is_metric)}"
         )
-    if isinstance(offset, ShapeRow):
+    if isinstance(offset, ToolShapeRow):
         return _format_shape(offset, mode)
-    if isinstance(offset, ZeroRow):
+    if isinstance(offset, ZeroOffsetRow):
         both = zip("XZC", offset, strict=True)
         return "  ".join(f"{name} {format_zero_offset(value)}" for name, value in both)
-    return format_set_fields(offset)
+    return format_specified_fields(offset)
 
 
-def format_set_fields(row: MillRow | PresetRow) -> str:
+def format_specified_fields(row: MillToolRow | PresetRow) -> str:
     """Return the specified fields of a mill tool or preset as text, with the control's field names."""
-    fields = FIELDS_BY_KIND[OffsetKind.MILL_TOOL if isinstance(row, MillRow) else OffsetKind.PRESET]
+    fields = FIELDS_BY_KIND[OffsetKind.MILL_TOOL if isinstance(row, MillToolRow) else OffsetKind.PRESET]
     values: tuple[FieldValue, ...] = tuple(row)
     field_texts = [
         field.label if field.field_type is FieldType.BOOLEAN else f"{field.label} {format_cell(field, value)}"
@@ -156,10 +156,13 @@ def format_cell(field: RowField, value: FieldValue) -> str:
 
 def _pair(x: float, z: float, metric: bool, diameter: bool) -> str:
     mark = "Ø" if diameter else ""
-    return f"X{mark} {format_signed(2 * x if diameter else x, metric)}  Z {format_signed(z, metric)}"
+    return (
+        f"X{mark} {format_signed_length(2 * x if diameter else x, metric)}  Z "
+        f"{format_signed_length(z, metric)}"
+    )
 
 
-def _format_more_fields(tool: ToolRow, mode: ValueMode) -> str:
+def _format_more_fields(tool: ToolOffsetRow, mode: UnitMode) -> str:
     """Return the text of a tool's remaining fields that have a value."""
     parts = [f"  R {formats.format_length(tool.nose_radius, mode.is_metric)}"]
     if tool.wear_x or tool.wear_z:
@@ -171,31 +174,31 @@ def _format_more_fields(tool: ToolRow, mode: ValueMode) -> str:
     return "".join(parts) + (f"  {tool.remark}" if tool.remark else "")
 
 
-def _format_shape(shape: ShapeRow, mode: ValueMode) -> str:
+def _format_shape(shape: ToolShapeRow, mode: UnitMode) -> str:
     """Return the kind and hand of a tool shape and its specified values as text."""
     stated = [
-        f"{translate_field(name)} {format_value(name, value, mode)}"
+        f"{translate_field_name(name)} {format_value(name, value, mode)}"
         for name, value in shape._asdict().items()
         if value and not TOOL_FIELDS[name].choices
     ]
     return "  ".join([translate_choice(shape.kind), translate_choice(shape.hand), *stated])
 
 
-def format_change(old: OffsetRow | None, new: OffsetRow | None, mode: ValueMode) -> str:
+def format_offset_change(old: OffsetRow | None, new: OffsetRow | None, mode: UnitMode) -> str:
     """Return the change from the old to the new offset as text.
 
     For a tool that already had an offset, the text contains only the changed fields.
     """
-    if not (isinstance(old, ToolRow | ShapeRow) and isinstance(new, ToolRow | ShapeRow)):
+    if not (isinstance(old, ToolOffsetRow | ToolShapeRow) and isinstance(new, ToolOffsetRow | ToolShapeRow)):
         return f"{format_offset(old, mode)}  →  {format_offset(new, mode)}"
     changed = [name for name in old._fields if getattr(old, name) != getattr(new, name)]
     return "   ".join(
-        f"{translate_field(name)} {_in_change(name, old, mode)} → {_in_change(name, new, mode)}"
+        f"{translate_field_name(name)} {_in_change(name, old, mode)} → {_in_change(name, new, mode)}"
         for name in changed
     )
 
 
-def _in_change(name: str, row: ToolRow | ShapeRow, mode: ValueMode) -> str:
+def _in_change(name: str, row: ToolOffsetRow | ToolShapeRow, mode: UnitMode) -> str:
     if TOOL_FIELDS[name].field_type is FieldType.BOOLEAN:
         return tr("yes") if getattr(row, name) else tr("no")
     return format_value(name, getattr(row, name), mode) or tr("none")
@@ -204,10 +207,10 @@ def _in_change(name: str, row: ToolRow | ShapeRow, mode: ValueMode) -> str:
 # --- a field of a tool -----------------------------------------------------------------------------------
 
 
-def parse_value(field_name: str, text: str, mode: ValueMode) -> FieldValue:
+def parse_field_value(field_name: str, text: str, mode: UnitMode) -> FieldValue:
     """Return the field value for an entered text, with lengths in mm.
 
-    Raise EntryError with the reason if the text is invalid.
+    Raise InvalidEntryError with the reason if the text is invalid.
     """
     field = TOOL_FIELDS[field_name]
     if field.field_type is FieldType.TEXT:
@@ -222,14 +225,14 @@ def parse_value(field_name: str, text: str, mode: ValueMode) -> FieldValue:
     return _taken(field, value, mode)
 
 
-def parse_increment(field_name: str, old_row: ToolRow, text: str, mode: ValueMode) -> FieldValue:
+def parse_field_increment(field_name: str, old_row: ToolOffsetRow, text: str, mode: UnitMode) -> FieldValue:
     """Return the field's current length plus the entered increment, in mm.
 
-    Raise EntryError with the reason if the text is invalid.
+    Raise InvalidEntryError with the reason if the text is invalid.
     """
     field, before = TOOL_FIELDS[field_name], getattr(old_row, field_name)
     if field.field_type is not FieldType.LENGTH:
-        raise EntryError(
+        raise InvalidEntryError(
             tr(
                 Message(
                     "{field} does not accept an added value; press Enter to set the value", field=field.label
@@ -243,19 +246,21 @@ def parse_increment(field_name: str, old_row: ToolRow, text: str, mode: ValueMod
     )
 
 
-def _taken(field: RowField, value: FieldValue, mode: ValueMode) -> FieldValue:
+def _taken(field: RowField, value: FieldValue, mode: UnitMode) -> FieldValue:
     if field.is_valid_value(value):
         return value
     if field.field_type is not FieldType.LENGTH:
-        raise EntryError(tr(Message("{field} must be {range}", field=field.label, range=field.range_text)))
-    factor = _find_factor(field.name, mode) / mode.unit_mm
+        raise InvalidEntryError(
+            tr(Message("{field} must be {range}", field=field.label, range=field.range_text))
+        )
+    factor = _find_factor(field.name, mode) / mode.unit_length_mm
     figure = format_value(field.name, value, mode)
-    raise EntryError(
+    raise InvalidEntryError(
         describe_range_error(field.label, figure, mode.name, field.minimum * factor, field.maximum * factor)
     )
 
 
-def _find_factor(name: str, mode: ValueMode) -> float:
+def _find_factor(name: str, mode: UnitMode) -> float:
     """Return the factor that converts an entered X (diameter or radius) to the stored radius.
 
     Wear is always a diameter, because it is measured on the part. The control's diameter mode can change
@@ -264,7 +269,7 @@ def _find_factor(name: str, mode: ValueMode) -> float:
     return 2.0 if name == "wear_x" or (name == "x" and mode.is_diameter) else 1.0
 
 
-def format_value(field_name: str, value: FieldValue, mode: ValueMode) -> str:
+def format_value(field_name: str, value: FieldValue, mode: UnitMode) -> str:
     """Return a field value as text for the operator."""
     field = TOOL_FIELDS[field_name]
     if field.choices:
@@ -278,20 +283,20 @@ def format_value(field_name: str, value: FieldValue, mode: ValueMode) -> str:
         return f"{value:g}°"
     mm = value * _find_factor(field_name, mode)
     return (
-        format_signed(mm, mode.is_metric)
+        format_signed_length(mm, mode.is_metric)
         if field.minimum < 0.0
         else formats.format_length(mm, mode.is_metric)
     )
 
 
-def find_x_symbol(field_name: str, mode: ValueMode) -> str:
+def find_x_symbol(field_name: str, mode: UnitMode) -> str:
     """Return "Ø" or "R" for a field that is an X value, or an empty string for other fields."""
     if field_name not in {"x", "wear_x"}:
         return ""
     return "Ø" if _find_factor(field_name, mode) > 1.0 else "R"
 
 
-def translate_field(field_name: str) -> str:
+def translate_field_name(field_name: str) -> str:
     """Return the translated name of a field."""
     words = {
         "x": tr("X"),
@@ -341,7 +346,7 @@ def translate_choice(value: str) -> str:
     return words.get(value, value)
 
 
-def make_field_heading(field_name: str, mode: ValueMode) -> str:
+def make_field_heading(field_name: str, mode: UnitMode) -> str:
     """Return the translated name of a field, with Ø or R for an X value."""
     mark = find_x_symbol(field_name, mode)
-    return f"{translate_field(field_name)} {mark}" if mark else translate_field(field_name)
+    return f"{translate_field_name(field_name)} {mark}" if mark else translate_field_name(field_name)

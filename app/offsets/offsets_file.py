@@ -25,13 +25,13 @@ from core.store.store_rows import (
     FieldValue,
     OffsetKind,
     RowField,
-    SecondaryRow,
-    ShapeRow,
-    ToolRow,
-    ZeroRow,
+    SecondaryOffsetRow,
+    ToolOffsetRow,
+    ToolShapeRow,
+    ZeroOffsetRow,
     replace_fields,
 )
-from core.tool_edges import EDGE_NUMBERS, get_edge_number, get_tool_number, make_row_number
+from core.tool_edges import EDGE_NUMBERS, get_edge_number, get_tool_number, make_edge_row_number
 
 if TYPE_CHECKING:
     from core.part.tool_shape import ToolShape
@@ -61,7 +61,9 @@ _EDGE_KEYS = frozenset(f"d{edge}" for edge in EDGE_NUMBERS[1:])
 KEY_ALIASES = {"tip": "quadrant"}  # Name of the field in tool data sheets.
 
 
-def read_offset_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow], dict[int, ZeroRow]]:
+def read_offset_rows(
+    path: Path,
+) -> tuple[dict[int, ToolOffsetRow], dict[int, SecondaryOffsetRow], dict[int, ZeroOffsetRow]]:
     """Return the tool, secondary and zero offsets of a file as rows of the store.
 
     A missing key is read as 0 or empty. A tool that has a shape but neither X nor Z has no offset, because
@@ -69,9 +71,9 @@ def read_offset_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, Secondar
     """
     data = read_toml(path)
     mistakes = _unknown_tables(data)
-    tools = _tools(data, mistakes).placed_rows
+    tools = _tools(data, mistakes).positioned_rows
     secondary = {
-        n: replace_fields(SecondaryRow(), values)
+        n: replace_fields(SecondaryOffsetRow(), values)
         for n, values in _table(data, OffsetKind.SECONDARY, mistakes)
     }
     masters = [f"tool.{n}" for n, row in tools.items() if row.master]
@@ -99,13 +101,14 @@ def read_offset_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, Secondar
             )
         )
     zero = {
-        code: replace_fields(ZeroRow(), values) for code, values in _table(data, OffsetKind.ZERO, mistakes)
+        code: replace_fields(ZeroOffsetRow(), values)
+        for code, values in _table(data, OffsetKind.ZERO, mistakes)
     }
     raise_mistakes(path, mistakes)
     return tools, secondary, zero
 
 
-def read_shape_rows(path: Path) -> dict[int, ShapeRow]:
+def read_shape_rows(path: Path) -> dict[int, ToolShapeRow]:
     """Return the tool shapes of a file as rows of the store.
 
     Raise CommandError with all mistakes of the tool tables. The secondary and zero offsets of the file are
@@ -144,9 +147,9 @@ def _unknown_tables(data: dict[str, object]) -> list[CodedError]:
 class _ToolTables(NamedTuple):
     """The tools of a file: all tool offsets, those with a specified position, and the tool shapes."""
 
-    rows: dict[int, ToolRow]
-    placed_rows: dict[int, ToolRow]
-    shapes: dict[int, ShapeRow]
+    rows: dict[int, ToolOffsetRow]
+    positioned_rows: dict[int, ToolOffsetRow]
+    shapes: dict[int, ToolShapeRow]
 
 
 def _tools(data: dict[str, object], mistakes: list[CodedError]) -> _ToolTables:
@@ -154,17 +157,17 @@ def _tools(data: dict[str, object], mistakes: list[CodedError]) -> _ToolTables:
     for number, values in _table(data, OffsetKind.TOOL, mistakes):
         shape = {name: value for name, value in values.items() if name in FIELDS_BY_KIND[OffsetKind.SHAPE]}
         offset = {name: value for name, value in values.items() if name not in shape}
-        found.rows[number] = replace_fields(ToolRow(), offset)
+        found.rows[number] = replace_fields(ToolOffsetRow(), offset)
         if not shape or {"x", "z"} & offset.keys():
-            found.placed_rows[number] = found.rows[number]
+            found.positioned_rows[number] = found.rows[number]
         if shape:
-            found.shapes[number] = replace_fields(ShapeRow(), shape)
+            found.shapes[number] = replace_fields(ToolShapeRow(), shape)
             mistakes += _shape_mistakes(number, found.shapes[number], found.rows[number])
     return found
 
 
-def _shape_mistakes(number: int, row: ShapeRow, tool: ToolRow) -> Iterator[CodedError]:
-    from app.desk.stored_shapes import find_mistakes
+def _shape_mistakes(number: int, row: ToolShapeRow, tool: ToolOffsetRow) -> Iterator[CodedError]:
+    from app.desk.stored_shapes import find_shape_row_mistakes
 
     if not row.kind:
         kinds = FIELDS_BY_KIND[OffsetKind.SHAPE]["kind"].range_text
@@ -175,7 +178,7 @@ def _shape_mistakes(number: int, row: ShapeRow, tool: ToolRow) -> Iterator[Coded
         )
         yield CodedError(text, "no-kind")
         return
-    for wrong in find_mistakes(row, tool):
+    for wrong in find_shape_row_mistakes(row, tool):
         yield CodedError(
             Message(
                 "tool.{number}.{field}: {wrong}", number=number, field=wrong.field_name, wrong=wrong.message
@@ -243,7 +246,7 @@ def _table(
                     )
                     continue
                 yield (
-                    make_row_number(numbers[name], int(key[1])),
+                    make_edge_row_number(numbers[name], int(key[1])),
                     _values(values, kind, Message("{name}.{key}", name=name, key=key), mistakes),
                 )
 

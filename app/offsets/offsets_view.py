@@ -38,7 +38,7 @@ ROW_HEIGHT = 5.2  # Units: height of one change in the history.
 CLOSE_UP_SEPARATION = 0.06  # Distance of the two paths in the close-up, as a fraction of the width.
 
 
-class EffectView(PathView):
+class OffsetEffectView(PathView):
     """A view of the loaded program's paths with the old and new offsets.
 
     The model selects the paths.
@@ -53,11 +53,11 @@ class EffectView(PathView):
     def update_effect(self) -> None:
         """Show the paths that are ready, and continue to draw the view."""
         pair = self._model.compared_paths
-        self.show_compared(pair.picture_before if pair else None, pair.picture_after if pair else None)
-        if pair is not None and self._model.is_close_up != self._near:
-            self._near = self._model.is_close_up
+        self.show_comparison(pair.picture_before if pair else None, pair.picture_after if pair else None)
+        if pair is not None and self._model.is_close_up_shown != self._near:
+            self._near = self._model.is_close_up_shown
             self._zoom_to_difference(pair.largest_distance_mm) if self._near else self.fit_all_panes()
-        self.draw_slice()
+        self.continue_drawing()
 
     def _zoom_to_difference(self, difference: float) -> None:
         """Zoom in on the largest change, so that both paths are visible side by side."""
@@ -107,7 +107,7 @@ class OffsetPage(ModelPage):
     """A page that shows an offset table, its history, or the effect of a change."""
 
     model: OffsetTable
-    table_panel: Panel
+    content_panel: Panel
 
     def __init__(self, host: PageHost, parent: QWidget, model: OffsetTable) -> None:
         super().__init__(host, parent)
@@ -115,7 +115,7 @@ class OffsetPage(ModelPage):
         self.history_list = ChangeHistoryList(self.theme, self)
         self.entry_panel = EntryPanel(self.theme, self)
         self.effect_display = EffectDisplay(model)
-        self.effect_view = EffectView(self.theme, self.effect_display, self)
+        self.effect_view = OffsetEffectView(self.theme, self.effect_display, self)
         self.feature_table = TablePanel(self.theme, lambda _row: None, self)
         self.feature_table.hide()
         own = (model.page_key, model.page_key) if model.page_key else None
@@ -142,7 +142,7 @@ class OffsetPage(ModelPage):
     def on_open(self) -> None:
         """Notify the model that the page has opened, and let a touch on the table show the number pad."""
         super().on_open()
-        self.table_panel.installEventFilter(self)
+        self.content_panel.installEventFilter(self)
 
     def make_key_actions(self) -> KeyActions:
         """Return the key actions for undo, history, effect and the other tables."""
@@ -167,8 +167,13 @@ class OffsetPage(ModelPage):
 
         The reason is empty if the key is enabled.
         """
-        nothing = not self.model.text and not self.model.offset_history.can_undo(self.model.selected_number)
-        return {"F4": self.model.find_undo_refusal() or nothing, "F6": self.effect_display.find_refusal()}
+        nothing = not self.model.text and not self.model.offset_history.can_undo(
+            self.model.selected_row_number
+        )
+        return {
+            "F4": self.model.find_undo_refusal() or nothing,
+            "F6": self.effect_display.find_display_refusal(),
+        }
 
     def make_key_labels(self) -> tuple[str, ...]:
         """Return the key labels.
@@ -183,7 +188,7 @@ class OffsetPage(ModelPage):
 
     def _toggle_history(self) -> None:
         self.effect_display.close_view()
-        self.model.offset_history.toggle_list()
+        self.model.offset_history.toggle_change_list()
         self.history_list.first_row = 0
 
     def _turn_effect(self) -> None:
@@ -221,7 +226,7 @@ class OffsetPage(ModelPage):
         """Redraw the paths in the current colors."""
         self.effect_view.redraw()
 
-    def try_leave(self) -> bool:
+    def try_leave_page(self) -> bool:
         """Discard unfinished entries, and allow the page to close."""
         self.effect_display.close_view()
         self.model.on_close()
@@ -249,20 +254,26 @@ class OffsetPage(ModelPage):
         changes = model.offset_history.listed_changes
         self.history_list.setVisible(changes is not None)
         self._show_letters(model.is_editing_text and not self.number_pad.isHidden())
-        room = self.letter_pad.isHidden() or self.table_panel.height() >= 2 * FINGERTIP_PX
-        self.table_panel.setVisible(changes is None and not effect.is_open and room)
+        room = self.letter_pad.isHidden() or self.content_panel.height() >= 2 * FINGERTIP_PX
+        self.content_panel.setVisible(changes is None and not effect.is_open and room)
         part = effect.compared_part
         self.effect_view.setVisible(effect.is_open and part is None)
         self.feature_table.setVisible(part is not None)
         if part is not None:
-            self.feature_table.show_table(make_part_table(part, model.value_mode))
+            self.feature_table.show_table(make_part_table(part, model.unit_mode))
         elif effect.is_open:
             self.effect_view.update_effect()
         if changes is not None:
             self.history_list.history_entries = tuple(
                 model.offset_history.format_change(change) for change in changes
             )
-        words = (model.heading, model.question_text, model.entered_text, model.change_text, model.footer_text)
+        words = (
+            model.heading,
+            model.question_text,
+            model.entered_text,
+            model.change_description,
+            model.footer_text,
+        )
         self.entry_panel.entry_texts = EntryTexts(*words)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
@@ -281,7 +292,7 @@ class OffsetPage(ModelPage):
         low = self.letter_pad.min_height_px + gap if texts else 0
         wide = self.width() - (0 if self.number_pad.isHidden() or texts else pad + gap)
         table = self.height() - high - gap - low
-        for part in (self.table_panel, self.history_list, self.effect_view, self.feature_table):
+        for part in (self.content_panel, self.history_list, self.effect_view, self.feature_table):
             part.setGeometry(0, 0, wide, table)
         self.entry_panel.setGeometry(0, table + gap, wide, high)
         self.number_pad.setGeometry(self.width() - pad, 0, 0 if texts else pad, self.height())

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from app.desk.arithmetic import EXPRESSION_CHARACTERS, EntryError, evaluate_expression
+from app.desk.arithmetic import EXPRESSION_CHARACTERS, InvalidEntryError, evaluate_expression
 from app.desk.desk import Desk
 from app.desk.pages.table_content import refused
 from app.desk.status.formats import format_length
@@ -16,7 +16,7 @@ from app.desk.translation import tr
 from app.offsets.offset_changes import describe_effective_time
 from app.offsets.offset_table import OffsetTable, ProposedOffsets
 from app.offsets.offset_values import (
-    ValueMode,
+    UnitMode,
     add_correction,
     convert_to_mm,
     describe_range_error,
@@ -29,7 +29,7 @@ from core.store.store_rows import (
     OFFSET_NUMBERS,
     SECONDARY_OFFSET_LIMIT_MM,
     OffsetKind,
-    SecondaryRow,
+    SecondaryOffsetRow,
 )
 
 _ENTRY_KEYS = EXPRESSION_CHARACTERS | {"Back", "Delete", "Enter"}
@@ -45,7 +45,7 @@ class SecondaryOffsetStep(IntEnum):
 
 
 def apply_correction(
-    step: SecondaryOffsetStep, old_value: float, entered_value: float, mode: ValueMode
+    step: SecondaryOffsetStep, old_value: float, entered_value: float, mode: UnitMode
 ) -> float:
     """Return the new value in mm for an entry.
 
@@ -63,8 +63,8 @@ class SecondaryOffsetEntry(OffsetTable):
 
     kind = OffsetKind.SECONDARY
     page_key = "C"
-    clear_question = "PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, N TO KEEP THEM"
-    clear_reason = "all offsets cleared with the C key"
+    clear_table_question = "PRESS Y TO CLEAR ALL 32 SECONDARY OFFSETS, N TO KEEP THEM"
+    clear_table_reason = "all offsets cleared with the C key"
 
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)
@@ -90,12 +90,12 @@ class SecondaryOffsetEntry(OffsetTable):
         return words[self.entry_step]
 
     @property
-    def present_row(self) -> SecondaryRow | None:
+    def stored_row(self) -> SecondaryOffsetRow | None:
         """Return the saved values of the offset that is being edited, or None if it has no values."""
         return self.offset_book.secondary_offsets.get(self.offset_number) if self.offset_number else None
 
     @property
-    def selected_number(self) -> int | None:
+    def selected_row_number(self) -> int | None:
         """Return the entered number, or None if no number has been entered.
 
         With None, undo applies to the last change of the whole table.
@@ -103,28 +103,28 @@ class SecondaryOffsetEntry(OffsetTable):
         return self.offset_number or None
 
     @property
-    def preview_row(self) -> SecondaryRow | None:
+    def preview_row(self) -> SecondaryOffsetRow | None:
         """Return the offset as it would be after the current entry, or None if no offset is selected."""
         if not self.offset_number:
             return None
-        old = self.present_row or SecondaryRow()
+        old = self.stored_row or SecondaryOffsetRow()
         new = [*self._answers, *old[len(self._answers) :]]
         if self.text.strip() and self.entry_step is not SecondaryOffsetStep.NUMBER:
             try:
                 at = self.entry_step - 1
                 new[at] = apply_correction(
-                    self.entry_step, old[at], evaluate_expression(self.text), self.value_mode
+                    self.entry_step, old[at], evaluate_expression(self.text), self.unit_mode
                 )
-            except EntryError:
+            except InvalidEntryError:
                 pass  # An incomplete expression is not an error yet.
-        return SecondaryRow(*new)
+        return SecondaryOffsetRow(*new)
 
     @property
-    def change_text(self) -> str:
+    def change_description(self) -> str:
         """Return the text of the change being entered, or of the last change if nothing is entered."""
         if self.entry_step is SecondaryOffsetStep.NUMBER:
             return self.offset_history.last_change_text
-        was, new = (format_offset(side, self.value_mode) for side in (self.present_row, self.preview_row))
+        was, new = (format_offset(side, self.unit_mode) for side in (self.stored_row, self.preview_row))
         return f"D{self.offset_number}   {was}  →  {new}"
 
     @property
@@ -159,12 +159,9 @@ class SecondaryOffsetEntry(OffsetTable):
         This is called once a frame. X is always a diameter correction. A change of the control's diameter
         mode therefore does not discard the entry.
         """
-        before = self.value_mode
+        before = self.unit_mode
         super().update(snapshot)
-        if (
-            self.value_mode.is_metric != before.is_metric
-            and self.entry_step is not SecondaryOffsetStep.NUMBER
-        ):
+        if self.unit_mode.is_metric != before.is_metric and self.entry_step is not SecondaryOffsetStep.NUMBER:
             self.discard_entry()
             self.desk.say(tr("CONTROL CHANGED UNITS. NOTHING SAVED. ENTER THE VALUE AGAIN"))
 
@@ -203,7 +200,7 @@ class SecondaryOffsetEntry(OffsetTable):
 
     def clear_table(self) -> None:
         """Handle the C key: clear the table, unless an offset is being edited."""
-        whole = self.find_refusal(self.desk.read_snapshot(), is_correction=False)
+        whole = self.find_change_refusal(self.desk.read_snapshot(), is_correction=False)
         if not whole and self.entry_step is not SecondaryOffsetStep.NUMBER:
             self.desk.say(tr("C CLEARS ALL OFFSETS ONLY AT THE PROMPT Offset Number? PRESS ESC FIRST"))
         else:
@@ -216,7 +213,7 @@ class SecondaryOffsetEntry(OffsetTable):
             return
         number = self.offset_number
         self.discard_entry()
-        self.offset_history.show_refusal(self.offset_questions.ask_undo(self.kind, number))
+        self.offset_history.show_refusal(self.confirmed_changes.ask_to_undo_change(self.kind, number))
 
     def cancel_entry(self) -> bool:
         """Discard the entry, and show that it was discarded.
@@ -236,26 +233,28 @@ class SecondaryOffsetEntry(OffsetTable):
         self._answers, self._typed = [], []
 
     def _enter(self) -> None:
-        if why := self.find_refusal(self.desk.read_snapshot(), is_correction=True):
+        if why := self.find_change_refusal(self.desk.read_snapshot(), is_correction=True):
             self.desk.say(why)
             return
         try:
             self._take_number() if self.entry_step is SecondaryOffsetStep.NUMBER else self._take_value()
-        except EntryError as error:
+        except InvalidEntryError as error:
             self.text = refused(self.text)
             self.desk.say(tr(Message("REJECTED: {why}", why=error)))
 
     def _take_number(self) -> None:
         value = evaluate_expression(self.text)
         if value not in OFFSET_NUMBERS:
-            raise EntryError(tr(Message("D{number:g} does not exist; offsets are D1…32", number=value)))
+            raise InvalidEntryError(
+                tr(Message("D{number:g} does not exist; offsets are D1…32", number=value))
+            )
         self.offset_number, self.entry_step, self.text = int(value), SecondaryOffsetStep.X, ""
 
     def _take_value(self) -> None:
         at, text = self.entry_step - 1, self.text.strip()
-        new = old = (self.present_row or SecondaryRow())[at]
+        new = old = (self.stored_row or SecondaryOffsetRow())[at]
         if text:
-            new = apply_correction(self.entry_step, old, evaluate_expression(text), self.value_mode)
+            new = apply_correction(self.entry_step, old, evaluate_expression(text), self.unit_mode)
             self._check_range(new)
         typed = f"{self.entry_step.name} {text}" if text else ""
         if self.entry_step is not SecondaryOffsetStep.R:
@@ -263,29 +262,29 @@ class SecondaryOffsetEntry(OffsetTable):
             self._typed.append(typed)
             self.entry_step, self.text = SecondaryOffsetStep(self.entry_step + 1), ""
         else:
-            self._save(SecondaryRow(self._answers[0], self._answers[1], new), [*self._typed, typed])
+            self._save(SecondaryOffsetRow(self._answers[0], self._answers[1], new), [*self._typed, typed])
 
     def _check_range(self, mm: float) -> None:
-        """Raise EntryError if a value is out of range."""
+        """Raise InvalidEntryError if a value is out of range."""
         low, high = (
             (0.0, MAX_NOSE_RADIUS_MM)
             if self.entry_step is SecondaryOffsetStep.R
             else (-SECONDARY_OFFSET_LIMIT_MM, SECONDARY_OFFSET_LIMIT_MM)
         )
         if not low <= mm <= high:
-            unit, name = self.value_mode.unit_mm, f"D{self.offset_number} {self.entry_step.name}"
-            figure = format_length(mm, self.value_mode.is_metric)
-            raise EntryError(
-                describe_range_error(name, figure, self.value_mode.name, low / unit, high / unit)
+            unit, name = self.unit_mode.unit_length_mm, f"D{self.offset_number} {self.entry_step.name}"
+            figure = format_length(mm, self.unit_mode.is_metric)
+            raise InvalidEntryError(
+                describe_range_error(name, figure, self.unit_mode.name, low / unit, high / unit)
             )
 
-    def _save(self, new: SecondaryRow, typed: list[str]) -> None:
-        if new == self.present_row:
+    def _save(self, new: SecondaryOffsetRow, typed: list[str]) -> None:
+        if new == self.stored_row:
             self.desk.say(tr(Message("D{number} NOT CHANGED", number=self.offset_number)))
             self.discard_entry()
             return
-        reason = ("MM " if self.value_mode.is_metric else "") + " ".join(filter(None, typed))
-        why = self.offset_questions.change_fields(self.kind, self.offset_number, new._asdict(), reason)
+        reason = ("MM " if self.unit_mode.is_metric else "") + " ".join(filter(None, typed))
+        why = self.confirmed_changes.change_fields(self.kind, self.offset_number, new._asdict(), reason)
         if why:
             self.desk.say(why)
         else:

@@ -15,7 +15,7 @@ from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.formats import format_length
 from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import tr
-from app.offsets.offset_values import UNKNOWN_VALUE, ValueMode, format_signed
+from app.offsets.offset_values import UNKNOWN_VALUE, UnitMode, format_signed_length
 from app.offsets.offsets_view import OffsetPage
 from app.offsets.secondary_offsets import SecondaryOffsetEntry
 from app.screen import page_table
@@ -24,7 +24,7 @@ from app.screen.panel import Panel, RedrawingAttribute
 from app.screen.screen_theme import ALIGN_RIGHT, ScreenTheme, ThemedPainter
 from core.executor.snapshot import Snapshot
 from core.message import join_messages
-from core.store.store_rows import SecondaryRow
+from core.store.store_rows import SecondaryOffsetRow
 
 ROWS_PER_COLUMN = 16
 ENLARGED_ROWS = 8  # Number of offsets in the enlarged view, half a column.
@@ -40,13 +40,13 @@ class SecondaryOffsetTable(Panel):
     first touch therefore enlarges eight offsets, and the second touch selects one of them.
     """
 
-    offsets: RedrawingAttribute[Mapping[int, SecondaryRow]] = RedrawingAttribute({})
+    offsets: RedrawingAttribute[Mapping[int, SecondaryOffsetRow]] = RedrawingAttribute({})
     first_enlarged_number = RedrawingAttribute(
         0
     )  # First number of the enlarged offsets; 0: all offsets are shown.
     _number = RedrawingAttribute(0)
     _marked: RedrawingAttribute[frozenset[int]] = RedrawingAttribute(frozenset())
-    _mode = RedrawingAttribute(ValueMode())
+    _mode = RedrawingAttribute(UnitMode())
     is_unreadable = RedrawingAttribute(False)  # True if offsets cannot be read.
 
     def __init__(self, theme: ScreenTheme, select_cell: Callable[[int], None], parent: QWidget) -> None:
@@ -55,10 +55,10 @@ class SecondaryOffsetTable(Panel):
 
     def show_offsets(
         self,
-        offsets: Mapping[int, SecondaryRow],
+        offsets: Mapping[int, SecondaryOffsetRow],
         number: int,
         changed_numbers: Collection[int],
-        value_mode: ValueMode,
+        value_mode: UnitMode,
     ) -> None:
         """Show the offsets in the given unit, and mark the edited and the last changed rows.
 
@@ -131,16 +131,16 @@ class SecondaryOffsetTable(Panel):
         offset = self.offsets.get(number)
         margin = QRectF(box.x(), box.y(), _NUMBER * box.width() - u, box.height())
         painter.draw_text_line(margin, str(number), 1.9 * size, "accent", at=ALIGN_RIGHT)
-        self._figures(painter, box, offset or SecondaryRow(), size, bold=here or offset is not None)
+        self._figures(painter, box, offset or SecondaryOffsetRow(), size, bold=here or offset is not None)
 
     def _figures(
-        self, painter: ThemedPainter, box: QRectF, offset: SecondaryRow, size: float, bold: bool
+        self, painter: ThemedPainter, box: QRectF, offset: SecondaryOffsetRow, size: float, bold: bool
     ) -> None:
         x, z, r = offset
         metric, wide = self._mode.is_metric, box.width()
         cells = (
-            ("X:", format_signed(x, metric), _NUMBER, _X),
-            ("Z:", format_signed(z, metric), _X, _Z),
+            ("X:", format_signed_length(x, metric), _NUMBER, _X),
+            ("Z:", format_signed_length(z, metric), _X, _Z),
             ("R:", format_length(r, metric), _Z, 1.0),
         )
         u = self.theme.unit_px
@@ -178,30 +178,30 @@ class SecondaryOffsetsPage(OffsetPage):
     NAME = page_table.SECCMP
     LABELS = ("MENU", "", "", "UNDO", "HISTORY", "EFFECT", "ALARMS", "TOOLS", "", "ZERO")
     model: SecondaryOffsetEntry
-    table_panel: SecondaryOffsetTable
+    content_panel: SecondaryOffsetTable
 
     def __init__(self, host: PageHost, parent: QWidget) -> None:
         super().__init__(host, parent, SecondaryOffsetEntry(host.desk))
-        self.table_panel = SecondaryOffsetTable(self.theme, self.model.select_offset, self)
+        self.content_panel = SecondaryOffsetTable(self.theme, self.model.select_offset, self)
 
     def handle_escape(self) -> bool:
         """Show all offsets again, or go back one step."""
-        if self.table_panel.first_enlarged_number:
-            self.table_panel.enlarge_rows(0)
+        if self.content_panel.first_enlarged_number:
+            self.content_panel.enlarge_rows(0)
             return True
         return super().handle_escape()
 
-    def try_leave(self) -> bool:
+    def try_leave_page(self) -> bool:
         """Show all offsets again, discard unfinished entries, and allow the page to close."""
-        self.table_panel.enlarge_rows(0)
-        return super().try_leave()
+        self.content_panel.enlarge_rows(0)
+        return super().try_leave_page()
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
         """Update the table from the model."""
         super().refresh(snapshot, status, loaded)
         model = self.model
         marked = {change.number for change in model.offset_history.last_changes}
-        self.table_panel.is_unreadable = model.offset_book.has_read_failed
-        self.table_panel.show_offsets(
-            model.offset_book.secondary_offsets, model.offset_number, marked, model.value_mode
+        self.content_panel.is_unreadable = model.offset_book.has_read_failed
+        self.content_panel.show_offsets(
+            model.offset_book.secondary_offsets, model.offset_number, marked, model.unit_mode
         )

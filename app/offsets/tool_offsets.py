@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.desk.arithmetic import EntryError
+from app.desk.arithmetic import InvalidEntryError
 from app.desk.desk import Desk
 from app.desk.pages.table_content import ROW_STEPS
 from app.desk.translation import tr
@@ -10,14 +10,14 @@ from app.offsets.change_rules import CORRECTION_FIELDS
 from app.offsets.offset_changes import describe_effective_time
 from app.offsets.offset_table import ProposedOffsets, ToolFieldEditor, ToolFieldTable
 from app.offsets.offset_values import (
-    describe_unset,
+    describe_missing_offset,
     format_value,
-    parse_value,
+    parse_field_value,
 )
 from core.executor.snapshot import Snapshot
 from core.message import Message
 from core.store.store_rows import OFFSET_NUMBERS, OffsetKind, replace_fields
-from core.tool_edges import EDGE_NUMBERS, format_edge_suffix, get_tool_number, make_row_number
+from core.tool_edges import EDGE_NUMBERS, format_edge_suffix, get_tool_number, make_edge_row_number
 
 TABLE_COLUMNS = ("x", "z", "nose_radius", "quadrant", "wear_x", "wear_z", "master", "remark")
 ROWS_PER_PAGE = 5  # Rows that fit on the smallest screen, each as high as a fingertip.
@@ -32,7 +32,7 @@ class ToolOffsetTable(ToolFieldTable):
     """
 
     kind = OffsetKind.TOOL
-    text_hint = "PRESS ENTER TO TYPE A REMARK"
+    open_text_hint = "PRESS ENTER TO TYPE A REMARK"
 
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)
@@ -46,7 +46,7 @@ class ToolOffsetTable(ToolFieldTable):
     # --- display -------------------------------------------------------------------------------------
 
     @property
-    def tool_numbers(self) -> tuple[int, ...]:
+    def row_numbers(self) -> tuple[int, ...]:
         """Return the row numbers of the table: each tool, followed by its additional cutting edges."""
         edges = sorted(
             {
@@ -64,7 +64,7 @@ class ToolOffsetTable(ToolFieldTable):
     @property
     def row_index(self) -> int:
         """Return the index of the cursor's row, counted from 0."""
-        rows = self.tool_numbers
+        rows = self.row_numbers
         return rows.index(self.tool_number if self.tool_number in rows else get_tool_number(self.tool_number))
 
     @property
@@ -77,13 +77,18 @@ class ToolOffsetTable(ToolFieldTable):
 
         X and Z are relative to the master tool if the operator has selected that display.
         """
-        book, mode, new = self.offset_book, self.value_mode, self.tool_fields.incomplete_tool
+        book, mode, new = self.offset_book, self.unit_mode, self.tool_fields.incomplete_tool
         row = book.tool_offsets.get(number)
         if row is None:
             known = number == new.tool_number and name in new.known_values
             return format_value(name, new.known_values[name], mode) if known else ""
-        master = book.tool_offsets.get(book.master_number)
-        if self.is_relative and master is not None and name in {"x", "z"} and number != book.master_number:
+        master = book.tool_offsets.get(book.master_tool_number)
+        if (
+            self.is_relative
+            and master is not None
+            and name in {"x", "z"}
+            and number != book.master_tool_number
+        ):
             at = "xz".index(name)
             return format_value(name, row.offset[at] - master.offset[at], mode)
         return format_value(name, getattr(row, name), mode)
@@ -97,7 +102,9 @@ class ToolOffsetTable(ToolFieldTable):
     def stored_value_text(self) -> str:
         """Return the saved value of the cell as text."""
         return self.format_cell(self.tool_number, self.name) or (
-            describe_unset(is_unreadable=self.offset_book.has_read_failed) if self.tool_row is None else ""
+            describe_missing_offset(is_unreadable=self.offset_book.has_read_failed)
+            if self.tool_row is None
+            else ""
         )
 
     @property
@@ -121,8 +128,8 @@ class ToolOffsetTable(ToolFieldTable):
         if self.tool_row is None or not self.text:
             return tools, secondary
         try:
-            value = parse_value(self.name, self.text, self.value_mode)
-        except EntryError:
+            value = parse_field_value(self.name, self.text, self.unit_mode)
+        except InvalidEntryError:
             return tools, secondary
         return {**tools, self.tool_number: replace_fields(self.tool_row, {self.name: value})}, secondary
 
@@ -143,10 +150,10 @@ class ToolOffsetTable(ToolFieldTable):
         This is called once a frame. An entry of X or Z is also discarded if the diameter mode changes. An
         entry of wear is not, because wear is always a diameter.
         """
-        before = self.value_mode
+        before = self.unit_mode
         super().update(snapshot)
         position = not self.is_correction or bool(self.tool_fields.incomplete_tool.tool_number)
-        changed = self.value_mode != before if position else self.value_mode.is_metric != before.is_metric
+        changed = self.unit_mode != before if position else self.unit_mode.is_metric != before.is_metric
         if changed and (self.text or self.tool_fields.incomplete_tool.tool_number):
             self.discard_entry()
             self.desk.say(tr("UNITS OR DIAMETER/RADIUS CHANGED. NOT SAVED. RE-ENTER VALUE"))
@@ -193,21 +200,21 @@ class ToolOffsetTable(ToolFieldTable):
             return tr("TYPE THE VALUE TO ADD, THEN PRESS F2")
         return ""
 
-    def find_relative_refusal(self) -> str:
+    def find_relative_display_refusal(self) -> str:
         """Return why X and Z relative to the master are not possible, or an empty string if they are."""
-        if not self.is_relative and not self.offset_book.master_number:
+        if not self.is_relative and not self.offset_book.master_tool_number:
             return tr("NO MASTER TOOL. PRESS ENTER IN MASTER COLUMN TO CHOOSE ONE")
         return ""
 
     def toggle_relative_display(self) -> None:
         """Handle F3: show X and Z relative to the master tool, or relative to home again."""
-        if why := self.find_relative_refusal():
+        if why := self.find_relative_display_refusal():
             self.desk.say(why)
             return
         self.is_relative = not self.is_relative
 
     def _step(self, down: int, right: int) -> None:
-        rows = self.tool_numbers
+        rows = self.row_numbers
         self._select_cell(rows[max(0, min(len(rows) - 1, self.row_index + down))], self.column_index + right)
 
     def add_cutting_edge(self) -> None:
@@ -217,9 +224,9 @@ class ToolOffsetTable(ToolFieldTable):
         """
         tool = get_tool_number(self.tool_number)
         free = (
-            make_row_number(tool, edge)
+            make_edge_row_number(tool, edge)
             for edge in EDGE_NUMBERS
-            if make_row_number(tool, edge) not in self.offset_book.tool_offsets
+            if make_edge_row_number(tool, edge) not in self.offset_book.tool_offsets
         )
         key = next(free, 0)
         if self.is_entry_unfinished():
@@ -259,7 +266,7 @@ class ToolOffsetTable(ToolFieldTable):
         """Handle Enter: save the entry, set the master tool, open a remark, or go to the next cell."""
         if self.name == "master":
             self.offset_history.show_refusal(
-                self.find_cell_refusal() or self.tool_fields.ask_master(self.tool_number)
+                self.find_cell_refusal() or self.tool_fields.ask_to_toggle_master(self.tool_number)
             )
         elif self.name == "remark" and not self.is_text_open:
             self._open()

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QWidget
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import mark_untranslated, tr
-from app.offsets.offset_values import describe_unset, make_field_heading, translate_field
+from app.offsets.offset_values import describe_missing_offset, make_field_heading, translate_field_name
 from app.offsets.offsets_view import OffsetPage
 from app.offsets.tool_offsets import TABLE_COLUMNS, ToolOffsetTable
 from app.offsets.tool_shapes import ToolShapeTable
@@ -57,7 +57,7 @@ class ToolOffsetPanel(RowPanel):
         model = self._model
         self._shown = (
             model.offset_book.tool_offsets,
-            (model.tool_number, model.column_index, model.is_relative, model.value_mode, model.new_edge),
+            (model.tool_number, model.column_index, model.is_relative, model.unit_mode, model.new_edge),
             dict(model.tool_fields.incomplete_tool.known_values),
             tuple(change.number for change in model.offset_history.last_changes),
         )
@@ -74,19 +74,19 @@ class ToolOffsetPanel(RowPanel):
         shows the master tool.
         """
         u, model = self.theme.unit_px, self._model
-        mode = model.value_mode
+        mode = model.unit_mode
         x = tr("X IS A DIAMETER") if mode.is_diameter else tr("X IS A RADIUS")
         title: str = join_messages(
             "  ·  ", (tr("TOOL OFFSETS"), tr("MM") if mode.is_metric else tr("INCH"), x)
         )
         if model.is_relative:
             title += "  ·  " + tr(
-                Message("X AND Z RELATIVE TO MASTER T{number}", number=model.offset_book.master_number)
+                Message("X AND Z RELATIVE TO MASTER T{number}", number=model.offset_book.master_tool_number)
             )
         self.frame(painter, title)
         room = self.inside().adjusted(-0.7 * u, -0.2 * u, 0.7 * u, 0.5 * u)
         body = room.adjusted(0, HEADING_HEIGHT * u, 0, 0)
-        count = len(model.tool_numbers)
+        count = len(model.row_numbers)
         model.page_rows = min(
             count,
             self.count_fitting_rows(body, self.theme.find_row_height(7.0, 9.0, is_touchable=True), count),
@@ -97,10 +97,10 @@ class ToolOffsetPanel(RowPanel):
         self._head(painter, head, columns)
         high = body.height() / model.page_rows
         for place, row in self.find_row_boxes(body, high):
-            self._row(painter, row, model.tool_numbers[place], columns)
+            self._row(painter, row, model.row_numbers[place], columns)
 
     def _head(self, painter: ThemedPainter, head: QRectF, columns: dict[str, tuple[float, float]]) -> None:
-        u, mode = self.theme.unit_px, self._model.value_mode
+        u, mode = self.theme.unit_px, self._model.unit_mode
         for name, (left, wide) in columns.items():
             cell = QRectF(left, head.y(), wide - 0.4 * u, head.height())
             self._heads[name] = make_field_heading(name, mode)
@@ -147,7 +147,7 @@ class ToolOffsetPanel(RowPanel):
             empty = QRectF(columns["x"][0] + u, row.y(), 14 * u, row.height())
             painter.draw_text_line(
                 empty,
-                describe_unset(is_unreadable=model.offset_book.has_read_failed),
+                describe_missing_offset(is_unreadable=model.offset_book.has_read_failed),
                 1.9 * self._find_scale(row),
                 "soft",
                 bold=False,
@@ -184,11 +184,11 @@ class ToolOffsetsPage(OffsetPage):
     NAME = page_table.TOOLS
     LABELS = ("MENU", "ADD", "MASTER", "UNDO", "HISTORY", "EFFECT", "ALARMS", "SHAPE", "SECCMP", "ZERO")
     model: ToolOffsetTable
-    table_panel: ToolOffsetPanel
+    content_panel: ToolOffsetPanel
 
     def __init__(self, host: PageHost, parent: QWidget) -> None:
         super().__init__(host, parent, ToolOffsetTable(host.desk))
-        self.table_panel = ToolOffsetPanel(self.theme, self.model, self)
+        self.content_panel = ToolOffsetPanel(self.theme, self.model, self)
 
     def find_key_refusals(self) -> dict[str, object]:
         """Return why each key is disabled, including F2 (add) and F3 (relative to master)."""
@@ -196,7 +196,7 @@ class ToolOffsetsPage(OffsetPage):
         return {
             **super().find_key_refusals(),
             "F2": model.find_add_refusal(),
-            "F3": model.find_relative_refusal(),
+            "F3": model.find_relative_display_refusal(),
         }
 
     def make_key_actions(self) -> KeyActions:
@@ -211,7 +211,7 @@ class ToolOffsetsPage(OffsetPage):
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
         """Update the table from the model."""
         super().refresh(snapshot, status, loaded)
-        self.table_panel.update_rows()
+        self.content_panel.update_rows()
 
 
 FIELD_ROWS = 6  # Fields in each of the two columns.
@@ -231,12 +231,12 @@ class ToolShapePanel(Panel):
         """Update the fields from the model."""
         model = self._model
         last = tuple(change.number for change in model.offset_history.last_changes)
-        self._shown = (model.tool_number, model.shape_row, model.tool_row, model.name, model.value_mode, last)
+        self._shown = (model.tool_number, model.shape_row, model.tool_row, model.name, model.unit_mode, last)
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the fields of the tool shape in two columns, and the drawing of the tool on the right."""
         u, model = self.theme.unit_px, self._model
-        unit = tr("MM") if model.value_mode.is_metric else tr("INCH")
+        unit = tr("MM") if model.unit_mode.is_metric else tr("INCH")
         title: str = join_messages(
             "  ·  ", (tr(Message("SHAPE OF T{number}", number=format_edge_suffix(model.tool_number))), unit)
         )
@@ -265,7 +265,7 @@ class ToolShapePanel(Panel):
         painter.fill_rect(cell, "here" if here else "key")
         head = cell.adjusted(0.8 * u, 0.3 * u, -0.8 * u, 0)
         head.setHeight(1.8 * u)
-        painter.draw_text_line(head, make_field_heading(name, model.value_mode), 1.5, "soft")
+        painter.draw_text_line(head, make_field_heading(name, model.unit_mode), 1.5, "soft")
         wrong = name in {
             "quadrant" if each.field_name == "tip" else each.field_name for each in model.shape_mistakes
         }
@@ -298,7 +298,8 @@ class ToolShapePanel(Panel):
             draw_tool_outline(painter, area.adjusted(0, 0, 0, -2.8 * u), outline)
             if outline.assumed_fields:
                 names = ", ".join(
-                    translate_field("quadrant" if name == "tip" else name) for name in outline.assumed_fields
+                    translate_field_name("quadrant" if name == "tip" else name)
+                    for name in outline.assumed_fields
                 )
                 text = tr(Message("ASSUMED: {names}", names=names))
                 painter.draw_text_line(words, text, 1.5, "soft", at=ALIGN_CENTER, bold=False, margin=1.0)
@@ -310,15 +311,15 @@ class ToolShapePage(OffsetPage):
     NAME = page_table.SHAPE
     LABELS = ("MENU", "", "NONE", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "SECCMP", "ZERO")
     model: ToolShapeTable
-    table_panel: ToolShapePanel
+    content_panel: ToolShapePanel
 
     def __init__(self, host: PageHost, parent: QWidget) -> None:
         super().__init__(host, parent, ToolShapeTable(host.desk))
-        self.table_panel = ToolShapePanel(self.theme, self.model, self)
+        self.content_panel = ToolShapePanel(self.theme, self.model, self)
 
     def find_key_refusals(self) -> dict[str, object]:
         """Return why each key is disabled, including F3 (delete the shape)."""
-        return {**super().find_key_refusals(), "F3": self.model.find_delete_refusal()}
+        return {**super().find_key_refusals(), "F3": self.model.find_deletion_refusal()}
 
     def make_key_actions(self) -> KeyActions:
         """Return the key actions, including F3 (delete the shape).
@@ -336,7 +337,7 @@ class ToolShapePage(OffsetPage):
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
         """Update the fields from the model."""
         super().refresh(snapshot, status, loaded)
-        self.table_panel.update_fields()
+        self.content_panel.update_fields()
 
     def handle_escape(self) -> bool:
         """Close the history, a question or an entry, or else open the tool table."""

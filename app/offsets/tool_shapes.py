@@ -2,30 +2,30 @@
 
 from __future__ import annotations
 
-from app.desk.arithmetic import EntryError
+from app.desk.arithmetic import InvalidEntryError
 from app.desk.desk import Desk
-from app.desk.stored_shapes import find_mistakes, make_tool_shape
+from app.desk.stored_shapes import find_shape_row_mistakes, make_tool_shape
 from app.desk.translation import tr
 from app.offsets.offset_table import ToolFieldEditor, ToolFieldTable
 from app.offsets.offset_values import (
     TOOL_FIELDS,
     format_value,
-    parse_value,
+    parse_field_value,
     translate_choice,
-    translate_field,
+    translate_field_name,
 )
 from core.executor.snapshot import Snapshot
 from core.message import Message
 from core.part.shape_rules import FIELDS_BY_KIND, ShapeMistake
-from core.part.tool_outline import ToolOutline, make_outline
+from core.part.tool_outline import ToolOutline, make_tool_outline
 from core.part.tool_shape import ToolKind
 from core.store.store_rows import (
     OFFSET_NUMBERS,
     FieldType,
     FieldValue,
     OffsetKind,
-    ShapeRow,
-    ToolRow,
+    ToolOffsetRow,
+    ToolShapeRow,
     replace_fields,
 )
 from core.tool_edges import format_edge_name, format_edge_suffix, get_tool_number
@@ -43,7 +43,7 @@ class ToolShapeTable(ToolFieldTable):
     """
 
     kind = OffsetKind.SHAPE
-    text_hint = "PRESS ENTER TO TYPE THE TEXT"
+    open_text_hint = "PRESS ENTER TO TYPE THE TEXT"
 
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)
@@ -52,7 +52,7 @@ class ToolShapeTable(ToolFieldTable):
     # --- display -------------------------------------------------------------------------------------
 
     @property
-    def shape_row(self) -> ShapeRow | None:
+    def shape_row(self) -> ToolShapeRow | None:
         """Return the shape of the selected tool, or None if the tool has no shape."""
         return self.offset_book.tool_shapes.get(self.tool_number)
 
@@ -69,31 +69,31 @@ class ToolShapeTable(ToolFieldTable):
         """Return the name of the field under the cursor."""
         return self.field_names[min(self.field_index, len(self.field_names) - 1)]
 
-    def read_value(self, name: str) -> FieldValue:
+    def read_field_value(self, name: str) -> FieldValue:
         """Return the saved value of a field.
 
         Nose radius and tip come from the tool's offset.
         """
-        if name in ToolRow._fields:
-            of_offset: FieldValue = getattr(self.tool_row or ToolRow(), name)
+        if name in ToolOffsetRow._fields:
+            of_offset: FieldValue = getattr(self.tool_row or ToolOffsetRow(), name)
             return of_offset
-        of_shape: FieldValue = getattr(self.shape_row or ShapeRow(), name)
+        of_shape: FieldValue = getattr(self.shape_row or ToolShapeRow(), name)
         return of_shape
 
     def format_field(self, name: str) -> str:
         """Return a field as text, or an empty string if the field is not specified."""
-        value = self.read_value(name)
+        value = self.read_field_value(name)
         stated = (
             bool(value)
             or TOOL_FIELDS[name].field_type is FieldType.BOOLEAN
             or (name == "quadrant" and self.tool_row)
         )
-        return format_value(name, value, self.value_mode) if stated else ""
+        return format_value(name, value, self.unit_mode) if stated else ""
 
     @property
     def shape_mistakes(self) -> tuple[ShapeMistake, ...]:
         """Return the mistakes in this shape."""
-        return () if self.shape_row is None else find_mistakes(self.shape_row, self.tool_row)
+        return () if self.shape_row is None else find_shape_row_mistakes(self.shape_row, self.tool_row)
 
     @property
     def tool_outline(self) -> ToolOutline | None:
@@ -101,7 +101,7 @@ class ToolShapeTable(ToolFieldTable):
         return (
             None
             if self.shape_row is None or self.shape_mistakes
-            else make_outline(make_tool_shape(self.shape_row, self.tool_row))
+            else make_tool_outline(make_tool_shape(self.shape_row, self.tool_row))
         )
 
     @property
@@ -131,7 +131,7 @@ class ToolShapeTable(ToolFieldTable):
         if self.field_choices:
             return tr("LEFT/RIGHT: CHANGE    ENTER: ACCEPT")
         if self.accepts_any_text:
-            return tr(self.text_hint)
+            return tr(self.open_text_hint)
         return tr("TYPE A NUMBER OR EXPRESSION   ENTER: SET   0: NOT SPECIFIED")
 
     @property
@@ -155,7 +155,7 @@ class ToolShapeTable(ToolFieldTable):
         if key in _CURSOR_MOVES:
             self.move_cursor(self.field_names.index(self.name) + _CURSOR_MOVES[key])
         elif key in _CHOICE_STEPS:
-            self.show_choice(_CHOICE_STEPS[key])
+            self.show_adjacent_choice(_CHOICE_STEPS[key])
         elif key in {"Home", "End"}:
             self.select_tool(OFFSET_NUMBERS[0] if key == "Home" else OFFSET_NUMBERS[-1])
         elif key in {"Page up", "Page down"}:
@@ -175,7 +175,7 @@ class ToolShapeTable(ToolFieldTable):
         if not again:
             self.move_cursor(index)
         elif self.field_choices:
-            self.show_choice(1)
+            self.show_adjacent_choice(1)
         elif self.accepts_any_text and not self.is_text_open:
             self.handle_enter()
 
@@ -189,7 +189,7 @@ class ToolShapeTable(ToolFieldTable):
         if not self.is_entry_unfinished():
             self.offset_book.at, self.field_index = max(OFFSET_NUMBERS[0], min(OFFSET_NUMBERS[-1], number)), 0
 
-    def show_choice(self, step: int) -> None:
+    def show_adjacent_choice(self, step: int) -> None:
         """Show the next or previous choice of the field.
 
         Enter saves the choice.
@@ -205,14 +205,14 @@ class ToolShapeTable(ToolFieldTable):
 
     def _find_choice(self) -> str:
         """Return the field's value as one of its choices, or an empty string if it has no value."""
-        value = self.read_value(self.name)
+        value = self.read_field_value(self.name)
         return ("yes" if value else "no") if isinstance(value, bool) else str(value)
 
     def handle_enter(self) -> None:
         """Handle Enter: save the entered value or choice, open a text, or go to the next field."""
         if self.text.strip() or self.is_text_open:
             self.save_field(
-                lambda: self._save_field(self.name, parse_value(self.name, self.text, self.value_mode))
+                lambda: self._save_field(self.name, parse_field_value(self.name, self.text, self.unit_mode))
             )
         elif self.accepts_any_text:
             self._open()
@@ -223,44 +223,44 @@ class ToolShapeTable(ToolFieldTable):
         if why := self.find_cell_refusal():
             self.desk.say(why)
         else:
-            self.is_text_open, self.text = True, str(self.read_value(self.name))
+            self.is_text_open, self.text = True, str(self.read_field_value(self.name))
 
     def _save_field(self, name: str, value: FieldValue) -> str:
         """Save a field.
 
-        Raise EntryError if the value is not valid for this field.
+        Raise InvalidEntryError if the value is not valid for this field.
         """
-        of_offset = name in ToolRow._fields
+        of_offset = name in ToolOffsetRow._fields
         if of_offset and self.tool_row is None:
             return ToolFieldEditor(self.offset_history).describe_unset_tool(self.tool_number)
-        if (self.shape_row is not None or of_offset) and value == self.read_value(name):
+        if (self.shape_row is not None or of_offset) and value == self.read_field_value(name):
             self.desk.say(tr(Message("T{number} NOT CHANGED", number=format_edge_suffix(self.tool_number))))
             return ""
         self._check_shape(name, value)
-        typed = f"{'MM ' if self.value_mode.is_metric else ''}{translate_field(name)} {self.text.strip()}"
-        return self.offset_questions.change_fields(
+        typed = f"{'MM ' if self.unit_mode.is_metric else ''}{translate_field_name(name)} {self.text.strip()}"
+        return self.confirmed_changes.change_fields(
             OffsetKind.TOOL if of_offset else OffsetKind.SHAPE, self.tool_number, {name: value}, typed
         )
 
     def _check_shape(self, name: str, value: FieldValue) -> None:
-        """Raise EntryError if the value is not valid for this field.
+        """Raise InvalidEntryError if the value is not valid for this field.
 
         Mistakes in other fields are only shown.
         """
-        tool, row = self.tool_row or ToolRow(), self.shape_row or ShapeRow()
-        if name in ToolRow._fields:
+        tool, row = self.tool_row or ToolOffsetRow(), self.shape_row or ToolShapeRow()
+        if name in ToolOffsetRow._fields:
             tool = replace_fields(tool, {name: value})
         else:
             row = replace_fields(row, {name: value})
         wrong = [
             each
-            for each in find_mistakes(row, tool)
+            for each in find_shape_row_mistakes(row, tool)
             if _OFFSET_FIELDS.get(each.field_name, each.field_name) == name
         ]
         if wrong:
-            raise EntryError(wrong[0].message)
+            raise InvalidEntryError(wrong[0].message)
 
-    def find_delete_refusal(self) -> str:
+    def find_deletion_refusal(self) -> str:
         """Return why the shape cannot be deleted now, or an empty string if it can."""
         if self.shape_row is None:
             return tr(
@@ -270,7 +270,7 @@ class ToolShapeTable(ToolFieldTable):
 
     def delete_shape(self) -> None:
         """Handle F3: delete the shape after the operator confirms."""
-        if why := self.find_delete_refusal():
+        if why := self.find_deletion_refusal():
             self.desk.say(why)
         else:
             number = self.tool_number

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from math import atan2, degrees, hypot, remainder
 
-from app.desk.arithmetic import EntryError, evaluate_expression
+from app.desk.arithmetic import InvalidEntryError, evaluate_expression
 from app.desk.desk import Desk
 from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
-from app.offsets.active_offsets import find_rotary_zeros
+from app.offsets.active_offsets import find_rotary_zero_positions
 from app.offsets.cell_table import CellTable
 from app.offsets.mill_touch import MillTouchCalculator
 from core.executor.snapshot import MachineState, Snapshot
@@ -40,7 +40,7 @@ class PresetTable(CellTable):
         absent = {
             name
             for name, axis in _ROTARY_AXES.items()
-            if axis not in MillTouchCalculator.find_for(self.desk).rotary_axis_names
+            if axis not in MillTouchCalculator.get_for_desk(self.desk).rotary_axis_names
         }
         return tuple(name for name in super().columns if name not in absent)
 
@@ -83,7 +83,7 @@ class PresetTable(CellTable):
         begun, self.first_edge_point = self.first_edge_point is not None, None
         return super().cancel_entry() or begun
 
-    def set_from_position(self) -> None:
+    def set_value_from_position(self) -> None:
         """Handle F2: set the selected field so that the position display shows the entered value, or 0.
 
         A basic rotation needs two points of an edge.
@@ -112,8 +112,8 @@ class PresetTable(CellTable):
             )
 
     def _tip(self) -> Vector | None:
-        tip = MillTouchCalculator.find_for(self.desk).find_tip_position(
-            find_rotary_zeros(self.selected_preset)
+        tip = MillTouchCalculator.get_for_desk(self.desk).find_tip_position(
+            find_rotary_zero_positions(self.selected_preset)
         )
         if isinstance(tip, str):
             self.desk.say(tip)
@@ -125,7 +125,10 @@ class PresetTable(CellTable):
 
         The workpiece zero remains at the same point of the part.
         """
-        at, reads = MillTouchCalculator.find_for(self.desk).find_angle(_ROTARY_AXES[self.name]), self._reads
+        at, reads = (
+            MillTouchCalculator.get_for_desk(self.desk).find_axis_angle(_ROTARY_AXES[self.name]),
+            self._reads,
+        )
         if isinstance(at, str):
             self.desk.say(at)
             return
@@ -140,9 +143,9 @@ class PresetTable(CellTable):
         row = self.selected_preset
         if self.stored_row is None:
             return {}
-        after = {**find_rotary_zeros(row), _ROTARY_AXES[self.name]: float(zero)}
-        spot = MillTouchCalculator.find_for(self.desk).find_moved_point(
-            (row.x, row.y, row.z), find_rotary_zeros(row), after
+        after = {**find_rotary_zero_positions(row), _ROTARY_AXES[self.name]: float(zero)}
+        spot = MillTouchCalculator.get_for_desk(self.desk).find_moved_point(
+            (row.x, row.y, row.z), find_rotary_zero_positions(row), after
         )
         return dict(zip("xyz", (round(at, 10) for at in spot), strict=True))
 
@@ -165,17 +168,17 @@ class PresetTable(CellTable):
     def _find_rotation(self, first: Vector, last: Vector, reads: float) -> float:
         """Return the basic rotation in degrees with which the edge is at ``reads`` degrees from X.
 
-        An edge has no direction, so half revolutions are ignored. Raise EntryError if the points are too
-        close.
+        An edge has no direction, so half revolutions are ignored. Raise InvalidEntryError if the points are
+        too close.
         """
         dx, dy = last[0] - first[0], last[1] - first[1]
         if hypot(dx, dy) < _MIN_EDGE_LENGTH_MM:
-            raise EntryError(tr("POINTS LESS THAN 1 MM APART. TOUCH FARTHER ALONG THE EDGE"))
+            raise InvalidEntryError(tr("POINTS LESS THAN 1 MM APART. TOUCH FARTHER ALONG THE EDGE"))
         return self.check_range(remainder(degrees(atan2(dy, dx)) - reads, 180.0))
 
-    def find_activate_refusal(self) -> str:
+    def find_activation_refusal(self) -> str:
         """Return why the selected preset cannot be activated now, or an empty string if it can."""
-        if why := self.find_refusal(self.desk.read_snapshot()):
+        if why := self.find_change_refusal(self.desk.read_snapshot()):
             return why
         if self.stored_row is None:
             return tr(
@@ -183,24 +186,26 @@ class PresetTable(CellTable):
             )
         return ""
 
-    def find_position_refusal(self) -> str:
+    def find_touch_off_refusal(self) -> str:
         """Return why the workpiece cannot be touched off now, or an empty string if it can."""
         if self.name in _ROTARY_AXES:
-            place: object = MillTouchCalculator.find_for(self.desk).find_angle(_ROTARY_AXES[self.name])
+            place: object = MillTouchCalculator.get_for_desk(self.desk).find_axis_angle(
+                _ROTARY_AXES[self.name]
+            )
         elif self.name in {"x", "y", "z", "rotation"}:
-            place = MillTouchCalculator.find_for(self.desk).find_tip_position(
-                find_rotary_zeros(self.selected_preset)
+            place = MillTouchCalculator.get_for_desk(self.desk).find_tip_position(
+                find_rotary_zero_positions(self.selected_preset)
             )
         else:
             place = tr("SELECT X, Y, Z, A ROTARY AXIS OR ROT. F2: TOUCH OFF")
-        return place if isinstance(place, str) else self.find_refusal(self.desk.read_snapshot())
+        return place if isinstance(place, str) else self.find_change_refusal(self.desk.read_snapshot())
 
     def activate_preset(self) -> None:
         """Handle F3: activate the selected preset.
 
         If it is already active, activate the preset of the machine file.
         """
-        if why := self.find_activate_refusal():
+        if why := self.find_activation_refusal():
             self.desk.say(why)
             return
         number = 0 if self.offset_book.active_preset == self.number else self.number
@@ -214,8 +219,8 @@ class ZeroOffsetTable(CellTable):
     kind = OffsetKind.ZERO
     page_key = "C"
     numbers = ZERO_CODES
-    clear_question = "PRESS Y TO CLEAR G54 TO G59, N TO KEEP THEM"
-    clear_reason = "all zero offsets cleared with the C key"
+    clear_table_question = "PRESS Y TO CLEAR G54 TO G59, N TO KEEP THEM"
+    clear_table_reason = "all zero offsets cleared with the C key"
 
     @property
     def title(self) -> str:
@@ -249,7 +254,7 @@ class ZeroOffsetTable(CellTable):
             "F2: set the current position to the typed value        C: clear G54 to G59        Esc: exit"
         )
 
-    def find_refusal(self, snapshot: Snapshot, *, is_correction: bool = False) -> str:
+    def find_change_refusal(self, snapshot: Snapshot, *, is_correction: bool = False) -> str:
         """Return why the zero offsets cannot be changed now, or an empty string if they can.
 
         Changes are allowed only between cycles.
@@ -259,20 +264,20 @@ class ZeroOffsetTable(CellTable):
             and not self.offset_book.lock_reason
         ):
             return tr("PROGRAM RUNNING. CHANGE G54 TO G59 ONLY BETWEEN CYCLES")
-        return super().find_refusal(snapshot, is_correction=is_correction)
+        return super().find_change_refusal(snapshot, is_correction=is_correction)
 
-    def find_position_refusal(self) -> str:
+    def find_touch_off_refusal(self) -> str:
         """Return why the machine position cannot be used now, or an empty string if it can."""
         snapshot, axis = self.desk.read_snapshot(), self.name.upper()
         if axis not in snapshot.axes:
             return tr(Message("THIS MACHINE HAS NO {axis} AXIS", axis=axis))
         if not snapshot.homed[snapshot.axes.index(axis)]:
             return tr(Message("{axis} IS NOT HOMED. HOME IT FIRST", axis=axis))
-        return self.find_refusal(snapshot)
+        return self.find_change_refusal(snapshot)
 
-    def set_from_position(self) -> None:
+    def set_value_from_position(self) -> None:
         """Handle F2: set the offset so that the position display shows the entered value, or 0."""
-        if why := self.find_position_refusal():
+        if why := self.find_touch_off_refusal():
             self.desk.say(why)
             return
         snapshot = self.desk.read_snapshot()

@@ -12,14 +12,14 @@ from enum import StrEnum
 from functools import partial
 from pathlib import Path
 
-from app.desk.arithmetic import EXPRESSION_CHARACTERS, EntryError
+from app.desk.arithmetic import EXPRESSION_CHARACTERS, InvalidEntryError
 from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
-from app.desk.pages.table_content import ROW_STEPS, FunctionKey, edit_text, following, refused
+from app.desk.pages.table_content import ROW_STEPS, FunctionKey, apply_edit_key, following, refused
 from app.desk.persistence import Persistence
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.prompt_line import ACTIVE_STATES
-from app.desk.stored_part import EMPTY_STORED_PART, StoredPart, load_stored_part, make_stock_absolute
+from app.desk.stored_part import EMPTY_STORED_PART, StoredPart, load_stored_part, make_stock_path_absolute
 from app.desk.translation import tr
 from app.part.stock_entry import StockEntry, StockField, StockKind
 from core.access.access_table import ProtectedChange
@@ -31,7 +31,7 @@ from core.store.store_errors import StoreError
 _CHOICE_STEPS = {"Left": -1, "Right": 1}
 
 
-class PartSection(StrEnum):
+class PartPageTable(StrEnum):
     """Tables of the PART page: findings and stock."""
 
     FINDINGS = "findings"
@@ -39,7 +39,7 @@ class PartSection(StrEnum):
 
 
 @dataclass(slots=True)
-class PartModel:
+class PartPageModel:
     """Model of the PART page.
 
     ``check_codes`` are the checks that can be turned off. ``machine_disabled_checks`` are the checks that
@@ -54,8 +54,8 @@ class PartModel:
     has_workholding: bool = (
         False  # whether the machine file has a chuck or collet to which a stick-out applies
     )
-    shown_section: PartSection = PartSection.FINDINGS
-    selected_rows: dict[PartSection, int] = field(default_factory=dict)
+    shown_table: PartPageTable = PartPageTable.FINDINGS
+    selected_rows: dict[PartPageTable, int] = field(default_factory=dict)
     entry_text: str = ""  # typed text
     check_to_disable: str = ""  # check whose reason is being typed
     is_entering_file_name: bool = False  # a file name is being typed: every character is part of the name
@@ -93,32 +93,32 @@ class PartModel:
         return self.loaded_program.diagnostics
 
     @property
-    def selected_index(self) -> int:
+    def selected_row_index(self) -> int:
         """Return the index of the selected row.
 
         If no row has been selected, return the index of the most important finding.
         """
-        first = _find_most_important(self.findings) if self.shown_section is PartSection.FINDINGS else 0
-        return max(0, min(self.selected_rows.get(self.shown_section, first), self._count - 1))
+        first = _find_most_important(self.findings) if self.shown_table is PartPageTable.FINDINGS else 0
+        return max(0, min(self.selected_rows.get(self.shown_table, first), self._count - 1))
 
     @property
     def _count(self) -> int:
         return (
-            len(self.findings) if self.shown_section is PartSection.FINDINGS else len(self.stock_entry.fields)
+            len(self.findings) if self.shown_table is PartPageTable.FINDINGS else len(self.stock_entry.fields)
         )
 
     @property
     def selected_finding(self) -> Diagnostic | None:
         """Return the selected finding, or None if no finding is selected."""
-        if self.shown_section is not PartSection.FINDINGS or not self.findings:
+        if self.shown_table is not PartPageTable.FINDINGS or not self.findings:
             return None
-        return self.findings[self.selected_index]
+        return self.findings[self.selected_row_index]
 
     @property
     def selected_field(self) -> StockField:
         """Return the selected field of the stock."""
         return self.stock_entry.fields[
-            min(self.selected_rows.get(PartSection.STOCK, 0), len(self.stock_entry.fields) - 1)
+            min(self.selected_rows.get(PartPageTable.STOCK, 0), len(self.stock_entry.fields) - 1)
         ]
 
     def poll(self) -> None:
@@ -147,10 +147,10 @@ class PartModel:
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys that are available now."""
-        if self.shown_section is PartSection.STOCK:
+        if self.shown_table is PartPageTable.STOCK:
             return {
-                "F2": FunctionKey("FINDINGS", self.toggle_section),
-                "F4": FunctionKey("KIND", self.select_next_kind),
+                "F2": FunctionKey("FINDINGS", self.toggle_table),
+                "F4": FunctionKey("KIND", self.select_next_stock_kind),
                 "F6": FunctionKey("DELETE", self.delete_stock),
             }
         found = self.selected_finding
@@ -158,17 +158,17 @@ class PartModel:
         silenced = FunctionKey(
             word, self.toggle_check, barred=bool(self._find_silence_refusal() or self._find_lock_reason())
         )
-        return {"F2": FunctionKey("STOCK", self.toggle_section), "F4": silenced}
+        return {"F2": FunctionKey("STOCK", self.toggle_table), "F4": silenced}
 
-    def toggle_section(self) -> None:
+    def toggle_table(self) -> None:
         """Switch between the tables of findings and stock."""
         self.cancel_entry()
         self.desk.clear_prompt_line()
-        self.shown_section = following(PartSection, self.shown_section)
+        self.shown_table = following(PartPageTable, self.shown_table)
 
-    def show_stock(self) -> None:
+    def show_stock_table(self) -> None:
         """Show the table of the stock."""
-        self.shown_section = PartSection.STOCK
+        self.shown_table = PartPageTable.STOCK
 
     @property
     def is_entering_text(self) -> bool:
@@ -179,7 +179,7 @@ class PartModel:
         """Return whether a character is part of an entry."""
         if self.is_entering_text:
             return len(key) == 1 and key.isprintable()
-        return self.shown_section is PartSection.STOCK and self._figures and key in EXPRESSION_CHARACTERS
+        return self.shown_table is PartPageTable.STOCK and self._figures and key in EXPRESSION_CHARACTERS
 
     @property
     def _figures(self) -> bool:
@@ -193,15 +193,15 @@ class PartModel:
         if key == "Enter":
             self._enter()
         elif self.accepts_key(key) or (key in {"Back", "Delete"} and self.has_entry):
-            self.entry_text = edit_text(self.entry_text, key, 200)
+            self.entry_text = apply_edit_key(self.entry_text, key, 200)
         elif (
             key in _CHOICE_STEPS
-            and self.shown_section is PartSection.STOCK
+            and self.shown_table is PartPageTable.STOCK
             and self.selected_field is StockField.KIND
         ):
-            self.select_next_kind(_CHOICE_STEPS[key])
+            self.select_next_stock_kind(_CHOICE_STEPS[key])
         elif key in ROW_STEPS and not self.is_entering_text:
-            self.select_row(self.selected_index + ROW_STEPS[key])
+            self.select_row(self.selected_row_index + ROW_STEPS[key])
         else:
             return False
         return True
@@ -209,23 +209,23 @@ class PartModel:
     @property
     def has_entry(self) -> bool:
         """Return whether a reason, a file name or a value of the stock can be entered now."""
-        return self.is_entering_text or (self.shown_section is PartSection.STOCK and self._figures)
+        return self.is_entering_text or (self.shown_table is PartPageTable.STOCK and self._figures)
 
     def select_row(self, row: int) -> None:
         """Select a row, and show the location of its finding."""
         self.cancel_entry()
         self.desk.clear_prompt_line()
-        self.selected_rows[self.shown_section] = max(0, min(row, self._count - 1))
+        self.selected_rows[self.shown_table] = max(0, min(row, self._count - 1))
         found = self.selected_finding
         if found is not None:
             self.show_location(found)
 
-    def touch_row(self, row: int) -> None:
+    def handle_row_touch(self, row: int) -> None:
         """Select the touched row.
 
         A second touch changes the kind of stock or opens the file name entry.
         """
-        if row != self.selected_index or self.shown_section is PartSection.FINDINGS:
+        if row != self.selected_row_index or self.shown_table is PartPageTable.FINDINGS:
             self.select_row(row)
         elif self.selected_field in {StockField.KIND, StockField.FILE} and not self.is_entering_file_name:
             self._enter()
@@ -233,11 +233,11 @@ class PartModel:
     def _enter(self) -> None:
         if self.check_to_disable:
             self._silence(self.check_to_disable, self.entry_text.strip())
-        elif self.shown_section is PartSection.FINDINGS:
+        elif self.shown_table is PartPageTable.FINDINGS:
             if self.selected_finding is not None:
                 self.show_location(self.selected_finding)
         elif self.selected_field is StockField.KIND:
-            self.select_next_kind()
+            self.select_next_stock_kind()
         elif self.selected_field is StockField.FILE and not self.is_entering_file_name:
             self.is_entering_file_name = not self._is_refused()
         else:
@@ -270,7 +270,7 @@ class PartModel:
     def on_close(self) -> None:
         """Cancel the entry and reset the selection when the page closes."""
         self.cancel_entry()
-        self.shown_section = PartSection.FINDINGS
+        self.shown_table = PartPageTable.FINDINGS
         self.selected_rows.clear()
 
     def prompt_text(self) -> str:
@@ -279,7 +279,7 @@ class PartModel:
             return tr("TYPE THE REASON   ENTER: TURN CHECK OFF   ESC: LEAVE IT ON")
         if self.is_entering_file_name:
             return tr("TYPE THE FILE NAME   ENTER: ACCEPT   ESC: CANCEL")
-        if self.shown_section is PartSection.FINDINGS:
+        if self.shown_table is PartPageTable.FINDINGS:
             if self.make_function_keys()["F4"].barred:
                 return tr("UP/DOWN: SHOW WHERE EACH FINDING IS   F2: STOCK")
             return tr("UP/DOWN: SHOW EACH FINDING   F2: STOCK   F4: TURN CHECK OFF")
@@ -307,7 +307,7 @@ class PartModel:
             return tr("THE PROGRAM IS BEING PROVED: WAIT A MOMENT")
         return ""
 
-    def select_next_kind(self, steps: int = 1) -> None:
+    def select_next_stock_kind(self, steps: int = 1) -> None:
         """Select the next kind of stock.
 
         An incomplete stock takes effect only when its missing value is entered.
@@ -319,7 +319,7 @@ class PartModel:
         kinds = list(StockKind)
         kind = kinds[(kinds.index(self.stock_entry.kind) + steps) % len(kinds)]
         self._store_entry(replace(self.stock_entry, kind=kind, file=""))
-        self.selected_rows[PartSection.STOCK] = 0
+        self.selected_rows[PartPageTable.STOCK] = 0
 
     def delete_stock(self) -> None:
         """Delete the stock and the stick-out that are stored for the program."""
@@ -341,7 +341,7 @@ class PartModel:
                 entry = replace(self.stock_entry, file=self._find_file_path(self.entry_text.strip()))
             else:
                 entry = self.stock_entry.typed(self.selected_field, self.entry_text, self.is_metric)
-        except EntryError as error:
+        except InvalidEntryError as error:
             self.entry_text = refused(self.entry_text)
             self.desk.show_refusal(str(error))
             return
@@ -352,7 +352,7 @@ class PartModel:
     def _find_file_path(self, name: str) -> str:
         """Return the path of a file in the program's folder or in one of the program folders.
 
-        Raise EntryError if the file does not exist.
+        Raise InvalidEntryError if the file does not exist.
         """
         program_folder = self.loaded_program.path.parent if self.loaded_program.path is not None else Path()
         there = program_folder / Path(name).expanduser()
@@ -360,7 +360,7 @@ class PartModel:
             return str(there)
         path = self.desk.program_choice.program_folders.find_path(name) if name else None
         if path is None:
-            raise EntryError(
+            raise InvalidEntryError(
                 tr(Message("file {name} was not found in the program's folder", name=name or "–"))
             )
         return str(path)
@@ -371,7 +371,7 @@ class PartModel:
         if entry.missing_field is not None:
             return
         try:
-            stock = make_stock_absolute(entry.words)
+            stock = make_stock_path_absolute(entry.words)
         except StockError as error:
             self.desk.show_refusal(str(error))
             return
@@ -444,13 +444,13 @@ class PartModel:
             silenced=silenced,
         )
 
-        def done(_none: None) -> None:
+        def report_saved(_none: None) -> None:
             self.persistence.log_change(change_text)
             self._is_kept(name, on_done)
 
         self.worker.enqueue_work(
-            partial(self.persistence.save_settings, stored.make_settings(name)),
-            done,
+            partial(self.persistence.save_settings, stored.make_stored_settings(name)),
+            report_saved,
             lambda why: self.desk.say(tr(Message("NOT SAVED: {why}", why=why))),
         )
 
@@ -463,7 +463,7 @@ class PartModel:
         if self.desk.read_snapshot().state in ACTIVE_STATES:
             self.desk.renewal.is_requested = True
         else:
-            self.desk.program_loader.start_loading(loaded.path, loaded.has_block_delete)
+            self.desk.program_loader.start_loading(loaded.path, loaded.is_block_delete_on)
 
 
 def _find_most_important(found: tuple[Diagnostic, ...]) -> int:

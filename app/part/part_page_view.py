@@ -15,7 +15,7 @@ from app.desk.pages.page_entry import find_editor_refusal
 from app.desk.pages.table_content import FunctionKey
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
-from app.part.part_model import PartModel, PartSection
+from app.part.part_model import PartPageModel, PartPageTable
 from app.part.part_tables import make_table
 from app.path.part_player import make_part_player
 from app.path.path_view import PathView
@@ -40,11 +40,11 @@ class PartPage(ListPage):
     """The PART page, which displays its model and passes key presses to it."""
 
     NAME = page_table.PART
-    model: PartModel
+    model: PartPageModel
 
-    def __init__(self, host: PageHost, model: PartModel, parent: QWidget) -> None:
+    def __init__(self, host: PageHost, model: PartPageModel, parent: QWidget) -> None:
         super().__init__(host, model, parent)
-        self.table_panel = TablePanel(self.theme, model.touch_row, self)
+        self.table_panel = TablePanel(self.theme, model.handle_row_touch, self)
         self.path_view = PartPathView(self.theme, self, part_player=make_part_player(host.desk))
         self.number_pad = NumberPad(self.theme, self.handle_touched_key, page_key=None, parent=self)
         self.letter_pad = LetterPad(self.theme, self.handle_touched_key, self)
@@ -111,7 +111,7 @@ class PartPage(ListPage):
         self.table_panel.show_table(sheet)
         self._show_part(loaded)
         has_pad = (
-            model.shown_section is PartSection.STOCK and model.accepts_key("1") and not model.is_entering_text
+            model.shown_table is PartPageTable.STOCK and model.accepts_key("1") and not model.is_entering_text
         )
         if (has_pad, model.is_entering_text) != (
             not self.number_pad.isHidden(),
@@ -126,13 +126,13 @@ class PartPage(ListPage):
             self._loaded = loaded
             picture = loaded.picture
             self.path_view.show_picture(
-                None if picture is not None and picture.scene is not None else picture
+                None if picture is not None and picture.mill_scene is not None else picture
             )
             self.path_view.show_part()
             first = self.model.selected_finding
             if first is not None and loaded.picture is not None and first is not self._shown:
                 self._show(first)
-        self.path_view.draw_slice()
+        self.path_view.continue_drawing()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Arrange the table, the part and the pads."""

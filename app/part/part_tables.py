@@ -6,27 +6,31 @@ import textwrap
 
 from app.desk.pages.table_content import TableContent, TableRow
 from app.desk.status.formats import format_length
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.desk.translation import tr
-from app.part.part_model import PartModel, PartSection
+from app.part.part_model import PartPageModel, PartPageTable
 from app.part.stock_entry import StockField
 from core.language.diagnostics import Diagnostic, Severity
 from core.message import Message, join_messages
 from core.part.stock import Stock
 
 NOTE_WIDTH_CHARS = 74  # characters of a note
-_SEVERITY_TONES = {Severity.ERROR: Tone.ALARM, Severity.WARNING: Tone.PAUSE, Severity.NOTE: Tone.OFF}
+_SEVERITY_TONES = {
+    Severity.ERROR: StatusTone.ALARM,
+    Severity.WARNING: StatusTone.PAUSE,
+    Severity.NOTE: StatusTone.OFF,
+}
 
 
-def make_table(model: PartModel) -> TableContent:
+def make_table(model: PartPageModel) -> TableContent:
     """Return the table that the page shows now."""
-    return _findings_table(model) if model.shown_section is PartSection.FINDINGS else _stock_table(model)
+    return _findings_table(model) if model.shown_table is PartPageTable.FINDINGS else _stock_table(model)
 
 
 # --- findings ------------------------------------------------------------------------------------
 
 
-def _findings_table(page: PartModel) -> TableContent:
+def _findings_table(page: PartPageModel) -> TableContent:
     found = page.findings
     rows = tuple(_finding_row(each) for each in found)
     title = tr(Message("FINDINGS  ·  {name}", name=page.loaded_program.name or tr("NO PROGRAM")))
@@ -41,15 +45,15 @@ def _findings_table(page: PartModel) -> TableContent:
         ("LINE", "CHECK", "DESCRIPTION"),
         (0.12, 0.34, 0.54),
         rows,
-        page.selected_index if rows else -1,
+        page.selected_row_index if rows else -1,
         question,
         page.entry_text,
         notes,
-        number_columns=frozenset({0}),
+        numeric_columns=frozenset({0}),
     )
 
 
-def _notes(page: PartModel) -> tuple[str, ...]:
+def _notes(page: PartPageModel) -> tuple[str, ...]:
     found = page.selected_finding
     if found is None:
         return (_nothing(page),)
@@ -57,7 +61,7 @@ def _notes(page: PartModel) -> tuple[str, ...]:
     return (*note_lines[:5], _at(page, found))
 
 
-def _nothing(page: PartModel) -> str:
+def _nothing(page: PartPageModel) -> str:
     loaded = page.loaded_program
     if loaded.is_busy or loaded.proof is None:
         return tr("NOT PROVED YET")
@@ -68,7 +72,7 @@ def _nothing(page: PartModel) -> str:
     return tr("NO FINDINGS")
 
 
-def _at(page: PartModel, found: Diagnostic) -> str:
+def _at(page: PartPageModel, found: Diagnostic) -> str:
     if found.downgrade_reason:
         of_machine = found.check_name in page.machine_disabled_checks
         return tr("TURNED OFF IN THE MACHINE FILE") if of_machine else tr("F4: UNDO")
@@ -80,7 +84,7 @@ def _at(page: PartModel, found: Diagnostic) -> str:
 # --- stock ---------------------------------------------------------------------------------------
 
 
-def _stock_table(page: PartModel) -> TableContent:
+def _stock_table(page: PartPageModel) -> TableContent:
     entry, unit = page.stock_entry, tr("MM") if page.is_metric else tr("INCH")
     rows = tuple(
         TableRow((_word(name), _said(page, name), _format_assumed(page, name))) for name in entry.fields
@@ -93,21 +97,21 @@ def _stock_table(page: PartModel) -> TableContent:
         ("", "SPECIFIED", "ASSUMED"),
         (0.34, 0.33, 0.33),
         rows,
-        page.selected_index,
+        page.selected_row_index,
         _question(page),
         page.entry_text,
         _stock_notes(page),
-        raw_columns=frozenset({1}),
-        number_columns=frozenset({1, 2}),
+        untranslated_columns=frozenset({1}),
+        numeric_columns=frozenset({1, 2}),
     )
 
 
-def _said(page: PartModel, name: StockField) -> str:
+def _said(page: PartPageModel, name: StockField) -> str:
     cell = page.stock_entry.format_field(name, page.is_metric)
     return tr(cell) if name is StockField.KIND and cell else cell or "–"
 
 
-def _format_assumed(page: PartModel, name: StockField) -> str:
+def _format_assumed(page: PartPageModel, name: StockField) -> str:
     """Return, as text, the value that is assumed if the operator specifies none."""
     if name is StockField.STICK_OUT:
         return format_length(page.assumed_stick_out_mm, page.is_metric) if page.assumed_stick_out_mm else ""
@@ -118,13 +122,13 @@ def _format_assumed(page: PartModel, name: StockField) -> str:
     return _format_stock_value(stock, name, page.is_metric)
 
 
-def _question(page: PartModel) -> str:
+def _question(page: PartPageModel) -> str:
     if not page.program_name or page.selected_field is StockField.KIND:
         return ""
     return f"{_word(page.selected_field)}?"
 
 
-def _stock_notes(page: PartModel) -> tuple[str, ...]:
+def _stock_notes(page: PartPageModel) -> tuple[str, ...]:
     lacks = page.stock_entry.missing_field
     if lacks is not None:
         return (tr(Message("STOCK DATA INCOMPLETE: ENTER {field}", field=_word(lacks))),)

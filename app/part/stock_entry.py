@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
-from app.desk.arithmetic import EntryError, evaluate_expression
+from app.desk.arithmetic import InvalidEntryError, evaluate_expression
 from app.desk.status.formats import MM_PER_INCH, format_length
 from app.desk.stored_part import StoredPart
-from core.part.stock_spec import StockError, StockSpec, parse_specification
+from core.part.stock_spec import StockError, StockSpec, parse_stock_specification
 
 _DECIMALS = 6
 
@@ -84,7 +84,7 @@ class StockEntry:
         """
         out = stored.stick_out_mm or 0.0
         try:
-            spec = parse_specification(stored.stock_text) if stored.stock_text else StockSpec("")
+            spec = parse_stock_specification(stored.stock_text) if stored.stock_text else StockSpec("")
         except StockError:
             return cls(stick_out=out)
         kind = StockKind(stored.stock_text.partition(":")[0]) if stored.stock_text else StockKind.UNSPECIFIED
@@ -108,18 +108,18 @@ class StockEntry:
     def typed(self, field: StockField, text: str, is_metric: bool) -> StockEntry:
         """Return a copy of the entry with a typed length.
 
-        The length is in mm if ``is_metric`` is set, and otherwise in inches. Raise EntryError if the length
-        is not valid for the field.
+        The length is in mm if ``is_metric`` is set, and otherwise in inches. Raise InvalidEntryError if the
+        length is not valid for the field.
         """
         value = evaluate_expression(text) * (1.0 if is_metric else MM_PER_INCH)
         if value < 0.0:
-            raise EntryError("a stock length cannot be negative; enter 0 to clear the length")
+            raise InvalidEntryError("a stock length cannot be negative; enter 0 to clear the length")
         low, high = _STICK_LIMITS_MM
         if field is StockField.STICK_OUT and not low <= value <= high:
-            raise EntryError("the stick-out must be more than 0 and at most 40 in")
+            raise InvalidEntryError("the stick-out must be more than 0 and at most 40 in")
         changed = replace(self, **{field.value: round(value, _DECIMALS)})  # type: ignore[arg-type]
         if changed.kind is StockKind.TUBE and changed.diameter and changed.bore >= changed.diameter:
-            raise EntryError("the bore of a tube must be smaller than its diameter")
+            raise InvalidEntryError("the bore of a tube must be smaller than its diameter")
         return changed
 
     @property
@@ -148,7 +148,7 @@ class StockEntry:
             sizes = [_format_length(each) for each in (*round_ones, *([self.length] if self.length else []))]
         allowance = f"+{_format_length(self.allowance)}" if self.allowance else ""
         text = f"{self.kind}:{':'.join(sizes)}{allowance}"
-        parse_specification(text)
+        parse_stock_specification(text)
         return text
 
 

@@ -13,13 +13,13 @@ import numpy as np
 
 from app.desk.status import formats
 from app.desk.translation import tr
-from app.path.polyline import SAME_POINT_MM, Bounds, FloatArray, Polyline, Stroke
+from app.path.polyline import SAME_POINT_MM, Bounds, FloatArray, Polyline, StrokeKind
 from core.message import Message
 
 # --- points -------------------------------------------------------------------------------------------
 
 
-class PointKind(IntEnum):
+class SnapPointKind(IntEnum):
     """The kinds of snap point, in order of priority where several points coincide."""
 
     END = 0
@@ -33,16 +33,16 @@ class SnapPoint(NamedTuple):
 
     z: float
     x: float
-    kind: PointKind = PointKind.FREE
+    kind: SnapPointKind = SnapPointKind.FREE
 
 
-def describe_point_kind(kind: PointKind) -> str:
+def describe_snap_point_kind(kind: SnapPointKind) -> str:
     """Return the display text for the kind of point under the cursor."""
     return {
-        PointKind.END: tr("END"),
-        PointKind.CENTER: tr("CENTER"),
-        PointKind.INTERSECTION: tr("INTERSECTION"),
-        PointKind.FREE: tr("FREE"),
+        SnapPointKind.END: tr("END"),
+        SnapPointKind.CENTER: tr("CENTER"),
+        SnapPointKind.INTERSECTION: tr("INTERSECTION"),
+        SnapPointKind.FREE: tr("FREE"),
     }[kind]
 
 
@@ -75,9 +75,9 @@ class SnapPoints:
         The area is given as minimum z, maximum z, minimum x and maximum x.
         """
         if bounds != self._box:
-            self._box, self._crossings = bounds, find_crossings(self._polyline, bounds)
+            self._box, self._crossings = bounds, find_intersections(self._polyline, bounds)
 
-    def find_nearest(self, z: float, x: float) -> SnapPoint | None:
+    def find_nearest_point(self, z: float, x: float) -> SnapPoint | None:
         """Return the snap point nearest to a position, or None if the path has no snap points."""
         best: tuple[float, SnapPoint] | None = None
         for kind, table in self._tables():
@@ -88,7 +88,7 @@ class SnapPoints:
                     best = float(off[at]), SnapPoint(float(table[at, 0]), float(table[at, 1]), kind)
         return best[1] if best else None
 
-    def find_in_direction(self, z: float, x: float, direction: tuple[int, int]) -> SnapPoint | None:
+    def find_point_in_direction(self, z: float, x: float, direction: tuple[int, int]) -> SnapPoint | None:
         """Return the next snap point in a direction, or None if no point is in that direction.
 
         The direction (1, 0) is Z+, and (0, 1) is X+. Points close to the line in this direction are
@@ -110,7 +110,7 @@ class SnapPoints:
                     best = float(cost[at]), SnapPoint(float(table[there, 0]), float(table[there, 1]), kind)
         return best[1] if best else None
 
-    def find_next_along_path(self, z: float, x: float, steps: int) -> SnapPoint | None:
+    def find_next_path_point(self, z: float, x: float, steps: int) -> SnapPoint | None:
         """Return the end point that is ``steps`` end points further along the path.
 
         After the last end point, the search continues with the first. Return None if the path has no
@@ -124,31 +124,31 @@ class SnapPoints:
             at = (at + steps) % len(ends)
             if abs(ends[at, 0] - z) > MIN_POINT_DISTANCE or abs(ends[at, 1] - x) > MIN_POINT_DISTANCE:
                 break
-        return SnapPoint(float(ends[at, 0]), float(ends[at, 1]), PointKind.END)
+        return SnapPoint(float(ends[at, 0]), float(ends[at, 1]), SnapPointKind.END)
 
-    def _tables(self) -> tuple[tuple[PointKind, FloatArray], ...]:
+    def _tables(self) -> tuple[tuple[SnapPointKind, FloatArray], ...]:
         return (
-            (PointKind.END, self._ends),
-            (PointKind.CENTER, self._polyline.arc_centers),
-            (PointKind.INTERSECTION, self._crossings),
+            (SnapPointKind.END, self._ends),
+            (SnapPointKind.CENTER, self._polyline.arc_centers),
+            (SnapPointKind.INTERSECTION, self._crossings),
         )
 
 
 def _find_end_points(polyline: Polyline) -> FloatArray:
     """Return the block ends and the points after jumps, in path order, as an array of shape (n, 2)."""
-    is_end_point = polyline.stroke == Stroke.JUMP
+    is_end_point = polyline.stroke == StrokeKind.JUMP
     is_end_point[polyline.first[1:][np.diff(polyline.first) > 0] - 1] = True
     index = np.flatnonzero(is_end_point)
     return np.column_stack((polyline.z[index], polyline.x[index]))
 
 
-def find_crossings(polyline: Polyline, box: Bounds) -> FloatArray:
+def find_intersections(polyline: Polyline, box: Bounds) -> FloatArray:
     """Return the intersections of the path's chords within a box, as an array of shape (n, 2).
 
     The result is empty if more than ``MAX_CROSSING_CHORDS`` chords are in the box.
     """
     z0, x0, z1, x1 = polyline.z[:-1], polyline.x[:-1], polyline.z[1:], polyline.x[1:]
-    seen = polyline.stroke[1:] != Stroke.JUMP
+    seen = polyline.stroke[1:] != StrokeKind.JUMP
     seen &= (np.maximum(z0, z1) >= box[0]) & (np.minimum(z0, z1) <= box[1])
     seen &= (np.maximum(x0, x1) >= box[2]) & (np.minimum(x0, x1) <= box[3])
     index = np.flatnonzero(seen)
@@ -172,7 +172,7 @@ def find_nearest_chord(polyline: Polyline, z: float, x: float, max_distance_mm: 
     millimeters.
     """
     z0, x0, z1, x1 = polyline.z[:-1], polyline.x[:-1], polyline.z[1:], polyline.x[1:]
-    near = polyline.stroke[1:] != Stroke.JUMP
+    near = polyline.stroke[1:] != StrokeKind.JUMP
     near &= (np.maximum(z0, z1) >= z - max_distance_mm) & (np.minimum(z0, z1) <= z + max_distance_mm)
     near &= (np.maximum(x0, x1) >= x - max_distance_mm) & (np.minimum(x0, x1) <= x + max_distance_mm)
     index = np.flatnonzero(near)
@@ -192,7 +192,7 @@ def find_nearest_chord(polyline: Polyline, z: float, x: float, max_distance_mm: 
 MeasurementRow = tuple[str, str]
 
 
-def measure_on_path(start: SnapPoint, end: SnapPoint, is_metric: bool) -> list[MeasurementRow]:
+def make_path_distance_rows(start: SnapPoint, end: SnapPoint, is_metric: bool) -> list[MeasurementRow]:
     """Return the table rows for the distance between two points on the path seen from above.
 
     The rows are X as a diameter and as a radius, Z, the distance, and the angle to the axis (0 to 90
@@ -207,7 +207,7 @@ def measure_on_path(start: SnapPoint, end: SnapPoint, is_metric: bool) -> list[M
     ]
 
 
-def measure_on_face(start: SnapPoint, end: SnapPoint, is_metric: bool) -> list[MeasurementRow]:
+def make_face_distance_rows(start: SnapPoint, end: SnapPoint, is_metric: bool) -> list[MeasurementRow]:
     """Return the table rows for the distance between two points on the face of the part.
 
     The rows are X and Y of the face, with Y up.
@@ -220,7 +220,7 @@ def measure_on_face(start: SnapPoint, end: SnapPoint, is_metric: bool) -> list[M
     ]
 
 
-def measure_on_side(
+def make_side_distance_rows(
     start: SnapPoint, end: SnapPoint, is_metric: bool, mm_per_degree: float
 ) -> list[MeasurementRow]:
     """Return the table rows for the distance between two points on the unrolled side of the part.
@@ -236,7 +236,7 @@ def measure_on_side(
     ]
 
 
-def locate_on_path(point: SnapPoint, is_metric: bool) -> list[MeasurementRow]:
+def make_path_position_rows(point: SnapPoint, is_metric: bool) -> list[MeasurementRow]:
     """Return the table rows for the position of a point, with X as a diameter and Z."""
     return [
         ("X Ø", formats.format_length(2 * point.x, is_metric)),
@@ -244,7 +244,7 @@ def locate_on_path(point: SnapPoint, is_metric: bool) -> list[MeasurementRow]:
     ]
 
 
-def locate_on_face(point: SnapPoint, is_metric: bool) -> list[MeasurementRow]:
+def make_face_position_rows(point: SnapPoint, is_metric: bool) -> list[MeasurementRow]:
     """Return the table rows for the position of a point on the face.
 
     The rows are X, Y and the distance from the axis.
@@ -257,7 +257,7 @@ def locate_on_face(point: SnapPoint, is_metric: bool) -> list[MeasurementRow]:
     ]
 
 
-def locate_on_side(point: SnapPoint, is_metric: bool, mm_per_degree: float) -> list[MeasurementRow]:
+def make_side_position_rows(point: SnapPoint, is_metric: bool, mm_per_degree: float) -> list[MeasurementRow]:
     """Return the table rows for Z and C (degrees) of a point on the unrolled side of the part."""
     return [
         ("Z", formats.format_length(point.z, is_metric)),
@@ -291,7 +291,7 @@ def find_largest_distance(before: Polyline, after: Polyline) -> LargestDistance 
     """
     if len(before.z) != len(after.z) or not np.array_equal(before.stroke, after.stroke):
         return None
-    cut = np.flatnonzero(after.stroke >= Stroke.TURN)
+    cut = np.flatnonzero(after.stroke >= StrokeKind.TURN)
     if not len(cut):
         return None
     distances_mm = np.hypot(after.z[cut] - before.z[cut], after.x[cut] - before.x[cut])

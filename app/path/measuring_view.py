@@ -11,8 +11,8 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QKeyEvent, QPainter
 
 from app.path import measuring
-from app.path.measuring import PointKind, SnapPoint, SnapPoints, describe_point_kind
-from app.path.path_aspects import PathAspect
+from app.path.measuring import SnapPoint, SnapPointKind, SnapPoints, describe_snap_point_kind
+from app.path.path_aspects import PathViewKind
 from app.path.path_pane_view import PathPane
 from app.screen.screen_theme import ALIGN_LEFT, ALIGN_RIGHT, draw_text
 
@@ -35,7 +35,7 @@ class Measurement:
 
     def _begin(self) -> SnapPoint:
         at = self.pane.map_to_plane(self.pane.area.center())
-        return self._features.find_nearest(*at) or SnapPoint(*at)
+        return self._features.find_nearest_point(*at) or SnapPoint(*at)
 
     # --- keys and pointer ----------------------------------------------------------------------------
 
@@ -51,7 +51,7 @@ class Measurement:
             back = key == Key.Key_Backtab or bool(held & Qt.KeyboardModifier.ShiftModifier)
             self._step(-1 if back else 1)
         elif key in {Key.Key_Return, Key.Key_Enter}:
-            self.set_point()
+            self.set_measured_point()
         elif key == Key.Key_Backspace:
             self.clear_points()
         else:
@@ -67,7 +67,7 @@ class Measurement:
         """Move the cursor to a widget position, or to a snap point near it."""
         z, x = self.pane.map_to_plane(position)
         self._features.update_intersections(self.pane.find_visible_area())
-        near = self._features.find_nearest(z, x)
+        near = self._features.find_nearest_point(z, x)
         if (
             near is not None
             and _find_distance(self.pane, near, z, x) <= SNAP_DISTANCE * self.pane.theme.unit_px
@@ -76,7 +76,7 @@ class Measurement:
         else:
             self.cursor = SnapPoint(z, x)
 
-    def set_point(self) -> None:
+    def set_measured_point(self) -> None:
         """Set the first or second measured point at the cursor."""
         if self.first_point is None or self.second_point is not None:
             self.first_point, self.second_point = self.cursor, None
@@ -101,14 +101,14 @@ class Measurement:
 
     def _jump(self, direction: tuple[int, int]) -> None:
         self._features.update_intersections(self.pane.find_visible_area())
-        self._go(self._features.find_in_direction(self.cursor.z, self.cursor.x, direction))
+        self._go(self._features.find_point_in_direction(self.cursor.z, self.cursor.x, direction))
 
     def _creep(self, direction: tuple[int, int]) -> None:
         step = self.pane.pixel_size_mm
         self._go(SnapPoint(self.cursor.z + direction[0] * step, self.cursor.x + direction[1] * step))
 
     def _step(self, steps: int) -> None:
-        self._go(self._features.find_next_along_path(self.cursor.z, self.cursor.x, steps))
+        self._go(self._features.find_next_path_point(self.cursor.z, self.cursor.x, steps))
 
     def _go(self, spot: SnapPoint | None) -> None:
         if spot is not None:
@@ -117,18 +117,18 @@ class Measurement:
 
     # --- displayed values ----------------------------------------------------------------------------
 
-    def make_rows(self, is_metric: bool) -> list[measuring.MeasurementRow]:
+    def make_value_rows(self, is_metric: bool) -> list[measuring.MeasurementRow]:
         """Return the rows to display: the cursor position, and its differences from the first point."""
         start, end = self.first_point, self.second_point or self.cursor
         aspect, scale = self.pane.aspect, self.pane.polyline.mm_per_degree
-        if aspect in {PathAspect.PATH, PathAspect.SECTION}:
-            place = measuring.locate_on_path(end, is_metric)
-            return place + (measuring.measure_on_path(start, end, is_metric) if start else [])
-        if aspect is PathAspect.FACE:
-            place = measuring.locate_on_face(end, is_metric)
-            return place + (measuring.measure_on_face(start, end, is_metric) if start else [])
-        place = measuring.locate_on_side(end, is_metric, scale)
-        return place + (measuring.measure_on_side(start, end, is_metric, scale) if start else [])
+        if aspect in {PathViewKind.PATH, PathViewKind.SECTION}:
+            place = measuring.make_path_position_rows(end, is_metric)
+            return place + (measuring.make_path_distance_rows(start, end, is_metric) if start else [])
+        if aspect is PathViewKind.FACE:
+            place = measuring.make_face_position_rows(end, is_metric)
+            return place + (measuring.make_face_distance_rows(start, end, is_metric) if start else [])
+        place = measuring.make_side_position_rows(end, is_metric, scale)
+        return place + (measuring.make_side_distance_rows(start, end, is_metric, scale) if start else [])
 
     # --- drawing -------------------------------------------------------------------------------------
 
@@ -156,7 +156,7 @@ class Measurement:
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.drawLine(QPointF(at.x(), 0), QPointF(at.x(), self.pane.area.height()))
         painter.drawLine(QPointF(0, at.y()), QPointF(self.pane.area.width(), at.y()))
-        if self.cursor.kind is not PointKind.FREE:
+        if self.cursor.kind is not SnapPointKind.FREE:
             painter.setPen(look.make_pen("tip", 0.3))
             painter.drawRect(QRectF(at.x() - u, at.y() - u, 2 * u, 2 * u))
 
@@ -165,7 +165,7 @@ class Measurement:
 
         ``area`` is in widget coordinates.
         """
-        look, u, rows = self.pane.theme, self.pane.theme.unit_px, self.make_rows(is_metric)
+        look, u, rows = self.pane.theme, self.pane.theme.unit_px, self.make_value_rows(is_metric)
         wide, high = min(TABLE_SIZE[0] * u, area.width() - 2 * u), TABLE_SIZE[1] * u
         tall = (len(rows) + 1) * high + 0.6 * u
         cross = self.pane.area.topLeft() + self.pane.map_to_pane(*self.cursor[:2])
@@ -177,7 +177,9 @@ class Measurement:
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.drawRect(box)
         row = QRectF(box.x() + 0.8 * u, box.y() + 0.3 * u, box.width() - 1.6 * u, high)
-        self._row(painter, row, (describe_point_kind(self.cursor.kind), "mm" if is_metric else "in"), "soft")
+        self._row(
+            painter, row, (describe_snap_point_kind(self.cursor.kind), "mm" if is_metric else "in"), "soft"
+        )
         for pair in rows:
             row.translate(0, high)
             self._row(painter, row, pair, "text")

@@ -9,7 +9,7 @@ from PySide6.QtGui import QPainter
 
 from app.path import path_marks_view as marks
 from app.path.measuring_view import Measurement
-from app.path.path_aspects import PART_ASPECTS, SPATIAL_ASPECTS, ApproachLeg, PathAspect
+from app.path.path_aspects import PART_ASPECTS, SPATIAL_ASPECTS, ApproachLeg, PathViewKind
 from app.path.path_pane_view import PathPane
 from app.screen.screen_theme import ALIGN_LEFT, ScreenTheme, draw_text
 
@@ -30,14 +30,14 @@ def draw_pane(
     if pane.projection is not None:
         pane.draw_path(painter)
         marks.draw_center_lines(painter, theme, pane.aspect, pane.projection, pane.polyline)
-        pane.draw_run(painter)
-    if drawn_legs and pane.aspect is PathAspect.PATH:
+        pane.draw_run_state(painter)
+    if drawn_legs and pane.aspect is PathViewKind.PATH:
         marks.draw_approach(painter, theme, pane, drawn_legs)
     if measurement is not None and measurement.pane is pane and pane.aspect not in SPATIAL_ASPECTS:
         measurement.draw(painter)
     painter.restore()
-    if pane.aspect is not PathAspect.PATH:
-        ink = "alarm" if pane.aspect in PART_ASPECTS and marks.find_pane_errors(pane) else "soft"
+    if pane.aspect is not PathViewKind.PATH:
+        ink = "alarm" if pane.aspect in PART_ASPECTS and marks.find_displayed_part_errors(pane) else "soft"
         marks.draw_title(painter, theme, pane.area, marks.make_pane_title(pane, is_metric), ink)
 
 

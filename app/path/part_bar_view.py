@@ -10,7 +10,7 @@ from collections.abc import Callable
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QPainter
 
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.desk.translation import tr
 from app.path.part_player import PartPlayer
 from app.screen.panel import OnPress
@@ -66,12 +66,12 @@ class PartTimeline:
         """
         look, u, player = self.theme, self.theme.unit_px, self.part_player
         box = QRectF(area.x() + 0.6 * u, area.y() + 0.5 * u, _KEY_WIDTH * u, area.height() - u)
-        self._sign(painter, box, Tone.PAUSE if player.is_playing else Tone.RUN)
+        self._sign(painter, box, StatusTone.PAUSE if player.is_playing else StatusTone.RUN)
         add_touch_target(box, player.toggle_playback)
         for word, press, lit in (
-            ("×10", player.toggle_fast_playback, player.is_fast),
-            ("◀|", lambda: player.step_blocks(-1), False),
-            ("|▶", lambda: player.step_blocks(1), False),
+            ("×10", player.toggle_fast_playback, player.is_fast_playback),
+            ("◀|", lambda: player.step_by_blocks(-1), False),
+            ("|▶", lambda: player.step_by_blocks(1), False),
         ):
             box = box.translated((_KEY_WIDTH + 0.5) * u, 0)
             self._key(painter, box, word, lit=lit)
@@ -90,9 +90,12 @@ class PartTimeline:
         painter.setPen(look.get_color("soft" if player.follows_run else "text"))
         words = QRectF(right + 1.6 * u, area.y(), _TEXT_WIDTH * u, area.height() / 2)
         draw_text(
-            painter, words, ALIGN_LEFT, _format_time(player.time_s) + " / " + _format_time(player.duration_s)
+            painter,
+            words,
+            ALIGN_LEFT,
+            _format_time(player.program_time_s) + " / " + _format_time(player.duration_s),
         )
-        shown = player.result
+        shown = player.latest_result
         if shown is not None and shown.part_instant.line_number:
             painter.setFont(look.make_font(1.6))
             text = tr(Message("LINE {line}", line=shown.part_instant.line_number))
@@ -102,7 +105,7 @@ class PartTimeline:
         """Draw the track, the elapsed time, the error marks and the current position."""
         look, u, track, player = self.theme, self.theme.unit_px, self._track, self.part_player
         length = max(player.duration_s, 1e-9)
-        at = track.x() + track.width() * min(player.time_s / length, 1.0)
+        at = track.x() + track.width() * min(player.program_time_s / length, 1.0)
         painter.fillRect(track, look.get_color("key"))
         painter.fillRect(
             QRectF(track.x(), track.y(), at - track.x(), track.height()),
@@ -125,7 +128,7 @@ class PartTimeline:
         painter.setFont(look.make_font(size, is_bold=True))
         draw_text(painter, box, ALIGN_CENTER, word)
 
-    def _sign(self, painter: QPainter, box: QRectF, tone: Tone) -> None:
+    def _sign(self, painter: QPainter, box: QRectF, tone: StatusTone) -> None:
         look, u = self.theme, self.theme.unit_px
         painter.fillRect(box, look.get_color("key"))
         sign = QRectF(box.center().x() - 1.1 * u, box.center().y() - 1.1 * u, 2.2 * u, 2.2 * u)

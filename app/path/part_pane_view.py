@@ -10,8 +10,8 @@ import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QBrush, QImage, QPainter, QPolygonF
 
-from app.path.part_player import PartPlayer, PlayedInstant, SolidRequest
-from app.path.path_aspects import PathAspect, TipPosition
+from app.path.part_player import PartPlayer, PlaybackResult, SolidImageRequest
+from app.path.path_aspects import PathViewKind, TipPosition
 from app.path.path_layers_view import make_polygon
 from app.path.path_pane_view import FIT_MARGIN, PathPane, PlanePosition
 from app.path.path_picture import ProgramPicture
@@ -20,13 +20,13 @@ from app.path.path_projection import (
     PixelLine,
     Projection,
     SectionArea,
-    fit_mirrored,
+    fit_mirrored_projection,
     project_clamping,
     project_collision,
     project_section,
-    project_stock,
+    project_stock_outline,
 )
-from app.path.path_stock_view import SIDE_MARGIN_RATIO, Blank
+from app.path.path_stock_view import SIDE_MARGIN_RATIO, StockAndClamping
 from app.path.polyline import Polyline
 from app.screen.screen_theme import ALIGN_CENTER, ALIGN_RIGHT, ScreenTheme, draw_text
 from core.part.solid_view import SolidView
@@ -64,11 +64,11 @@ class PartPane(PathPane):
     part_player: PartPlayer
 
     def __init__(
-        self, theme: ScreenTheme, aspect: PathAspect, polyline: Polyline, player: PartPlayer
+        self, theme: ScreenTheme, aspect: PathViewKind, polyline: Polyline, player: PartPlayer
     ) -> None:
         self.part_player = player
         # the instant and projection of the cached outlines
-        self._drawn: tuple[PlayedInstant, Projection] | None = None
+        self._drawn: tuple[PlaybackResult, Projection] | None = None
         self._metal: list[tuple[QPolygonF, list[QPolygonF]]] = []
         self._hits: list[QPolygonF] = []
         self._stock: list[QPolygonF] = []
@@ -86,7 +86,7 @@ class PartPane(PathPane):
     def make_full_projection(self) -> Projection:
         """Return the projection that shows the stock outside the chuck, with room for the tool."""
         z0, z1, x0, x1 = self.polyline.bounds
-        shown = self.part_player.result
+        shown = self.part_player.latest_result
         if shown is not None and (stock := shown.part_instant.stock) is not None:
             left = self._left_of(shown, stock)
             margin_mm = SIDE_MARGIN_RATIO * (stock.front_z_mm - left + 2.0 * stock.max_radius_mm)
@@ -94,23 +94,23 @@ class PartPane(PathPane):
         u = self.theme.unit_px
         left_band, low_band = _X_BAND * u, _Z_BAND * u
         wide, high = self.area.width() - left_band, self.area.height() - low_band
-        inner = fit_mirrored((z0, z1, x0, x1), int(wide), int(high), FIT_MARGIN * u)
+        inner = fit_mirrored_projection((z0, z1, x0, x1), int(wide), int(high), FIT_MARGIN * u)
         whole = replace(inner, width_px=int(self.area.width()), height_px=int(self.area.height()))
         return whole.shift(left_band / 2, -low_band / 2)
 
     @staticmethod
-    def _left_of(shown: PlayedInstant, stock: Stock) -> float:
+    def _left_of(shown: PlaybackResult, stock: Stock) -> float:
         """Return the Z of the left edge of the visible stock.
 
         Most of the stock inside a chuck is not shown.
         """
-        chuck = Blank(stock, stock, shown.part_instant.clamping).chuck_left_z_mm
+        chuck = StockAndClamping(stock, stock, shown.part_instant.clamping).chuck_left_z_mm
         return stock.back_z_mm if chuck is None else max(stock.back_z_mm, chuck)
 
     def set_projection(self, projection: Projection) -> None:
         """Set the projection, and make the player calculate a section instead of a 3D image."""
         self.projection = projection
-        self.part_player.set_solid_request(None)
+        self.part_player.set_image_request(None)
 
     def set_run_state(
         self,
@@ -133,10 +133,10 @@ class PartPane(PathPane):
             self.part_player.follow_run(active_block, (at[0] - end[0], at[1] - end[1]))
         self._block, self._place = active_block, tip_position
 
-    def draw_slice(self) -> bool:
+    def continue_drawing(self) -> bool:
         """Update the player, and return whether the pane needs to be redrawn."""
         new = self.part_player.update()
-        if self.part_player.result is not None and not self._fitted:
+        if self.part_player.latest_result is not None and not self._fitted:
             self._fitted = True
             if not self.is_adjusted:
                 self.fit_view()
@@ -159,7 +159,7 @@ class PartPane(PathPane):
 
         The origin of the painter is the corner of the pane.
         """
-        shown, projection = self.part_player.result, self.projection
+        shown, projection = self.part_player.latest_result, self.projection
         if shown is None or projection is None:
             return
         self._outline(shown, projection)
@@ -184,9 +184,9 @@ class PartPane(PathPane):
             for edge in edges:
                 painter.drawPolyline(edge)
 
-    def draw_run(self, painter: QPainter) -> None:
+    def draw_run_state(self, painter: QPainter) -> None:
         """Draw the tool, the scales, the travel limits and the outlines of collisions over the section."""
-        shown, projection = self.part_player.result, self.projection
+        shown, projection = self.part_player.latest_result, self.projection
         if shown is None or projection is None:
             return
         look = self.theme
@@ -198,7 +198,7 @@ class PartPane(PathPane):
         self._tool(painter, shown, projection)
         self._draw_scales(painter, projection)
 
-    def _outline(self, shown: PlayedInstant, projection: Projection) -> None:
+    def _outline(self, shown: PlaybackResult, projection: Projection) -> None:
         if self._drawn is not None and self._drawn[0] is shown and self._drawn[1] == projection:
             return
         self._drawn = shown, projection
@@ -208,12 +208,14 @@ class PartPane(PathPane):
             if half is not None:
                 metal += project_section(half, projection, is_upper=far)
         self._metal = [
-            (_polygon(each.outline_line), [_polygon(edge) for edge in each.edge_lines]) for each in metal
+            (_polygon(each.outline), [_polygon(edge) for edge in each.edge_lines]) for each in metal
         ]
-        self._hits = [_polygon(area) for hit in instant.hits for area in project_collision(hit, projection)]
+        self._hits = [
+            _polygon(area) for hit in instant.material_hits for area in project_collision(hit, projection)
+        ]
         stock = instant.stock
         self._stock = (
-            [_polygon(line) for line in project_stock(stock, projection)] if stock is not None else []
+            [_polygon(line) for line in project_stock_outline(stock, projection)] if stock is not None else []
         )
         held = instant.clamping
         self._chuck = []
@@ -227,7 +229,7 @@ class PartPane(PathPane):
         for area in areas:
             painter.drawPolygon(area)
 
-    def _draw_reach(self, painter: QPainter, shown: PlayedInstant) -> None:
+    def _draw_reach(self, painter: QPainter, shown: PlaybackResult) -> None:
         """Draw the travel limits as positions of the tool tip."""
         if shown.part_instant.tip_range is None:
             return
@@ -235,7 +237,7 @@ class PartPane(PathPane):
         corners = [self.map_to_pane(z, x) for z, x in ((z0, x0), (z1, x0), (z1, x1), (z0, x1), (z0, x0))]
         draw_travel_limits(painter, self.theme, corners)
 
-    def _tool(self, painter: QPainter, shown: PlayedInstant, projection: Projection) -> None:
+    def _tool(self, painter: QPainter, shown: PlaybackResult, projection: Projection) -> None:
         tool, look = shown.part_instant.tool, self.theme
         if tool is None:
             return
@@ -276,14 +278,14 @@ class PartPane(PathPane):
         painter.fillRect(QRectF(0, 0, left, bottom), ground)
         painter.fillRect(QRectF(0, low, width, bottom - low), ground)
         painter.setPen(look.make_pen("soft", 0.1))
-        for value in _ticks(projection.z, width / projection.pixels_per_mm, step * unit):
-            at = float(projection.find_column(value * unit * step))
+        for value in _ticks(projection.center_z, width / projection.pixels_per_mm, step * unit):
+            at = float(projection.find_pixel_column(value * unit * step))
             if at > left:
                 painter.drawLine(QPointF(at, low), QPointF(at, low + 0.6 * u))
                 words = _format_tick(value * step)
                 draw_text(painter, QRectF(at - 4 * u, low + 0.8 * u, 8 * u, 1.6 * u), ALIGN_CENTER, words)
-        for value in _ticks(projection.x, bottom / projection.pixels_per_mm, step * unit):
-            at = float(projection.find_row(value * unit * step))
+        for value in _ticks(projection.center_x, bottom / projection.pixels_per_mm, step * unit):
+            at = float(projection.find_pixel_row(value * unit * step))
             if 3.2 * u < at < low - u:  # The title of the pane is above.
                 painter.drawLine(QPointF(left - 0.6 * u, at), QPointF(left, at))
                 draw_text(
@@ -320,7 +322,10 @@ def _polygon(line: PixelLine) -> QPolygonF:
 
 def _placed(shape: FloatArray, projection: Projection) -> QPolygonF:
     return QPolygonF(
-        [QPointF(float(projection.find_column(z)), float(projection.find_row(r))) for z, r in shape.tolist()]
+        [
+            QPointF(float(projection.find_pixel_column(z)), float(projection.find_pixel_row(r)))
+            for z, r in shape.tolist()
+        ]
     )
 
 
@@ -334,7 +339,7 @@ class SolidPane(PartPane):
     """Pane that shows the latest 3D image of the part, rendered at the size of the pane."""
 
     def __init__(
-        self, theme: ScreenTheme, aspect: PathAspect, polyline: Polyline, player: PartPlayer
+        self, theme: ScreenTheme, aspect: PathViewKind, polyline: Polyline, player: PartPlayer
     ) -> None:
         self._azimuth, self._tilt, self._roll = 30.0, 35.0, 0.0
         self._view: SolidView | None = None  # the view of the last request
@@ -344,7 +349,7 @@ class SolidPane(PartPane):
 
     def make_full_projection(self) -> Projection:
         """Return the projection that shows the whole stock."""
-        flat, shown = super().make_full_projection(), self.part_player.result
+        flat, shown = super().make_full_projection(), self.part_player.latest_result
         if shown is None or (stock := shown.part_instant.stock) is None:
             return flat
         wide, high = flat.width_px, max(flat.height_px - round(3.0 * self.theme.unit_px), 1)
@@ -362,12 +367,12 @@ class SolidPane(PartPane):
         projection = self.projection
         if projection is None or projection.width_px < 1 or projection.height_px < 1:
             return
-        opening = find_removed_quarter(self._tilt) if self.aspect is PathAspect.OPEN_SOLID else None
+        opening = find_removed_quarter(self._tilt) if self.aspect is PathViewKind.OPEN_SOLID else None
         view = SolidView(
-            self._azimuth, self._tilt, self._roll, projection.pixels_per_mm, projection.z, opening
+            self._azimuth, self._tilt, self._roll, projection.pixels_per_mm, projection.center_z, opening
         )
         self._view = view
-        self.part_player.set_solid_request(SolidRequest(view, projection.width_px, projection.height_px))
+        self.part_player.set_image_request(SolidImageRequest(view, projection.width_px, projection.height_px))
 
     def find_tip_position(self, tip: TipPosition) -> PlanePosition | None:
         """Return the position of the tool, and rotate the picture to the position of a locked C axis."""
@@ -411,7 +416,7 @@ class SolidPane(PartPane):
 
         The origin of the painter is the corner of the pane.
         """
-        shown = self.part_player.result
+        shown = self.part_player.latest_result
         if shown is not None and shown.image is not None:
             image = shown.image
             high, wide = image.shape
@@ -419,12 +424,12 @@ class SolidPane(PartPane):
                 QPointF(0, 0), QImage(image.tobytes(), wide, high, 4 * wide, QImage.Format.Format_ARGB32)
             )
 
-    def draw_run(self, painter: QPainter) -> None:
+    def draw_run_state(self, painter: QPainter) -> None:
         """Draw the travel limits of the machine in the turning plane.
 
         The tool is part of the image.
         """
-        shown, view, projection = self.part_player.result, self._view, self.projection
+        shown, view, projection = self.part_player.latest_result, self._view, self.projection
         if shown is None or shown.part_instant.tip_range is None or view is None or projection is None:
             return
         (z0, x0), (z1, x1) = shown.part_instant.tip_range

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from app.desk.background_work import LatestRequestWorker, WorkRequest
 from core.language.diagnostics import Diagnostic
-from core.proving.checks.part_checks import is_serious
+from core.proving.checks.part_checks import is_serious_finding
 
 if TYPE_CHECKING:
     from app.desk.desk import Desk
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from core.part.solid_view import SolidView
     from core.part.surface_points import Solid
     from core.proving.part_history import PartHistory
-    from core.proving.part_instant import PartInstant
+    from core.proving.part_instant import PartState
 
 FAST_FACTOR = 10.0  # times the program speed
 _REST_TIME_S = 0.25  # seconds after which an image that no longer moves is drawn in full resolution
@@ -36,7 +36,7 @@ _IMAGE_INTERVAL_S = 0.08  # seconds between two images during a long calculation
 ZRadius = tuple[float, float]
 
 
-class SolidRequest(NamedTuple):
+class SolidImageRequest(NamedTuple):
     """Request for a 3D image: the view of the part and the image size in pixels.
 
     ``is_coarse`` selects a coarser image.
@@ -48,23 +48,23 @@ class SolidRequest(NamedTuple):
     is_coarse: bool = False
 
 
-class ProgramMoment(NamedTuple):
+class ProgramInstant(NamedTuple):
     """Moment of a program: the finished blocks and the finished fraction of the next block.
 
-    ``offset_from_end_mm``, if not None, replaces ``block_fraction``. It is the offset of the tool from the
-    end of the block as (Z, radius), in millimeters.
+    ``block_end_offset_mm``, if not None, replaces ``next_block_fraction``. It is the offset of the tool from
+    the end of the block as (Z, radius), in millimeters.
     """
 
-    finished_count: int = 0
-    block_fraction: float = 0.0
-    offset_from_end_mm: ZRadius | None = None
-    solid_request: SolidRequest | None = None
+    finished_block_count: int = 0
+    next_block_fraction: float = 0.0
+    block_end_offset_mm: ZRadius | None = None
+    image_request: SolidImageRequest | None = None
 
 
-class PlayedInstant(NamedTuple):
+class PlaybackResult(NamedTuple):
     """Result of the worker thread: the part at one instant, and the findings of the whole program."""
 
-    part_instant: PartInstant
+    part_instant: PartState
     findings: tuple[Diagnostic, ...] = ()
     image: ImageArray | None = None  # image of the solid, if a 3D view is shown
 
@@ -80,20 +80,20 @@ class PartPlayer:
     read_time_s: Callable[[], float] = time.monotonic
     follows_run: bool = False
     is_playing: bool = False
-    is_fast: bool = False
-    time_s: float = 0.0  # requested program time in seconds
+    is_fast_playback: bool = False
+    program_time_s: float = 0.0  # requested program time in seconds
     error_text: str = ""  # reason why no part is shown
     _picture: ProgramPicture | None = None
-    _wanted: ProgramMoment = field(default_factory=ProgramMoment)
-    _asked: ProgramMoment | None = None
-    _played: PlayedInstant | None = None
+    _wanted: ProgramInstant = field(default_factory=ProgramInstant)
+    _asked: ProgramInstant | None = None
+    _played: PlaybackResult | None = None
     _looked: float = 0.0
     _turned: float = 0.0  # time of the last change of the view
     # used only on the worker, as are the following attributes
     _history: tuple[ProgramPicture, PartHistory] | None = None
     _findings: tuple[Diagnostic, ...] | None = None
     _painter: SolidPicture | None = None
-    _solid: tuple[PartInstant, Solid] | None = None
+    _solid: tuple[PartState, Solid] | None = None
     _draws: int = 0
 
     # --- selection of the program --------------------------------------------------------------------
@@ -115,7 +115,7 @@ class PartPlayer:
         if picture is None or before is None:
             self._played = None
         if not self.follows_run:
-            self.request_time(self.duration_s)
+            self.request_part_at_time(self.duration_s)
 
     def close(self) -> None:
         """Cancel the pending work and stop the worker."""
@@ -127,7 +127,7 @@ class PartPlayer:
         return float(self._picture.ends[-1]) if self._picture is not None else 0.0
 
     @property
-    def result(self) -> PlayedInstant | None:
+    def latest_result(self) -> PlaybackResult | None:
         """Return the latest result of the worker, or None before the first result."""
         return self._played
 
@@ -159,24 +159,26 @@ class PartPlayer:
         self.worker.wait_for_results(timeout_s)
 
     def _play(self, gone: float) -> None:
-        self.request_time(self.time_s + min(gone, 0.25) * (FAST_FACTOR if self.is_fast else 1.0))
-        if self.time_s >= self.duration_s:
+        self.request_part_at_time(
+            self.program_time_s + min(gone, 0.25) * (FAST_FACTOR if self.is_fast_playback else 1.0)
+        )
+        if self.program_time_s >= self.duration_s:
             self.is_playing = False
 
     # --- 3D view -------------------------------------------------------------------------------------
 
-    def set_solid_request(self, solid: SolidRequest | None) -> None:
+    def set_image_request(self, solid: SolidImageRequest | None) -> None:
         """Set the 3D view to render, or turn off 3D rendering with None."""
-        self._wanted = self._wanted._replace(solid_request=solid)
+        self._wanted = self._wanted._replace(image_request=solid)
         self._turned = self.read_time_s()
 
     def _request_image(self) -> None:
         """Request a coarse image while the view moves, and a fine image when the view is at rest."""
-        solid = self._wanted.solid_request
+        solid = self._wanted.image_request
         if solid is not None:
             moving = self.is_playing or self.follows_run or self.read_time_s() - self._turned < _REST_TIME_S
             if solid.is_coarse is not moving:
-                self._wanted = self._wanted._replace(solid_request=solid._replace(is_coarse=moving))
+                self._wanted = self._wanted._replace(image_request=solid._replace(is_coarse=moving))
 
     # --- following the run ---------------------------------------------------------------------------
 
@@ -186,15 +188,15 @@ class PartPlayer:
         ``end_offset_mm`` is the offset (Z, radius) of the tool from the end of the block, in mm.
         """
         self.is_playing = False
-        self._wanted = ProgramMoment(block_number - 1, 0.0, end_offset_mm, self._wanted.solid_request)
+        self._wanted = ProgramInstant(block_number - 1, 0.0, end_offset_mm, self._wanted.image_request)
         if self._picture is not None and 1 <= block_number < len(self._picture.ends):
-            self.time_s = float(self._picture.ends[block_number])
+            self.program_time_s = float(self._picture.ends[block_number])
 
     # --- the time line -------------------------------------------------------------------------------
 
     def seek_time(self, time_s: float) -> None:
         """Show the part at a program time in seconds, and cancel the pending request."""
-        self.request_time(time_s)
+        self.request_part_at_time(time_s)
         if self._picture is not None:
             self._ask()
 
@@ -203,8 +205,8 @@ class PartPlayer:
         return {
             "Play": self.toggle_playback,
             "Play fast": self.toggle_fast_playback,
-            "Step back": partial(self.step_blocks, -1),
-            "Step forward": partial(self.step_blocks, 1),
+            "Step back": partial(self.step_by_blocks, -1),
+            "Step forward": partial(self.step_by_blocks, 1),
         }
 
     def toggle_playback(self) -> None:
@@ -215,14 +217,14 @@ class PartPlayer:
         if self.follows_run or self._picture is None:
             return
         self.is_playing, self._looked = not self.is_playing, self.read_time_s()
-        if self.is_playing and self.time_s >= self.duration_s:
+        if self.is_playing and self.program_time_s >= self.duration_s:
             self.seek_time(0.0)
 
     def toggle_fast_playback(self) -> None:
         """Switch between program speed and fast playback."""
-        self.is_fast = not self.is_fast
+        self.is_fast_playback = not self.is_fast_playback
 
-    def step_blocks(self, step_count: int) -> None:
+    def step_by_blocks(self, step_count: int) -> None:
         """Move to the end of the next block with motion (1) or of the previous block with motion (-1)."""
         if self.follows_run or self._picture is None:
             return
@@ -231,10 +233,10 @@ class PartPlayer:
         moves = np.flatnonzero(np.diff(ends) > 0.0) + 1
         there = ends[moves] if len(moves) else np.zeros(1)
         if step_count > 0:
-            at = int(np.searchsorted(there, self.time_s + 1e-9, side="right"))
+            at = int(np.searchsorted(there, self.program_time_s + 1e-9, side="right"))
             self.seek_time(float(there[min(at, len(there) - 1)]))
         else:
-            at = int(np.searchsorted(there, self.time_s - 1e-9, side="left")) - 1
+            at = int(np.searchsorted(there, self.program_time_s - 1e-9, side="left")) - 1
             self.seek_time(float(there[at]) if at >= 0 else 0.0)
 
     def seek_line(self, line_number: int) -> None:
@@ -247,32 +249,34 @@ class PartPlayer:
         """Move to the end of an elementary block."""
         if not self.follows_run and self._picture is not None:
             self.is_playing = False
-            self.request_time(float(self._picture.ends[min(block_number, len(self._picture.ends) - 1)]))
+            self.request_part_at_time(
+                float(self._picture.ends[min(block_number, len(self._picture.ends) - 1)])
+            )
 
     def find_error_times(self) -> npt.NDArray[np.float64]:
         """Return the program times at which the part simulation found errors, in seconds."""
         if self._played is None or self._picture is None:
             return np.zeros(0)
         ends = self._picture.ends
-        errors = [each.block_number for each in self._played.findings if is_serious(each)]
+        errors = [each.block_number for each in self._played.findings if is_serious_finding(each)]
         return np.array([ends[min(n, len(ends) - 1)] for n in errors])
 
-    def request_time(self, time_s: float) -> None:
+    def request_part_at_time(self, time_s: float) -> None:
         """Request the part at a program time in seconds.
 
         The next call of ``update`` starts the work.
         """
-        self.time_s = min(max(time_s, 0.0), self.duration_s)
+        self.program_time_s = min(max(time_s, 0.0), self.duration_s)
         if self._picture is None:
             return
         ends = self._picture.ends
-        block = min(int(np.searchsorted(ends, self.time_s + 1e-9, side="right")) - 1, len(ends) - 1)
+        block = min(int(np.searchsorted(ends, self.program_time_s + 1e-9, side="right")) - 1, len(ends) - 1)
         block = max(block, 0)
         share = 0.0
         if block < len(ends) - 1:
             length = float(ends[block + 1] - ends[block])
-            share = (self.time_s - float(ends[block])) / length if length > 0.0 else 0.0
-        self._wanted = ProgramMoment(block, min(max(share, 0.0), 1.0), None, self._wanted.solid_request)
+            share = (self.program_time_s - float(ends[block])) / length if length > 0.0 else 0.0
+        self._wanted = ProgramInstant(block, min(max(share, 0.0), 1.0), None, self._wanted.image_request)
 
     # --- worker --------------------------------------------------------------------------------------
 
@@ -284,8 +288,8 @@ class PartPlayer:
         self.worker.request_work(partial(self._make_result, picture, self._wanted), self._take, self._failed)
 
     def _make_result(
-        self, picture: ProgramPicture, wanted: ProgramMoment, request: WorkRequest
-    ) -> PlayedInstant:
+        self, picture: ProgramPicture, wanted: ProgramInstant, request: WorkRequest
+    ) -> PlaybackResult:
         """Calculate the requested instant on the worker thread.
 
         A new program is first simulated to its end, so that all findings are known.
@@ -294,27 +298,31 @@ class PartPlayer:
         watch = partial(self._publish_progress, history, request, [self.read_time_s()])
         if self._findings is None:
             self._findings = history.at(len(picture.ends) - 1, 0.0, watch).findings
-        share = wanted.block_fraction
-        if wanted.offset_from_end_mm is not None:
-            share = history.find_executed_fraction(wanted.finished_count + 1, wanted.offset_from_end_mm)
+        share = wanted.next_block_fraction
+        if wanted.block_end_offset_mm is not None:
+            share = history.find_executed_fraction(
+                wanted.finished_block_count + 1, wanted.block_end_offset_mm
+            )
         image = None
-        instant = self._find_instant(history, wanted.finished_count, share, watch)
-        if wanted.solid_request is not None:
-            image = self._render_image(history, instant, wanted.solid_request)
-        return PlayedInstant(instant, self._findings, image)
+        instant = self._find_instant(history, wanted.finished_block_count, share, watch)
+        if wanted.image_request is not None:
+            image = self._render_image(history, instant, wanted.image_request)
+        return PlaybackResult(instant, self._findings, image)
 
     def _find_instant(
         self, history: PartHistory, block: int, share: float, watch: Callable[[], None]
-    ) -> PartInstant:
+    ) -> PartState:
         """Return the requested instant of the part, without recalculation if only the view was rotated."""
         if self._solid is not None:
             last = self._solid[0]
-            if (last.block_count, last.next_block_fraction) == (block, share) and history.is_current(last):
+            if (last.block_count, last.next_block_fraction) == (block, share) and history.is_current_instant(
+                last
+            ):
                 return last
         return history.at(block, share, watch)
 
     def _render_image(
-        self, history: PartHistory, instant: PartInstant, look: SolidRequest
+        self, history: PartHistory, instant: PartState, look: SolidImageRequest
     ) -> ImageArray | None:
         """Return the 3D image of the part, or None without a solid.
 
@@ -336,9 +344,9 @@ class PartPlayer:
                 float(hit.z_positions.min()) - hit.column_width_mm / 2,
                 float(hit.z_positions.max()) + hit.column_width_mm / 2,
             )
-            for hit in instant.hits
+            for hit in instant.material_hits
         )
-        return self._painter.draw(
+        return self._painter.draw_picture(
             self._solid[1],
             view,
             look.width_px,
@@ -367,10 +375,10 @@ class PartPlayer:
         if now - last_report_time[0] > _IMAGE_INTERVAL_S:
             last_report_time[0] = now
             request.publish_result(
-                partial(self._take, PlayedInstant(history.make_current_part(), self._findings or ()))
+                partial(self._take, PlaybackResult(history.make_current_part(), self._findings or ()))
             )
 
-    def _take(self, shown: PlayedInstant) -> None:
+    def _take(self, shown: PlaybackResult) -> None:
         self._played = shown
 
     def _failed(self, why: str) -> None:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from core.executor.snapshot import Snapshot
 
 
-class PathAspect(Enum):
+class PathViewKind(Enum):
     """The views of a program that the path view can show.
 
     ``PATH`` is from above (X+ down, Z+ right). ``FACE`` looks at the end of the part, and ``SIDE`` is its
@@ -29,8 +29,8 @@ class PathAspect(Enum):
     OPEN_SOLID = "OPEN"
 
 
-SPATIAL_ASPECTS = frozenset({PathAspect.SOLID, PathAspect.OPEN_SOLID})
-PART_ASPECTS = SPATIAL_ASPECTS | {PathAspect.SECTION}
+SPATIAL_ASPECTS = frozenset({PathViewKind.SOLID, PathViewKind.OPEN_SOLID})
+PART_ASPECTS = SPATIAL_ASPECTS | {PathViewKind.SECTION}
 
 
 class TipPosition(NamedTuple):
@@ -41,7 +41,7 @@ class TipPosition(NamedTuple):
     which an interrupted block stopped.
     """
 
-    active_block: int = 0
+    active_block_number: int = 0
     z: float = 0.0
     x: float = 0.0
     c: float | None = None
@@ -51,7 +51,7 @@ class TipPosition(NamedTuple):
     )
 
 
-AspectView = tuple[PathAspect, ...]
+AspectView = tuple[PathViewKind, ...]
 
 
 def find_tip_position(snapshot: Snapshot, job: Job | None = None) -> TipPosition:
@@ -71,18 +71,18 @@ def find_tip_position(snapshot: Snapshot, job: Job | None = None) -> TipPosition
     if tool is None:
         return tip
     return tip._replace(
-        active_block=found.block, stop_position=(found.where[1] - tool.z, found.where[0] - tool.x)
+        active_block_number=found.block, stop_position=(found.where[1] - tool.z, found.where[0] - tool.x)
     )
 
 
-def select_polyline(picture: ProgramPicture | None, aspect: PathAspect) -> Polyline | None:
+def select_polyline(picture: ProgramPicture | None, aspect: PathViewKind) -> Polyline | None:
     """Return the polyline that shows a picture in this view, or None if there is nothing to show."""
-    if picture is None or aspect is PathAspect.PATH or aspect in PART_ASPECTS:
+    if picture is None or aspect is PathViewKind.PATH or aspect in PART_ASPECTS:
         return picture
-    return picture.face if aspect is PathAspect.FACE else picture.side
+    return picture.face if aspect is PathViewKind.FACE else picture.side
 
 
-def find_views(picture: ProgramPicture, *, has_part: bool = False) -> list[AspectView]:
+def list_available_views(picture: ProgramPicture, *, has_part: bool = False) -> list[AspectView]:
     """Return the views of a program, in the order in which the view key selects them.
 
     The first views show the path next to a face or side that is machined with the C axis. After them, the
@@ -90,16 +90,18 @@ def find_views(picture: ProgramPicture, *, has_part: bool = False) -> list[Aspec
     """
     more = [
         aspect
-        for aspect in (PathAspect.FACE, PathAspect.SIDE)
+        for aspect in (PathViewKind.FACE, PathViewKind.SIDE)
         if select_polyline(picture, aspect) is not None
     ]
-    both = [(PathAspect.PATH, aspect) for aspect in more]
-    views = [*both, *((aspect,) for aspect in more), (PathAspect.PATH,)]
+    both = [(PathViewKind.PATH, aspect) for aspect in more]
+    views = [*both, *((aspect,) for aspect in more), (PathViewKind.PATH,)]
     if not has_part:
         return views
     if picture.part is None:
-        return [*views, (PathAspect.SECTION,)] if picture.no_part else views  # The section shows the reason.
-    return [*views, (PathAspect.SECTION,), (PathAspect.SOLID,), (PathAspect.OPEN_SOLID,)]
+        return (
+            [*views, (PathViewKind.SECTION,)] if picture.no_part else views
+        )  # The section shows the reason.
+    return [*views, (PathViewKind.SECTION,), (PathViewKind.SOLID,), (PathViewKind.OPEN_SOLID,)]
 
 
 # --- legs of an approach ------------------------------------------------------------------------------

@@ -27,10 +27,10 @@ from app.path.path_projection import (
     StrokeRun,
     clip_chords,
     project_points,
-    project_runs,
+    project_strokes,
     rasterize_chords,
 )
-from app.path.polyline import Stroke
+from app.path.polyline import StrokeKind
 from app.screen.screen_theme import ScreenTheme
 
 if TYPE_CHECKING:
@@ -70,12 +70,16 @@ class LineStyle(Enum):
             band.setAlphaF(BAND_OPACITY)
             cut.setColor(band)
         if self in {LineStyle.OLD_PATH, LineStyle.NEW_PATH}:
-            return {Stroke.TURN: cut, Stroke.MILL: cut}
+            return {StrokeKind.TURN: cut, StrokeKind.MILL: cut}
         rapid = _round(
             theme.make_pen("rapid", 0.10),
             PenStyle.SolidLine if self is LineStyle.FINISHED else PenStyle.DashLine,
         )
-        return {Stroke.RAPID: cut if self is LineStyle.MARKED else rapid, Stroke.TURN: cut, Stroke.MILL: cut}
+        return {
+            StrokeKind.RAPID: cut if self is LineStyle.MARKED else rapid,
+            StrokeKind.TURN: cut,
+            StrokeKind.MILL: cut,
+        }
 
     def make_colors(self, theme: ScreenTheme) -> dict[int, QColor]:
         """Return the color of each kind of stroke, for lines that are one pixel wide."""
@@ -131,7 +135,7 @@ class PathLayers:
         """Return whether everything that was requested is drawn."""
         return self._stage >= len(self._under) and self._done >= self._wanted
 
-    def request_blocks(self, block_count: int) -> None:
+    def request_finished_blocks(self, block_count: int) -> None:
         """Request that the first ``block_count`` blocks are drawn as finished.
 
         If the number is smaller than before, drawing starts again from the image of the whole path.
@@ -142,7 +146,7 @@ class PathLayers:
             self.image = self._base
         self._wanted = wanted
 
-    def draw_slice(self) -> bool:
+    def continue_drawing(self) -> bool:
         """Draw during part of the frame time, and return whether anything was drawn."""
         if self.is_complete:
             return False
@@ -187,26 +191,28 @@ class PathLayers:
 
     def _draw_smooth(self, image: QImage, polyline: Polyline, part: tuple[int, int], ink: LineStyle) -> None:
         pens = ink.make_pens(self._look)
-        found = [run for run in project_runs(polyline, self.projection, *part) if run.stroke_kind in pens]
+        found = [run for run in project_strokes(polyline, self.projection, *part) if run.stroke_kind in pens]
         with QPainter(image) as painter:
             painter.setRenderHint(QPainter.RenderHint.Antialiasing)
             if ink is not LineStyle.FINISHED:
                 painter.setPen(self._look.make_pen("ghost", 0.12))
                 for run in found:
-                    if run.stroke_kind == Stroke.TURN:
-                        draw_run(
+                    if run.stroke_kind == StrokeKind.TURN:
+                        draw_stroke_run(
                             painter, StrokeRun(run.stroke_kind, run.columns, self._mirror_sum - run.rows)
                         )
             for run in found:
                 painter.setPen(pens[run.stroke_kind])
-                draw_run(painter, run)
+                draw_stroke_run(painter, run)
 
     def _draw_pixels(self, image: QImage, polyline: Polyline, part: tuple[int, int], ink: LineStyle) -> None:
         shape = project_points(polyline, self.projection, *part)
         if ink is not LineStyle.FINISHED:
             far_side = shape._replace(rows=self._mirror_sum - shape.rows)
-            draw_pixels(image, self.projection, far_side, {Stroke.TURN: self._look.get_color("ghost")})
-        draw_pixels(image, self.projection, shape, ink.make_colors(self._look))
+            draw_chord_pixels(
+                image, self.projection, far_side, {StrokeKind.TURN: self._look.get_color("ghost")}
+            )
+        draw_chord_pixels(image, self.projection, shape, ink.make_colors(self._look))
 
     @property
     def _mirror_sum(self) -> float:
@@ -214,7 +220,7 @@ class PathLayers:
 
         This value minus a row is the mirrored row.
         """
-        return 2 * float(self.projection.find_row(0.0))
+        return 2 * float(self.projection.find_pixel_row(0.0))
 
 
 def make_polygon(columns: FloatArray, rows: FloatArray) -> QPolygonF:
@@ -228,12 +234,12 @@ def make_polygon(columns: FloatArray, rows: FloatArray) -> QPolygonF:
     return shape
 
 
-def draw_run(painter: QPainter, run: StrokeRun) -> None:
+def draw_stroke_run(painter: QPainter, run: StrokeRun) -> None:
     """Draw a run of strokes with the current pen of the painter."""
     painter.drawPolyline(make_polygon(run.columns, run.rows))
 
 
-def draw_pixels(image: QImage, projection: Projection, shape: Shape, colors: dict[int, QColor]) -> None:
+def draw_chord_pixels(image: QImage, projection: Projection, shape: Shape, colors: dict[int, QColor]) -> None:
     """Draw the chords of a shape in the colors of their strokes.
 
     Strokes without a color are skipped.
@@ -242,15 +248,15 @@ def draw_pixels(image: QImage, projection: Projection, shape: Shape, colors: dic
     inked = np.zeros(256, dtype=np.bool_)
     for kind, ink in colors.items():
         table[kind], inked[kind] = ink.rgb() & 0xFFFFFFFF, True
-    wanted = inked[shape.strokes[1:]]
-    columns, rows, strokes = shape.columns, shape.rows, shape.strokes[1:][wanted]
+    wanted = inked[shape.stroke_kinds[1:]]
+    columns, rows, strokes = shape.columns, shape.rows, shape.stroke_kinds[1:][wanted]
     ends = ChordEnds(columns[:-1][wanted], rows[:-1][wanted], columns[1:][wanted], rows[1:][wanted])
     cut, inside = clip_chords(ends, projection.width_px - 1, projection.height_px - 1)
     column, row, which = rasterize_chords(cut)
-    view_pixels(image)[row, column] = table[strokes[inside]][which]
+    get_pixel_array(image)[row, column] = table[strokes[inside]][which]
 
 
-def view_pixels(image: QImage) -> npt.NDArray[np.uint32]:
+def get_pixel_array(image: QImage) -> npt.NDArray[np.uint32]:
     """Return an array (rows, columns) that shares the memory of the image, with 32 bits per pixel.
 
     The array is valid only as long as the image exists.

@@ -14,7 +14,7 @@ from PySide6.QtGui import QFontMetricsF, QPainter, QPen, QPolygonF
 from app.desk.status import formats
 from app.desk.translation import tr
 from app.path.measuring import LargestDistance
-from app.path.path_aspects import PART_ASPECTS, SPATIAL_ASPECTS, ApproachLeg, PathAspect
+from app.path.path_aspects import PART_ASPECTS, SPATIAL_ASPECTS, ApproachLeg, PathViewKind
 from app.path.path_layers_view import LineStyle
 from app.path.path_pane_view import PathPane
 from app.path.path_projection import ChordEnds, Projection, clip_chords, find_scale_length
@@ -24,7 +24,7 @@ from app.screen.screen_theme import ALIGN_CENTER, ALIGN_LEFT, ALIGN_RIGHT, Scree
 from app.screen.window_layout import FINGERTIP_PX
 from core.language.diagnostics import Diagnostic
 from core.message import Message
-from core.proving.checks.part_checks import is_serious
+from core.proving.checks.part_checks import is_serious_finding
 
 BUTTON_SIZE = (6.6, 6.6, 0.4)  # units: width, height and gap; the size is at least that of a fingertip
 
@@ -50,7 +50,7 @@ def count_button_columns(theme: ScreenTheme, area: QRectF, button_count: int) ->
     return math.ceil(button_count / rows)
 
 
-def find_columns_width(column_count: int, theme: ScreenTheme) -> float:
+def find_button_columns_width(column_count: int, theme: ScreenTheme) -> float:
     """Return the total width in pixels of the button columns at the right edge of a view."""
     wide, _, gap = _button(theme)
     return column_count * (wide + gap)
@@ -72,7 +72,7 @@ def draw_buttons(
     wide, high, gap = _button(theme)
     columns = count_button_columns(theme, area, len(buttons))
     rows = math.ceil(len(buttons) / columns)
-    left = area.right() - find_columns_width(columns, theme) - 0.6 * theme.unit_px
+    left = area.right() - find_button_columns_width(columns, theme) - 0.6 * theme.unit_px
     for number, (sign, press, lit) in enumerate(buttons):
         column, row = divmod(number, rows)
         x, y = left + column * (wide + gap), area.y() + 0.8 * theme.unit_px + row * (high + gap)
@@ -176,7 +176,7 @@ def draw_title(painter: QPainter, theme: ScreenTheme, area: QRectF, text: str, c
     draw_text(painter, box, ALIGN_LEFT, text)
 
 
-def draw_no_path(painter: QPainter, theme: ScreenTheme, area: QRectF, reason: str) -> None:
+def draw_no_path_reason(painter: QPainter, theme: ScreenTheme, area: QRectF, reason: str) -> None:
     """Draw the reason why no path is shown."""
     painter.setPen(theme.get_color("soft"))
     painter.setFont(theme.fit_font(reason, 2.0, area.width()))
@@ -280,7 +280,7 @@ def _label(painter: QPainter, look: ScreenTheme, box: QRectF, text: str) -> None
     draw_text(painter, box, ALIGN_CENTER, text)
 
 
-def describe_difference(difference: LargestDistance, is_metric: bool) -> str:
+def describe_largest_difference(difference: LargestDistance, is_metric: bool) -> str:
     """Return the text for the largest difference between two pictures."""
     if not difference.distance_mm:
         return tr("NO CUTTING MOVE HAS CHANGED")
@@ -294,20 +294,20 @@ def describe_difference(difference: LargestDistance, is_metric: bool) -> str:
     )
 
 
-def find_pane_errors(pane: PathPane) -> list[Diagnostic]:
+def find_displayed_part_errors(pane: PathPane) -> list[Diagnostic]:
     """Return the part errors that occur before or at the moment that a pane displays."""
-    shown = pane.part_player.result if pane.part_player is not None else None
+    shown = pane.part_player.latest_result if pane.part_player is not None else None
     found = shown.part_instant.findings if shown is not None else ()
-    return [each for each in found if is_serious(each)]
+    return [each for each in found if is_serious_finding(each)]
 
 
 def make_part_title(pane: PathPane) -> str:
     """Return the title of a part pane: the latest error, or else the tool that is cutting."""
-    shown = pane.part_player.result if pane.part_player is not None else None
+    shown = pane.part_player.latest_result if pane.part_player is not None else None
     if pane.part_player is None or shown is None:
         error_text = pane.part_player.error_text if pane.part_player is not None else ""
         return error_text or tr("PART  ·  CALCULATING …")
-    wrong = find_pane_errors(pane)
+    wrong = find_displayed_part_errors(pane)
     if wrong:
         return tr(Message("LINE {line}: {what}", line=wrong[-1].line, what=tr(wrong[-1].message)))
     if shown.part_instant.stock is None:
@@ -324,7 +324,7 @@ def make_pane_title(pane: PathPane, is_metric: bool) -> str:
     """Return the title of a pane, which names the visible side of the part."""
     if pane.aspect in PART_ASPECTS:
         return make_part_title(pane)
-    if pane.aspect is PathAspect.FACE:
+    if pane.aspect is PathViewKind.FACE:
         return tr("FACE  ·  VIEW FROM THE TAILSTOCK")
     diameter = formats.format_length(pane.polyline.mm_per_degree * 360.0 / math.pi, is_metric)
     return tr(Message("SIDE  ·  UNROLLED AT Ø {diameter}", diameter=diameter))
@@ -335,7 +335,7 @@ MIN_C_LINE_DISTANCE = 9.0  # units: minimum distance between the C lines of the 
 
 
 def draw_center_lines(
-    painter: QPainter, theme: ScreenTheme, aspect: PathAspect, projection: Projection, polyline: Polyline
+    painter: QPainter, theme: ScreenTheme, aspect: PathViewKind, projection: Projection, polyline: Polyline
 ) -> None:
     """Draw the center lines, and the C angles as a circle on a face or as lines on a side.
 
@@ -343,9 +343,9 @@ def draw_center_lines(
     """
     if aspect in SPATIAL_ASPECTS:
         return
-    if aspect in {PathAspect.PATH, PathAspect.SECTION}:
+    if aspect in {PathViewKind.PATH, PathViewKind.SECTION}:
         _cross(painter, theme, projection)
-    elif aspect is PathAspect.FACE:
+    elif aspect is PathViewKind.FACE:
         _cross(painter, theme, projection)
         _draw_c_circle(painter, theme, projection, polyline)
     else:
@@ -360,9 +360,9 @@ def _pen(look: ScreenTheme, dashes: list[float]) -> QPen:
 
 def _cross(painter: QPainter, look: ScreenTheme, projection: Projection) -> None:
     painter.setPen(_pen(look, [14, 4, 2, 4]))
-    row = round(float(projection.find_row(0.0))) + 0.5
+    row = round(float(projection.find_pixel_row(0.0))) + 0.5
     painter.drawLine(QPointF(0, row), QPointF(projection.width_px, row))
-    column = round(float(projection.find_column(0.0))) + 0.5
+    column = round(float(projection.find_pixel_column(0.0))) + 0.5
     painter.setPen(_pen(look, [2, 6]))
     painter.drawLine(QPointF(column, 0), QPointF(column, projection.height_px))
 
@@ -371,7 +371,7 @@ def _draw_c_circle(painter: QPainter, theme: ScreenTheme, projection: Projection
     """Draw a circle around all cuts, and mark where the tool is at C 0, 90, 180 and 270 degrees."""
     u = theme.unit_px
     reach = polyline.bounds[1]
-    middle = QPointF(float(projection.find_column(0.0)), float(projection.find_row(0.0)))
+    middle = QPointF(float(projection.find_pixel_column(0.0)), float(projection.find_pixel_row(0.0)))
     radius = reach * projection.pixels_per_mm + 0.9 * u
     painter.setBrush(Qt.BrushStyle.NoBrush)
     painter.setPen(_pen(theme, [3, 4]))
@@ -401,18 +401,18 @@ def _draw_c_lines(painter: QPainter, theme: ScreenTheme, projection: Projection,
         360,
     )
     top, bottom = (
-        projection.x - projection.height_px / 2 / projection.pixels_per_mm,
-        projection.x + projection.height_px / 2 / projection.pixels_per_mm,
+        projection.center_x - projection.height_px / 2 / projection.pixels_per_mm,
+        projection.center_x + projection.height_px / 2 / projection.pixels_per_mm,
     )
     painter.setFont(theme.make_font(1.5))
     for number in range(math.ceil(-bottom / scale / step), math.floor(-top / scale / step) + 1):
         degrees = number * step
-        row = round(float(projection.find_row(-degrees * scale))) + 0.5
+        row = round(float(projection.find_pixel_row(-degrees * scale))) + 0.5
         painter.setPen(_pen(theme, [14, 4, 2, 4] if degrees % 360 == 0 else [2, 6]))
         painter.drawLine(QPointF(0, row), QPointF(projection.width_px, row))
         painter.setPen(theme.get_color("soft"))
         text = f"C{formats.format_fixed(degrees, 0)}"
         draw_text(painter, QRectF(0.8 * u, row - 2.0 * u, 8 * u, 2 * u), ALIGN_LEFT, text)
-    column = round(float(projection.find_column(0.0))) + 0.5
+    column = round(float(projection.find_pixel_column(0.0))) + 0.5
     painter.setPen(_pen(theme, [2, 6]))
     painter.drawLine(QPointF(column, 0), QPointF(column, projection.height_px))

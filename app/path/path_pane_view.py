@@ -13,15 +13,21 @@ from app.path.measuring import find_largest_distance, find_nearest_chord
 from app.path.path_aspects import (
     PART_ASPECTS,
     AspectView,
-    PathAspect,
+    PathViewKind,
     TipPosition,
-    find_views,
+    list_available_views,
     select_polyline,
 )
-from app.path.path_layers_view import LineStyle, PathLayers, draw_run, make_polygon
+from app.path.path_layers_view import LineStyle, PathLayers, draw_stroke_run, make_polygon
 from app.path.path_picture import ProgramPicture, map_to_face
-from app.path.path_projection import Projection, fit_bounds, fit_mirrored, project_progress, project_runs
-from app.path.path_stock_view import Blank, draw_blank, find_blank
+from app.path.path_projection import (
+    Projection,
+    fit_mirrored_projection,
+    fit_projection,
+    project_block_progress,
+    project_strokes,
+)
+from app.path.path_stock_view import StockAndClamping, draw_stock_and_clamping, find_stock_and_clamping
 from app.path.polyline import Bounds, Polyline
 from app.screen.screen_theme import ScreenTheme
 
@@ -48,7 +54,7 @@ class PathPane:
     part_player: PartPlayer | None = None
 
     def __init__(
-        self, theme: ScreenTheme, aspect: PathAspect, polyline: Polyline, before: Polyline | None = None
+        self, theme: ScreenTheme, aspect: PathViewKind, polyline: Polyline, before: Polyline | None = None
     ) -> None:
         self.theme, self.aspect = theme, aspect
         self.area = QRectF()
@@ -81,14 +87,14 @@ class PathPane:
         else:
             self.fit_view()
 
-    def _blank_below(self) -> Blank | None:
+    def _blank_below(self) -> StockAndClamping | None:
         """Return the stock and clamping to draw below the path, or None to draw neither.
 
         They are drawn only in the view of the path from above, and not in a comparison.
         """
         picture = self.polyline
-        wanted = self.aspect is PathAspect.PATH and self.polyline_before is None
-        return find_blank(picture) if wanted and isinstance(picture, ProgramPicture) else None
+        wanted = self.aspect is PathViewKind.PATH and self.polyline_before is None
+        return find_stock_and_clamping(picture) if wanted and isinstance(picture, ProgramPicture) else None
 
     def make_full_projection(self) -> Projection:
         """Return the projection that shows the part and all cuts near it.
@@ -96,7 +102,7 @@ class PathPane:
         In a comparison, the path before the change is also visible. The chuck is shown as far as the
         remaining width allows.
         """
-        fit = fit_bounds if self.aspect is PathAspect.SIDE else fit_mirrored
+        fit = fit_projection if self.aspect is PathViewKind.SIDE else fit_mirrored_projection
         bounds, blank = self.polyline.bounds, self._blank
         if blank is not None:
             bounds = blank.find_visible_area(bounds)
@@ -104,7 +110,7 @@ class PathPane:
             bounds = _unite_bounds(bounds, self.polyline_before.bounds)
         for z, x in self.extra_points:
             bounds = _unite_bounds(bounds, (z, z, x, x))
-        margin = (RING_MARGIN if self.aspect is PathAspect.FACE else FIT_MARGIN) * self.theme.unit_px
+        margin = (RING_MARGIN if self.aspect is PathViewKind.FACE else FIT_MARGIN) * self.theme.unit_px
         whole = fit(bounds, int(self.area.width()), int(self.area.height()), margin)
         if blank is None or blank.chuck_left_z_mm is None:
             return whole
@@ -123,10 +129,10 @@ class PathPane:
         blank = self._blank
         ground = None
         if blank is not None:
-            ground = partial(draw_blank, theme=self.theme, blank=blank, projection=projection)
+            ground = partial(draw_stock_and_clamping, theme=self.theme, blank=blank, projection=projection)
         self._layers = PathLayers(self.theme, self.polyline, projection, self.polyline_before, ground)
-        self._layers.request_blocks(self._block - 1)
-        self._layers.draw_slice()
+        self._layers.request_finished_blocks(self._block - 1)
+        self._layers.continue_drawing()
 
     def find_block(self, position: QPointF) -> int:
         """Return the number of the block drawn at or near a widget position, or 0 if there is no block."""
@@ -149,7 +155,7 @@ class PathPane:
         self.is_adjusted = False
         self.set_projection(self.make_full_projection())
 
-    def set_extra_points(self, points: Sequence[PlanePosition]) -> None:
+    def set_extra_visible_points(self, points: Sequence[PlanePosition]) -> None:
         """Set the points that must be visible together with the whole path."""
         if tuple(points) != self.extra_points:
             self.extra_points = tuple(points)
@@ -201,14 +207,17 @@ class PathPane:
     def map_to_pane(self, z: float, x: float) -> QPointF:
         """Return the position of a point of the plane in pixels from the corner of the pane."""
         assert self.projection is not None
-        return QPointF(float(self.projection.find_column(z)), float(self.projection.find_row(x)))
+        return QPointF(float(self.projection.find_pixel_column(z)), float(self.projection.find_pixel_row(x)))
 
     def map_to_plane(self, position: QPointF) -> PlanePosition:
         """Return the coordinates z and x of the plane at a widget position."""
         projection, room = self.projection, self.area
         assert projection is not None
-        z = projection.z + (position.x() - room.x() - projection.width_px / 2) / projection.pixels_per_mm
-        return z, projection.x + (
+        z = (
+            projection.center_z
+            + (position.x() - room.x() - projection.width_px / 2) / projection.pixels_per_mm
+        )
+        return z, projection.center_x + (
             position.y() - room.y() - projection.height_px / 2
         ) / projection.pixels_per_mm
 
@@ -244,7 +253,7 @@ class PathPane:
         ``stop_position`` is the position where an interrupted block stopped.
         """
         if self._layers is not None and active_block != self._block:
-            self._layers.request_blocks(active_block - 1)
+            self._layers.request_finished_blocks(active_block - 1)
         self._block, self._place = active_block, tip_position
         self._stood = stop_position
 
@@ -260,11 +269,11 @@ class PathPane:
 
         A face view returns the last position while C turns as the spindle.
         """
-        if self.aspect is PathAspect.PATH or self.aspect in PART_ASPECTS:
+        if self.aspect is PathViewKind.PATH or self.aspect in PART_ASPECTS:
             return tip.z, tip.x
         if tip.c is None:
             return self._place
-        if self.aspect is PathAspect.FACE:
+        if self.aspect is PathViewKind.FACE:
             return map_to_face(tip.x, tip.c, tip.center_height_mm)
         return tip.z, -tip.c * self.polyline.mm_per_degree
 
@@ -277,9 +286,9 @@ class PathPane:
         ranges = [(int(first[a - 1]), int(first[b])) for a, b in block_ranges]
         self.marked_point_ranges = [(a, min(b, a + MAX_MARKED_POINTS)) for a, b in ranges if b > a]
 
-    def draw_slice(self) -> bool:
+    def continue_drawing(self) -> bool:
         """Draw for a few milliseconds at most, and return whether anything changed."""
-        return self._layers is not None and self._layers.draw_slice()
+        return self._layers is not None and self._layers.continue_drawing()
 
     @property
     def is_complete(self) -> bool:
@@ -296,7 +305,7 @@ class PathPane:
         if self._layers is not None:
             painter.drawImage(QPointF(0, 0), self._layers.image)
 
-    def draw_run(self, painter: QPainter) -> None:
+    def draw_run_state(self, painter: QPainter) -> None:
         """Draw the marked line, the active block and the tip.
 
         In a comparison, draw the largest difference between the two pictures instead.
@@ -320,17 +329,17 @@ class PathPane:
         pens = LineStyle.MARKED.make_pens(self.theme)
         painter.setBrush(Qt.BrushStyle.NoBrush)
         for start, end in self.marked_point_ranges:
-            for run in project_runs(self.polyline, projection, start, end):
+            for run in project_strokes(self.polyline, projection, start, end):
                 painter.setPen(pens[run.stroke_kind])
-                draw_run(painter, run)
+                draw_stroke_run(painter, run)
 
     def _draw_active_block(self, painter: QPainter, projection: Projection) -> None:
         """Draw the finished part of the active block."""
         if not self._block or self._place is None:
             return
-        if self._stood is not None and self.aspect is not PathAspect.PATH:
+        if self._stood is not None and self.aspect is not PathViewKind.PATH:
             return  # On a face or a side, the C position of the interruption is not known.
-        found = project_progress(self.polyline, projection, self._block, *(self._stood or self._place))
+        found = project_block_progress(self.polyline, projection, self._block, *(self._stood or self._place))
         if found is not None:
             painter.setPen(LineStyle.FINISHED.make_pens(self.theme)[found.stroke_kind])
             painter.setBrush(Qt.BrushStyle.NoBrush)
@@ -343,7 +352,7 @@ class PathPane:
         at = self.map_to_pane(*self._place)
         painter.setPen(look.make_pen("panel", 0.2))
         painter.setBrush(look.get_color("tip"))
-        if self.aspect is not PathAspect.PATH:  # A mill is viewed along its axis.
+        if self.aspect is not PathViewKind.PATH:  # A mill is viewed along its axis.
             painter.drawEllipse(at, 0.7 * u, 0.7 * u)
             return
         side = 1.0 if self._place[1] >= 0 else -1.0
@@ -357,7 +366,7 @@ def _unite_bounds(one: Bounds, other: Bounds) -> Bounds:
     return low[0], high[1], low[2], high[3]
 
 
-MakePane = Callable[[PathAspect, Polyline, Polyline | None], PathPane]
+MakePane = Callable[[PathViewKind, Polyline, Polyline | None], PathPane]
 MIN_LAYOUT_WIDTH_PX = 40  # pixels: minimum width of a layout
 
 
@@ -384,7 +393,7 @@ class PaneSet:
         """
         self.picture, self.picture_before = picture, before
         with_part = self._with_part and before is None
-        views = find_views(picture, has_part=with_part) if picture is not None else []
+        views = list_available_views(picture, has_part=with_part) if picture is not None else []
         if views != self._views:
             self._views, self._view = views, 0
         self._fill()
@@ -418,9 +427,9 @@ class PaneSet:
         """Return the pane at a widget position, or None if there is no pane."""
         return next((pane for pane in self.visible_panes if pane.area.contains(position)), None)
 
-    def draw_slice(self) -> bool:
+    def continue_drawing(self) -> bool:
         """Draw for a few milliseconds at most, and return whether anything changed."""
-        drawn = [pane.draw_slice() for pane in self.visible_panes]
+        drawn = [pane.continue_drawing() for pane in self.visible_panes]
         return any(drawn)
 
     def _fill(self) -> None:

@@ -21,7 +21,7 @@ from app.path.polyline import (
     FloatArray,
     Polyline,
     PolylineBuilder,
-    Stroke,
+    StrokeKind,
     count_arc_chords,
     count_turn_chords,
     find_bounds,
@@ -51,7 +51,7 @@ def map_to_face(x: float, c: float, center_height_mm: float = 0.0) -> tuple[floa
     return rho * math.cos(at), -rho * math.sin(at)
 
 
-class FaceBuilder:
+class FaceViewBuilder:
     """Builder of the face view, which collects the moves that are visible on the face of the part."""
 
     def __init__(self, block_count: int) -> None:
@@ -93,7 +93,7 @@ class FaceBuilder:
         return Polyline(z, x, stroke, first, (-reach, reach, -reach, reach), arc_centers=centres)
 
 
-class SideBuilder:
+class SideViewBuilder:
     """Builder of the side view, which collects the moves that are visible on the side of the part.
 
     ``x`` is minus C in degrees until the radius is known.
@@ -130,7 +130,7 @@ class SideBuilder:
         self.is_needed |= (
             abs(block.c - block.c0) > STILL_TOLERANCE and abs(block.z - block.z0) > STILL_TOLERANCE
         )
-        if stroke != Stroke.RAPID:
+        if stroke != StrokeKind.RAPID:
             self._reach = max(self._reach, abs(x))
         self.polyline_builder.move_to(block.z0 + dz, -block.c0)
         self.polyline_builder.add_point(block.z + dz, -block.c, stroke)
@@ -152,7 +152,7 @@ class FaceAndSideBuilder:
     """Builder of the face and side views of all moves with C locked."""
 
     def __init__(self, block_count: int) -> None:
-        self._face, self._side = FaceBuilder(block_count), SideBuilder(block_count)
+        self._face, self._side = FaceViewBuilder(block_count), SideViewBuilder(block_count)
 
     def add_move(self, block: Block, stroke: int, points: list[MillPoint]) -> None:
         """Add one move with C locked.
@@ -166,7 +166,7 @@ class FaceAndSideBuilder:
             self._face.add_move(block, block.x0 + dx, block.x + dx, stroke)
             self._side.add_move(block, block.x + dx, dz, stroke)
         elif isinstance(plane.frame, SidePlane):
-            self._side.add_mill_move(plane, plane.frame, points, stroke, dz + modal.secondary_z)
+            self._side.add_mill_move(plane, plane.frame, points, stroke, dz + modal.secondary_offset_z)
         else:
             self._face.add_mill_move(plane, plane.frame, points, stroke)
 
@@ -215,7 +215,7 @@ class ProgramPicture(Polyline):
     face: Polyline | None = None
     side: Polyline | None = None
     metric: bool = False
-    scene: MillScene | None = None  # scene of a mill
+    mill_scene: MillScene | None = None  # scene of a mill
     part: ProgramSteps | None = None  # moves from which the part can be calculated
     no_part: str = ""  # reason why the part is not calculated
 
@@ -232,12 +232,12 @@ class ProgramPicture(Polyline):
         apart = np.flatnonzero(np.diff(there) > 1)
         return int(there[apart[0]] if len(apart) else there[-1]) + 1
 
-    def count_blocks_before(self, line_number: int) -> int:
+    def count_blocks_before_line(self, line_number: int) -> int:
         """Return the number of blocks that are finished when a source line is first reached."""
         there = np.flatnonzero(self.line == line_number)
         return int(there[0]) if len(there) else self.find_block_for_line(line_number)
 
-    def find_blocks_for_line(self, line_number: int) -> list[tuple[int, int]]:
+    def find_block_ranges(self, line_number: int) -> list[tuple[int, int]]:
         """Return all blocks of a source line as ranges (first, last).
 
         The ranges are inclusive and counted from 1.
@@ -299,7 +299,7 @@ class PictureBuilder:
         self._metric = block.modal.metric
         self._chord.append(_find_chord(block) if block.moves else 0.0)
 
-    def add_series(self, series: StraightMoveSeries, end_times_s: FloatArray) -> None:
+    def add_move_series(self, series: StraightMoveSeries, end_times_s: FloatArray) -> None:
         """Append straight moves that end ``end_times_s`` (m,) seconds after the start of the program."""
         like = series.pattern
         if self._turned is not None or like.modal.c_locked:
@@ -317,7 +317,7 @@ class PictureBuilder:
     def add_timed_blocks(self, each: TimedBlocks | TimedSeries) -> int:
         """Append a timed block or series of moves, and return the number of appended blocks."""
         if isinstance(each, TimedSeries):
-            self.add_series(each.series, each.end_times_s)
+            self.add_move_series(each.series, each.end_times_s)
             return len(each.series)
         self.add_block(each[0], each[2])
         return 1
@@ -339,7 +339,7 @@ class PictureBuilder:
             face=face,
             side=side,
             metric=self._metric,
-            scene=self._scene.build_scene(),
+            mill_scene=self._scene.build_scene(),
         )
 
     def _locked(self, block: Block) -> None:
@@ -352,7 +352,7 @@ class PictureBuilder:
         elif block.kind is not BlockKind.ROTATE:
             self._move(block, stroke)
 
-    def _move(self, block: Block, stroke: Stroke) -> None:
+    def _move(self, block: Block, stroke: StrokeKind) -> None:
         dx = block.offset_x - block.modal.drawing_zero_x
         dz = block.offset_z - block.modal.drawing_zero_z
         self._pencil.move_to(block.z0 + dz, block.x0 + dx)
@@ -360,7 +360,7 @@ class PictureBuilder:
             self._arc(block, dx, dz, stroke)
         self._pencil.add_point(block.z + dz, block.x + dx, stroke)
 
-    def _arc(self, block: Block, dx: float, dz: float, stroke: Stroke) -> None:
+    def _arc(self, block: Block, dx: float, dz: float, stroke: StrokeKind) -> None:
         start, sweep = compute_arc_sweep(
             block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise
         )
@@ -372,11 +372,13 @@ class PictureBuilder:
             at = start + sweep * k / pieces
             self._pencil.add_point(cz + radius * math.cos(at), cx + radius * math.sin(at), stroke)
 
-    def _add_mill_move(self, block: Block, plane: PlaneMove, points: list[MillPoint], stroke: Stroke) -> None:
+    def _add_mill_move(
+        self, block: Block, plane: PlaneMove, points: list[MillPoint], stroke: StrokeKind
+    ) -> None:
         """Add the X and Z axis motion of a mill move in a plane."""
         modal = block.modal
-        dx = block.offset_x - modal.drawing_zero_x + modal.secondary_x
-        dz = block.offset_z - modal.drawing_zero_z + modal.secondary_z
+        dx = block.offset_x - modal.drawing_zero_x + modal.secondary_offset_x
+        dz = block.offset_z - modal.drawing_zero_z + modal.secondary_offset_z
         side = 1.0 if plane.frame.is_far_side else -1.0
         for number, (x, y, z) in enumerate((plane.start, *points)):
             if isinstance(plane.frame, FacePlane):
@@ -413,7 +415,7 @@ def _find_chord(block: Block) -> float:
     return math.hypot(block.x - block.x0, block.z - block.z0)
 
 
-def _stroke(block: Block) -> Stroke:
+def _stroke(block: Block) -> StrokeKind:
     if block.kind is BlockKind.RAPID:
-        return Stroke.RAPID
-    return Stroke.TURN if block.modal.spindle else Stroke.MILL
+        return StrokeKind.RAPID
+    return StrokeKind.TURN if block.modal.spindle else StrokeKind.MILL

@@ -21,7 +21,7 @@ MIN_PINCH_PX = 8.0  # pixels: smaller finger distances are treated as this dista
 
 
 @dataclass(slots=True, eq=False)
-class PathPointer:
+class PathPointerHandler:
     """Input handler that distinguishes drags from touches.
 
     ``find_target`` returns the pressed pane or timeline, or None.
@@ -46,7 +46,7 @@ class PathPointer:
         self._down = self._last = position
         self._dragging = False
 
-    def move_pointer(self, position: QPointF) -> None:
+    def handle_pointer_motion(self, position: QPointF) -> None:
         """Handle motion of the pointer.
 
         The picture is dragged while the pointer is pressed.
@@ -97,7 +97,7 @@ class PathPointer:
         if kind == QEvent.Type.TouchBegin:
             self.begin_press(at)
         elif kind == QEvent.Type.TouchUpdate:
-            self.move_pointer(at)
+            self.handle_pointer_motion(at)
         elif kind == QEvent.Type.TouchEnd:
             self.end_press(at)
 

@@ -30,19 +30,19 @@ class Projection:
     The size is in pixels, and ``pixels_per_mm`` is the scale in pixels per mm.
     """
 
-    z: float
-    x: float
+    center_z: float
+    center_x: float
     pixels_per_mm: float
     width_px: int
     height_px: int
 
-    def find_column(self, z: FloatArray | float) -> FloatArray | float:
+    def find_pixel_column(self, z: FloatArray | float) -> FloatArray | float:
         """Return the pixel column of a Z position. Z+ is to the right."""
-        return self.width_px / 2 + (z - self.z) * self.pixels_per_mm
+        return self.width_px / 2 + (z - self.center_z) * self.pixels_per_mm
 
-    def find_row(self, x: FloatArray | float) -> FloatArray | float:
+    def find_pixel_row(self, x: FloatArray | float) -> FloatArray | float:
         """Return the pixel row of an X radius. X+ is down, towards the operator."""
-        return self.height_px / 2 + (x - self.x) * self.pixels_per_mm
+        return self.height_px / 2 + (x - self.center_x) * self.pixels_per_mm
 
     def magnify(self, factor: float, column: float, row: float) -> Projection:
         """Return a projection magnified by ``factor``.
@@ -50,17 +50,20 @@ class Projection:
         The point at (column, row) does not move.
         """
         scale = min(max(self.pixels_per_mm * factor, 0.02), 5000.0)
-        z = self.z + (column - self.width_px / 2) * (1 / self.pixels_per_mm - 1 / scale)
-        x = self.x + (row - self.height_px / 2) * (1 / self.pixels_per_mm - 1 / scale)
+        z = self.center_z + (column - self.width_px / 2) * (1 / self.pixels_per_mm - 1 / scale)
+        x = self.center_x + (row - self.height_px / 2) * (1 / self.pixels_per_mm - 1 / scale)
         return Projection(z, x, scale, self.width_px, self.height_px)
 
     def shift(self, column_count: float, row_count: float) -> Projection:
         """Return the projection shifted by a number of pixels."""
-        z, x = self.z - column_count / self.pixels_per_mm, self.x - row_count / self.pixels_per_mm
+        z, x = (
+            self.center_z - column_count / self.pixels_per_mm,
+            self.center_x - row_count / self.pixels_per_mm,
+        )
         return Projection(z, x, self.pixels_per_mm, self.width_px, self.height_px)
 
 
-def fit_mirrored(
+def fit_mirrored_projection(
     bounds: tuple[float, float, float, float], width: int, height: int, margin: float
 ) -> Projection:
     """Return a projection that shows all cuts and their mirror image on the other side of X0.
@@ -74,7 +77,7 @@ def fit_mirrored(
     return Projection((z0 + z1) / 2, 0.0, scale, width, height)
 
 
-def fit_bounds(
+def fit_projection(
     bounds: tuple[float, float, float, float], width: int, height: int, margin: float
 ) -> Projection:
     """Return a projection that shows only the bounds, with a margin in pixels."""
@@ -89,7 +92,7 @@ class Shape(NamedTuple):
 
     columns: FloatArray
     rows: FloatArray
-    strokes: npt.NDArray[np.uint8]
+    stroke_kinds: npt.NDArray[np.uint8]
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,8 +107,8 @@ class StrokeRun:
 def project_points(polyline: Polyline, projection: Projection, start: int, end: int) -> Shape:
     """Return points ``start`` to ``end - 1`` and the preceding point, reduced to pixel resolution."""
     low = max(0, start - 1)
-    columns = np.asarray(projection.find_column(polyline.z[low:end]), dtype=np.float64)
-    rows = np.asarray(projection.find_row(polyline.x[low:end]), dtype=np.float64)
+    columns = np.asarray(projection.find_pixel_column(polyline.z[low:end]), dtype=np.float64)
+    rows = np.asarray(projection.find_pixel_row(polyline.x[low:end]), dtype=np.float64)
     stroke = polyline.stroke[low:end].copy()
     if start > 0 and len(stroke):
         stroke[0] = 0
@@ -113,7 +116,7 @@ def project_points(polyline: Polyline, projection: Projection, start: int, end: 
     return Shape(columns[keep], rows[keep], stroke[keep])
 
 
-def project_runs(polyline: Polyline, projection: Projection, start: int, end: int) -> Iterator[StrokeRun]:
+def project_strokes(polyline: Polyline, projection: Projection, start: int, end: int) -> Iterator[StrokeRun]:
     """Yield the strokes that end at points ``start`` to ``end - 1``, reduced to pixels and clipped."""
     columns, rows, stroke = project_points(polyline, projection, start, end)
     stroke[1:][_find_outside(columns, rows, projection)] = 0
@@ -145,7 +148,7 @@ def _find_outside(columns: FloatArray, rows: FloatArray, projection: Projection)
     return out
 
 
-def project_progress(
+def project_block_progress(
     polyline: Polyline, projection: Projection, block_number: int, z: float, x: float
 ) -> StrokeRun | None:
     """Return the finished part of a block in pixels, or None if nothing is drawn.
@@ -161,8 +164,8 @@ def project_progress(
         return None
     zs, xs = polyline.z[start - 1 : end], polyline.x[start - 1 : end]
     last = _find_nearest_chord(zs, xs, z, x) + 1
-    columns = np.append(np.asarray(projection.find_column(zs[:last])), projection.find_column(z))
-    rows = np.append(np.asarray(projection.find_row(xs[:last])), projection.find_row(x))
+    columns = np.append(np.asarray(projection.find_pixel_column(zs[:last])), projection.find_pixel_column(z))
+    rows = np.append(np.asarray(projection.find_pixel_row(xs[:last])), projection.find_pixel_row(x))
     return StrokeRun(int(polyline.stroke[start]), columns, rows)
 
 
@@ -246,7 +249,7 @@ class PixelLine(NamedTuple):
 class SectionArea(NamedTuple):
     """One area of the section of a part, with the edges that are drawn as lines."""
 
-    outline_line: PixelLine
+    outline: PixelLine
     edge_lines: tuple[PixelLine, ...]
 
 
@@ -284,7 +287,7 @@ def project_collision(collision: MaterialHit, projection: Projection) -> list[Pi
     return found
 
 
-def project_stock(stock: Stock, projection: Projection) -> list[PixelLine]:
+def project_stock_outline(stock: Stock, projection: Projection) -> list[PixelLine]:
     """Return the outline of the stock before the first cut."""
     found = []
     for profile in (stock.outside_profile, stock.bore_profile):
@@ -292,7 +295,7 @@ def project_stock(stock: Stock, projection: Projection) -> list[PixelLine]:
             z, r = np.array(profile).T
             found += [_line(z, side * r, projection) for side in (1.0, -1.0)]
     for z in (stock.back_z_mm, stock.front_z_mm):
-        r = float(stock.outside_radius_at(np.array([z]))[0])
+        r = float(stock.find_outside_radii(np.array([z]))[0])
         found.append(_line(np.array([z, z]), np.array([-r, r]), projection))
     return found
 
@@ -310,8 +313,8 @@ def project_stock_section(stock: Stock, projection: Projection) -> list[PixelLin
 def project_clamping(clamping: Clamping, stock: Stock, projection: Projection) -> list[PixelLine]:
     """Return the areas of the chuck or collet above and below the axis, and of the tailstock center."""
     found: list[PixelLine] = []
-    if clamping.diameter:
-        held = clamping.make_chuck_around(stock)
+    if clamping.chuck_diameter:
+        held = clamping.make_chuck_for_stock(stock)
         (z, r), (inner_z, inner_r) = np.array(held.outside_profile).T, np.array(held.bore_profile).T
         found += [
             _ring(_line(z, side * r, projection), _line(inner_z, side * inner_r, projection))
@@ -350,8 +353,8 @@ def _widen_mask(wanted: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
 
 
 def _line(z: FloatArray, r: FloatArray, projection: Projection) -> PixelLine:
-    columns = np.asarray(projection.find_column(z), dtype=np.float64)
-    rows = np.asarray(projection.find_row(r), dtype=np.float64)
+    columns = np.asarray(projection.find_pixel_column(z), dtype=np.float64)
+    rows = np.asarray(projection.find_pixel_row(r), dtype=np.float64)
     return _thin_line(PixelLine(columns, rows))
 
 
@@ -381,8 +384,8 @@ def _padded(r: FloatArray) -> FloatArray:
 def _find_visible_range(edges: FloatArray, projection: Projection) -> tuple[int, int]:
     """Return the first visible column, and the last visible column plus one."""
     half = (projection.width_px / 2 + _OVERDRAW_PX) / projection.pixels_per_mm
-    first = int(np.searchsorted(edges, projection.z - half)) - 1
-    last = int(np.searchsorted(edges, projection.z + half))
+    first = int(np.searchsorted(edges, projection.center_z - half)) - 1
+    last = int(np.searchsorted(edges, projection.center_z + half))
     return max(first, 0), min(last, len(edges) - 1)
 
 

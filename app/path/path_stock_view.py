@@ -14,13 +14,13 @@ from app.path.path_projection import (
     PixelLine,
     Projection,
     project_clamping,
-    project_stock,
+    project_stock_outline,
     project_stock_section,
 )
 from app.path.polyline import Bounds
 from app.screen.screen_theme import ScreenTheme
 from core.interpreter.shared.units import MM_PER_INCH
-from core.part.stock import Clamping, Stock, make_bar
+from core.part.stock import Clamping, Stock, make_bar_stock
 from core.part.stock_spec import StockError, StockSpec
 
 SIDE_MARGIN_RATIO = 0.12  # ratio to the length and diameter of the part: visible room for the tool
@@ -29,7 +29,7 @@ _FILLED = 0.28  # opacity of the stock
 
 
 @dataclass(frozen=True, slots=True)
-class Blank:
+class StockAndClamping:
     """The specified stock and the clamping of a program, in millimeters.
 
     ``clamped_stock`` is the material in the chuck. It is the specified stock, or a bar that is large enough
@@ -65,10 +65,10 @@ class Blank:
     @property
     def _face(self) -> float | None:
         held = self.clamping
-        return -held.stick_out if held is not None and held.diameter else None
+        return -held.stick_out if held is not None and held.chuck_diameter else None
 
 
-def find_blank(picture: ProgramPicture) -> Blank | None:
+def find_stock_and_clamping(picture: ProgramPicture) -> StockAndClamping | None:
     """Return the specified stock and clamping of a program, or None if neither is specified."""
     if picture.part is None:
         return None
@@ -79,13 +79,15 @@ def find_blank(picture: ProgramPicture) -> Blank | None:
             stock = stock.stock(z0, 1.0 if picture.metric else MM_PER_INCH)
         except StockError:  # The proof reports the error.
             stock = None
-    if stock is None and (setting.clamping is None or not setting.clamping.diameter):
+    if stock is None and (setting.clamping is None or not setting.clamping.chuck_diameter):
         return None
-    needed = stock or make_bar(2.0 * max(abs(x0), abs(x1)), 0.0, z0)
-    return Blank(stock, needed, setting.clamping)
+    needed = stock or make_bar_stock(2.0 * max(abs(x0), abs(x1)), 0.0, z0)
+    return StockAndClamping(stock, needed, setting.clamping)
 
 
-def draw_blank(painter: QPainter, theme: ScreenTheme, blank: Blank, projection: Projection) -> None:
+def draw_stock_and_clamping(
+    painter: QPainter, theme: ScreenTheme, blank: StockAndClamping, projection: Projection
+) -> None:
     """Draw the stock as a filled section, and the chuck or collet and the tailstock as hatched areas."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     if blank.stock is not None:
@@ -96,7 +98,7 @@ def draw_blank(painter: QPainter, theme: ScreenTheme, blank: Blank, projection: 
         pen.setDashPattern([5, 4])
         painter.setPen(pen)
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        for line in project_stock(blank.stock, projection):
+        for line in project_stock_outline(blank.stock, projection):
             painter.drawPolyline(make_polygon(line.columns, line.rows))
     if blank.clamping is not None:
         chuck = project_clamping(blank.clamping, blank.clamped_stock, projection)

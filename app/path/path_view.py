@@ -2,8 +2,8 @@
 
 The view from above has X+ down and Z+ to the right, with both sides of X0. Cuts with C locked are shown
 next to it, on the face or the unrolled side of the part. Set the content with ``show_picture`` or
-``show_compared``, set the machine position with ``show_tip``, and call ``draw_slice`` once a frame. This
-module calculates only screen positions.
+``show_comparison``, set the machine position with ``show_tool_tip``, and call ``continue_drawing`` once a
+frame. This module calculates only screen positions.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from PySide6.QtGui import QFocusEvent, QKeyEvent, QMouseEvent, QPainter, QResize
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.path.path_aspects import PART_ASPECTS, SPATIAL_ASPECTS, ApproachLeg, PathAspect, TipPosition
-from app.path.path_pointer_view import PathPointer
+from app.path.path_aspects import PART_ASPECTS, SPATIAL_ASPECTS, ApproachLeg, PathViewKind, TipPosition
+from app.path.path_pointer_view import PathPointerHandler
 from app.screen.panel import OnPress, Panel, RedrawingAttribute
 from app.screen.screen_theme import ScreenTheme
 
@@ -69,7 +69,7 @@ class PathView(Panel):
         self._tip: TipPosition | None = None  # not drawn until the first position is set
         self.drawn_legs: tuple[ApproachLeg, ...] = ()  # legs of an approach
         self.measurement: Measurement | None = None  # None while the user does not measure
-        self._pointer = PathPointer(
+        self._pointer = PathPointerHandler(
             theme, self._find_touch_target, self._hovers, self._dragged, self._handle_touch, self.magnify
         )
         self.setAttribute(Qt.WidgetAttribute.WA_AcceptTouchEvents)
@@ -120,7 +120,7 @@ class PathView(Panel):
         """Show the path of another program, or no path if ``picture`` is None."""
         self._show(picture, None)
 
-    def show_compared(self, before: ProgramPicture | None, after: ProgramPicture | None) -> None:
+    def show_comparison(self, before: ProgramPicture | None, after: ProgramPicture | None) -> None:
         """Show one program before and after a change, with a legend.
 
         The tool tip and the progress are not shown. If ``after`` is None, nothing is shown. If ``before``
@@ -138,7 +138,7 @@ class PathView(Panel):
             self._include_points()
             self.update()
 
-    def show_tip(self, tip: TipPosition) -> None:
+    def show_tool_tip(self, tip: TipPosition) -> None:
         """Show the tool tip and the progress of the run."""
         if tip != self._tip:
             self._tip = tip
@@ -154,12 +154,12 @@ class PathView(Panel):
             pane.mark(block_ranges)
         self.update()
 
-    def draw_slice(self) -> None:
+    def continue_drawing(self) -> None:
         """Continue drawing for a few milliseconds at most.
 
         This is called once a frame.
         """
-        if self._set is not None and self._set.draw_slice():
+        if self._set is not None and self._set.continue_drawing():
             self.update()
 
     def _show(self, picture: ProgramPicture | None, before: ProgramPicture | None) -> None:
@@ -170,21 +170,21 @@ class PathView(Panel):
         if picture is self._set.picture and before is self._set.picture_before:
             return
         if self._tip is not None:
-            self._tip = self._tip._replace(active_block=0)
+            self._tip = self._tip._replace(active_block_number=0)
         if self.part_player is not None:
             self.part_player.load_picture(picture if before is None else None)
         self._set.set_pictures(picture, before)
         if self.measurement is not None and self.measurement.pane in self.panes:
             self.measurement.rebuild_snap_points()  # the measured points remain
         else:
-            self.set_measuring(is_on=False)
+            self.switch_measuring(is_on=False)
         self._lay_out()
 
-    def _make(self, aspect: PathAspect, polyline: Polyline, before: Polyline | None) -> PathPane:
+    def _make(self, aspect: PathViewKind, polyline: Polyline, before: Polyline | None) -> PathPane:
         if aspect in PART_ASPECTS and self.part_player is not None:
             from app.path.part_pane_view import PartPane, SolidPane
 
-            made = PartPane if aspect is PathAspect.SECTION else SolidPane
+            made = PartPane if aspect is PathViewKind.SECTION else SolidPane
             return made(self.theme, aspect, polyline, self.part_player)
         from app.path.path_pane_view import PathPane
 
@@ -193,25 +193,27 @@ class PathView(Panel):
     def _lay_out(self) -> None:
         if self._set is not None:
             self._include_points()
-            from app.path.path_marks_view import count_button_columns, find_columns_width
+            from app.path.path_marks_view import count_button_columns, find_button_columns_width
 
             room = self.find_panes_area()
             columns = count_button_columns(self.theme, room, len(self._buttons()))
-            self._set.set_area(room.adjusted(0, 0, -find_columns_width(columns, self.theme), 0))
+            self._set.set_area(room.adjusted(0, 0, -find_button_columns_width(columns, self.theme), 0))
             self._show_tool()
         self.update()
 
     def _include_points(self) -> None:
         """Make the visible area include the whole approach if the view shows the approach."""
         for pane in self.panes:
-            if pane.aspect is PathAspect.PATH and self.shows_whole_approach:
-                pane.set_extra_points([(leg.z, leg.x) for leg in self.drawn_legs])
+            if pane.aspect is PathViewKind.PATH and self.shows_whole_approach:
+                pane.set_extra_visible_points([(leg.z, leg.x) for leg in self.drawn_legs])
 
     def _show_tool(self) -> None:
         if self._tip is not None:
             for pane in self.panes:
                 pane.set_run_state(
-                    self._tip.active_block, self._find_tip_position(pane, self._tip), self._tip.stop_position
+                    self._tip.active_block_number,
+                    self._find_tip_position(pane, self._tip),
+                    self._tip.stop_position,
                 )
 
     def _find_tip_position(self, pane: PathPane, tip: TipPosition) -> PlanePosition | None:
@@ -249,10 +251,10 @@ class PathView(Panel):
         """Switch to the next view if there are several."""
         if self._set is not None and self.has_several_views:
             measuring = self.measurement is not None
-            self.set_measuring(is_on=False)
+            self.switch_measuring(is_on=False)
             self._set.select_next_view()
             self._lay_out()
-            self.set_measuring(is_on=measuring)
+            self.switch_measuring(is_on=measuring)
 
     def show_part(self) -> None:
         """Switch to a view of the part if one exists."""
@@ -308,7 +310,7 @@ class PathView(Panel):
 
     # --- measuring and picking -----------------------------------------------------------------------
 
-    def set_measuring(self, *, is_on: bool | None = None) -> None:
+    def switch_measuring(self, *, is_on: bool | None = None) -> None:
         """Start or stop measuring in the last pane.
 
         With None, start measuring if it is off, and stop it if it is on.
@@ -335,7 +337,7 @@ class PathView(Panel):
 
     def _find_touch_target(self, at: QPointF) -> PathPane | PartTimeline | None:
         """Return the timeline or pane at a position, or None if a button of the view is there."""
-        if self.press_at(at):
+        if self.press_target_at(at):
             return None
         if self._bar is not None and self.is_part_shown and self._bar.handle_touch(at):
             return self._bar
@@ -361,7 +363,7 @@ class PathView(Panel):
         if self.measurement is not None:
             ruler = self.measurement if self.measurement.pane is pane else self._measure_in(pane)
             ruler.move_cursor(at)
-            ruler.set_point()
+            ruler.set_measured_point()
             self.update()
         elif self._picked is not None and (block := pane.find_block(at)):
             self._picked(block)
@@ -382,7 +384,7 @@ class PathView(Panel):
     def focusOutEvent(self, event: QFocusEvent) -> None:
         """Stop measuring when another widget gets the focus, but not when another window gets it."""
         if event.reason() is not Qt.FocusReason.ActiveWindowFocusReason:
-            self.set_measuring(is_on=False)
+            self.switch_measuring(is_on=False)
 
     def event(self, event: QEvent) -> bool:
         """Handle touch events, and pass all other events to the base class."""
@@ -398,7 +400,7 @@ class PathView(Panel):
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Move the picture during a drag."""
-        self._pointer.move_pointer(event.position())
+        self._pointer.handle_pointer_motion(event.position())
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """End a drag, or handle a touch if the pointer did not move."""
@@ -414,11 +416,11 @@ class PathView(Panel):
         look, panes = self.theme, self.panes
         if not panes:
             why = tr("Loading the program.") if self.is_loading else tr("Load a program to see its path.")
-            marks.draw_no_path(painter, look, self.inside(), why)
+            marks.draw_no_path_reason(painter, look, self.inside(), why)
             return
         for pane in panes:
             draw_pane(painter, look, pane, self.drawn_legs, self.measurement, is_metric=self.is_metric)
-            if pane.aspect is not PathAspect.PATH and pane is not panes[0]:
+            if pane.aspect is not PathViewKind.PATH and pane is not panes[0]:
                 marks.draw_border(painter, look, pane.area)
         if (
             self.measurement is not None and self.measurement.pane.aspect not in SPATIAL_ASPECTS
@@ -441,7 +443,9 @@ class PathView(Panel):
         )
         apart = panes[0].largest_distance
         if apart is not None:
-            marks.draw_title(painter, look, panes[0].area, marks.describe_difference(apart, self.is_metric))
+            marks.draw_title(
+                painter, look, panes[0].area, marks.describe_largest_difference(apart, self.is_metric)
+            )
 
     def _draw_bar(self, painter: QPainter) -> None:
         """Draw the timeline of the part."""
@@ -462,7 +466,7 @@ class PathView(Panel):
             ViewButton("+", lambda: self.zoom_view(1)),
             ViewButton("−", lambda: self.zoom_view(-1)),
             ViewButton(tr("FIT"), self.fit_all_panes),
-            ViewButton(tr("MEAS"), self.set_measuring, self.measurement is not None),
+            ViewButton(tr("MEAS"), self.switch_measuring, self.measurement is not None),
         ]
         if self.has_several_views:
             # A low pane does not have room for all buttons.

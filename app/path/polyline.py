@@ -20,7 +20,7 @@ Bounds = tuple[float, float, float, float]
 SAME_POINT_MM = 1e-7  # mm
 
 
-class Stroke(IntEnum):
+class StrokeKind(IntEnum):
     """Kinds of stroke. Each point of a polyline has the kind of the chord that ends there.
 
     ``TURN`` strokes cut on both sides of X0.
@@ -84,7 +84,7 @@ class PolylineBuilder:
         """Set the start point, and add a jump if it differs from the last point."""
         if self.z and abs(self.z[-1] - z) < SAME_POINT_MM and abs(self.x[-1] - x) < SAME_POINT_MM:
             return
-        self.add_point(z, x, Stroke.JUMP)
+        self.add_point(z, x, StrokeKind.JUMP)
 
     def add_point(self, z: float, x: float, stroke: int) -> None:
         """Append a point with the kind of the stroke that ends there."""
@@ -118,7 +118,7 @@ def find_bounds(z: FloatArray, x: FloatArray, stroke: npt.NDArray[np.uint8]) -> 
     """Return the bounding box of all cuts, or of all points if there are no cuts."""
     if not len(z):
         return 0.0, 0.0, 0.0, 0.0
-    cut = np.flatnonzero(stroke >= Stroke.TURN)
+    cut = np.flatnonzero(stroke >= StrokeKind.TURN)
     if len(cut):
         # A stroke starts at the preceding point.
         index = np.concatenate((cut, np.maximum(cut - 1, 0)))

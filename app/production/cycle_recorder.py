@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from core.executor.snapshot import LogEvent, MachineState
-from core.store.production.part_cycles import CycleRow, ProductionRow, StopRow
+from core.store.production.part_cycles import CycleRow, ProductionRow, ProductionStopRow
 from core.store.store_rows import get_utc_now_text
 
 COMPLETE, UNCOUNTED, GIVEN_UP, RESTARTED = "COMPLETE", "NOT COUNTED", "GIVEN UP", "RESTARTED"
@@ -24,16 +24,16 @@ class _Cycle:
     """Cycle of the current part: its row, its start time, and its total stopped time in seconds."""
 
     row: CycleRow
-    start_time: float
+    start_time_s: float
     stopped_s: float = 0.0
     is_restarted: bool = False
 
 
 @dataclass(slots=True)
 class _Stop:
-    row: StopRow
-    start_time: float
-    is_named: bool  # whether the reason is more specific than the name of the state
+    row: ProductionStopRow
+    start_time_s: float
+    has_specific_reason: bool  # whether the reason is more specific than the name of the state
 
 
 class CycleRecorder:
@@ -96,10 +96,10 @@ class CycleRecorder:
         if cycle is None:
             return
         if self._stop is not None and self._stop.row.cycle:
-            cycle.stopped_s += event.time_s - self._stop.start_time
+            cycle.stopped_s += event.time_s - self._stop.start_time_s
         if cycle.is_restarted and outcome == COMPLETE:
             outcome = RESTARTED
-        seconds = max(0.0, event.time_s - cycle.start_time - cycle.stopped_s)
+        seconds = max(0.0, event.time_s - cycle.start_time_s - cycle.stopped_s)
         row = cycle.row._replace(
             part=event.part_number,
             ended=self._now(),
@@ -126,7 +126,7 @@ class CycleRecorder:
         if event.text != MachineState.STOPPING.value:
             self._reason = ""
         if self._stop is not None:
-            cycle.stopped_s += event.time_s - self._stop.start_time
+            cycle.stopped_s += event.time_s - self._stop.start_time_s
             self._end_stop(event)
 
     def _interrupt_cycle(self, event: LogEvent) -> None:
@@ -144,7 +144,9 @@ class CycleRecorder:
         key, now = self._key()
         cycle = self._cycle.row.key if self._cycle is not None else ""
         self._stop = _Stop(
-            StopRow(key, cycle, self._program, now, 0.0, reason, event.line_number), event.time_s, named
+            ProductionStopRow(key, cycle, self._program, now, 0.0, reason, event.line_number),
+            event.time_s,
+            named,
         )
         self._reason = ""
 
@@ -152,7 +154,7 @@ class CycleRecorder:
         stop, self._stop, self._reason = self._stop, None, ""
         if stop is None:
             return
-        row = stop.row._replace(seconds=max(0.0, event.time_s - stop.start_time))
+        row = stop.row._replace(seconds=max(0.0, event.time_s - stop.start_time_s))
         self._rows.append(row)
 
     def _name_reason(self, reason: str) -> None:
@@ -160,5 +162,5 @@ class CycleRecorder:
         stop = self._stop
         if stop is None:
             self._reason = reason
-        elif not stop.is_named:
-            self._stop = replace(stop, row=stop.row._replace(reason=reason), is_named=True)
+        elif not stop.has_specific_reason:
+            self._stop = replace(stop, row=stop.row._replace(reason=reason), has_specific_reason=True)

@@ -11,11 +11,11 @@ from typing import Any
 
 from app.desk.access import UserAccess
 from app.desk.background_work import LatestRequestWorker
-from app.production.tool_totals import TOTALS_SETTING, ToolTotals
+from app.production.tool_totals import TOTALS_SETTING, ToolUseTotals
 from core.access.access_table import ProtectedChange
 from core.message import Message
 from core.store.production import part_cycles, tool_lives
-from core.store.production.part_cycles import StopRow
+from core.store.production.part_cycles import ProductionStopRow
 from core.store.production.tool_lives import ToolLifeRow
 from core.store.settings import save_setting
 from core.store.store import Store
@@ -38,7 +38,7 @@ class ProductionData:
 
     program_name: str = ""
     tool_lives: dict[int, ToolLifeRow] = field(default_factory=dict)
-    stops: tuple[StopRow, ...] = ()  # stops of all programs, oldest first
+    stops: tuple[ProductionStopRow, ...] = ()  # stops of all programs, oldest first
     feature_data: Mapping[str, Any] = field(default_factory=dict)  # by the name of the feature
 
 
@@ -65,7 +65,7 @@ def find_tool_table_kind(machine_kind: str) -> OffsetKind:
 
 
 @dataclass(slots=True)
-class PartsBook:
+class ProductionRecords:
     """Access to stored production data.
 
     ``update`` is called once a frame, and ``current_data`` is the latest data. A worker reads the data, and
@@ -75,7 +75,7 @@ class PartsBook:
 
     store: Store | None = None
     no_store_reason: str = ""
-    tool_kind: OffsetKind = OffsetKind.TOOL  # tool table of this machine
+    tool_table_kind: OffsetKind = OffsetKind.TOOL  # tool table of this machine
     current_data: ProductionData = field(default_factory=ProductionData)
     user_access: UserAccess = field(default_factory=UserAccess)  # user and permissions for changes
     error_text: str = ""  # reason for the last failure of reading or writing
@@ -118,7 +118,7 @@ class PartsBook:
         store = self.store
         if store is not None and not self.worker.is_busy and self._is_reload_due(store):
             self._reading = True
-            work = partial(read_production_data, store, program, self.tool_kind, self.feature_readers)
+            work = partial(read_production_data, store, program, self.tool_table_kind, self.feature_readers)
             self.worker.request_work(lambda _watch: work(), self._read, self._failed)
 
     def _is_reload_due(self, store: Store) -> bool:
@@ -172,7 +172,7 @@ class PartsBook:
         return bool(self._saving or self._kept)
 
     @property
-    def is_settled(self) -> bool:
+    def is_up_to_date(self) -> bool:
         """Return whether ``current_data`` equals the stored data and no read or write is pending."""
         return not (self.is_busy or self._stale or self._behind is not None or self._reading)
 
@@ -192,30 +192,30 @@ class PartsBook:
         why = (
             (self.no_store_reason or PARTS_NOT_STORED)
             if self.store is None
-            else self.user_access.find_refusal(access_right)
+            else self.user_access.find_refusal_reason(access_right)
         )
         if self.store is None or why:
             on_failed(why)
             return
 
-        def kept() -> None:
+        def report_stored() -> None:
             if description:
                 self.user_access.persistence.log_change(description)
             on_done()
 
         try:
-            self._saving.append((self.store.write(operation), kept, on_failed))
+            self._saving.append((self.store.write(operation), report_stored, on_failed))
         except StoreError as error:
             on_failed(str(error))
 
-    def save_tool_use(self, lives: Iterable[ToolLifeRow], totals: ToolTotals | None = None) -> None:
+    def save_tool_use(self, lives: Iterable[ToolLifeRow], totals: ToolUseTotals | None = None) -> None:
         """Store tool use and, in the same transaction, the control's totals that include it."""
-        store, tools = self.store, self.tool_kind
+        store, tools = self.store, self.tool_table_kind
         if store is None:
             return
         rows = tuple(lives)
 
-        def keeping(unwritten: WaitingEntries) -> None:
+        def queue_tool_use(unwritten: WaitingEntries) -> None:
             for row in rows:
                 use = (row.number, row.parts, row.seconds, tools)
                 unwritten.replace_operation(("life", str(row.number)), partial(_set_use, use))
@@ -225,9 +225,9 @@ class PartsBook:
                     lambda c: save_setting(c, TOTALS_SETTING, totals.setting_value),
                 )
 
-        store.keep(keeping)
+        store.keep(queue_tool_use)
 
-    def use_store(self, store: Store | None, error_text: str) -> None:
+    def switch_store(self, store: Store | None, error_text: str) -> None:
         """Replace the store.
 
         Any thread may call this.
@@ -240,4 +240,4 @@ class PartsBook:
 
 
 def _set_use(use: tuple[int, int, float, OffsetKind], connection: sqlite3.Connection) -> None:
-    tool_lives.save_use(connection, *use)
+    tool_lives.save_insert_use(connection, *use)

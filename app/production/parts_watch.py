@@ -9,9 +9,9 @@ from typing import Protocol
 from app.desk.desk import Desk
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.translation import tr
-from app.production.parts_book import PartsBook
-from app.production.tool_life_watch import ToolLifeWatch
-from core.executor.commands import BlockNextPart
+from app.production.parts_book import ProductionRecords
+from app.production.tool_life_watch import ToolLifeMonitor
+from core.executor.commands import PreventNextPart
 from core.executor.snapshot import Snapshot
 from core.message import Message, join_messages
 
@@ -19,7 +19,7 @@ from core.message import Message, join_messages
 class ProductionPlan(Protocol):
     """An optional feature that plans the next parts and can prevent their start."""
 
-    def find_block_reason(self, snapshot: Snapshot) -> str:
+    def find_lock_reason(self, snapshot: Snapshot) -> str:
         """Return why the next part must not start, or an empty string."""
 
     def find_reminder(self) -> str:
@@ -27,15 +27,15 @@ class ProductionPlan(Protocol):
 
 
 @dataclass(slots=True)
-class PartsWatch:
+class ProductionMonitor:
     """Monitor of production: tool life, due measurements and reasons to prevent the next part.
 
     ``observe`` is called once a frame. The prompt line calls ``find_reminder``, which does not wait.
     """
 
     desk: Desk
-    parts_book: PartsBook
-    tool_life_watch: ToolLifeWatch
+    production_records: ProductionRecords
+    tool_life_monitor: ToolLifeMonitor
     _ends: int = -1
     _changes: int = -1
     _store: object = None
@@ -47,31 +47,31 @@ class PartsWatch:
         """Return the name of the loaded program."""
         return Path(self.desk.program_loader.loaded_program.name).name
 
-    def observe(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
+    def observe_frame(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Update production data, tool life and the lock of the next part.
 
         This is called once a frame.
         """
         if snapshot.ends != self._ends or self.desk.offset_book.changes != self._changes:
             self._ends, self._changes = snapshot.ends, self.desk.offset_book.changes
-            self.parts_book.request_reload()
-        self.parts_book.update(self.program_name)
-        if self.parts_book.store is not self._store:
-            self._store = self.parts_book.store
-            self.tool_life_watch.discard_counts()
-        self.tool_life_watch.observe(snapshot, self.desk.say)
+            self.production_records.request_reload()
+        self.production_records.update(self.program_name)
+        if self.production_records.store is not self._store:
+            self._store = self.production_records.store
+            self.tool_life_monitor.discard_counts()
+        self.tool_life_monitor.process_snapshot(snapshot, self.desk.say)
         self._update_block(snapshot, loaded)
 
     def _update_block(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Send the block reason to the executor before the part ends, to prevent the next part."""
         tools = loaded.proof.tool_numbers if loaded.proof is not None else ()
         bars = (
-            self.tool_life_watch.find_block_reason(snapshot, tools),
-            *(plan.find_block_reason(snapshot) for plan in self.production_plans),
+            self.tool_life_monitor.find_lock_reason(snapshot, tools),
+            *(plan.find_lock_reason(snapshot) for plan in self.production_plans),
         )
         wanted = next(filter(None, bars), "")
         if wanted not in {snapshot.next_barred, self._barred}:
-            self.desk.post(BlockNextPart(wanted))
+            self.desk.post(PreventNextPart(wanted))
         self._barred = wanted
 
     def find_reminder(self) -> str:
@@ -82,7 +82,7 @@ class PartsWatch:
                 None,
                 (
                     *(plan.find_reminder() for plan in self.production_plans),
-                    self.tool_life_watch.find_reminder(),
+                    self.tool_life_monitor.find_reminder(),
                 ),
             ),
         )
@@ -93,5 +93,5 @@ class PartsWatch:
 
     def close(self) -> None:
         """Store the remaining tool use, and stop the worker."""
-        self.tool_life_watch.save_all()
-        self.parts_book.close()
+        self.tool_life_monitor.save_all_tool_use()
+        self.production_records.close()

@@ -7,8 +7,8 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from app.desk.translation import tr
-from app.production.parts_book import PartsBook
-from app.production.tool_totals import TOTALS_SETTING, ToolTotals
+from app.production.parts_book import ProductionRecords
+from app.production.tool_totals import TOTALS_SETTING, ToolUseTotals
 from core.access.access_table import ProtectedChange
 from core.executor.snapshot import CYCLE_STATES, Snapshot
 from core.message import Message
@@ -28,55 +28,55 @@ def make_tool_life(row: ToolLifeRow) -> ToolLife:
 
 
 @dataclass(slots=True)
-class ToolLifeWatch:
+class ToolLifeMonitor:
     """Monitor of tool life.
 
     The use of a tool starts from the stored use. From then on, this object counts the use of the tool. The
     limits are in the store. On a mill, the counts apply to a whole tool instead of an insert.
     """
 
-    parts_book: PartsBook
+    production_records: ProductionRecords
     read_control_id: Callable[[], str] = str  # identity of the control process, empty without one
     # parts and seconds since the last change of insert
-    counted_use: dict[int, tuple[int, float]] = field(default_factory=dict)
+    tool_use_counts: dict[int, tuple[int, float]] = field(default_factory=dict)
     _kept: dict[int, float] = field(default_factory=dict)  # stored seconds
     _cut: Mapping[int, float] = field(default_factory=dict)  # cutting seconds of the last snapshot
     _in_part: set[int] = field(default_factory=set)  # tools that have cut since the last end of a part
     _ends: int = -1
     _control: str | None = None  # identity of the control to which the totals belong
     _told: dict[int, ToolLifeState] = field(default_factory=dict)
-    _changes: int = 0  # number of changes of ``counted_use``
+    _changes: int = 0  # number of changes of ``tool_use_counts``
     _lives: tuple[object, dict[int, ToolLife]] = field(default=(None, {}))
     _due: tuple[object, str] = (None, "")
     _seen: object = None
 
-    def read_lives(self) -> dict[int, ToolLife]:
+    def find_tool_lives(self) -> dict[int, ToolLife]:
         """Return the tool life of all tools that have a limit or were used.
 
         The same object is returned until something changes.
         """
-        of = (self.parts_book.load_count, self._changes)
+        of = (self.production_records.load_count, self._changes)
         if self._lives[0] != of:
             self._lives = of, self._found()
         return self._lives[1]
 
     def _found(self) -> dict[int, ToolLife]:
-        rows = self.parts_book.current_data.tool_lives
+        rows = self.production_records.current_data.tool_lives
         found = {}
-        for number in sorted({*rows, *self.counted_use}):
+        for number in sorted({*rows, *self.tool_use_counts}):
             row = rows.get(number, ToolLifeRow(number))
-            parts, seconds = self.counted_use.get(number, (row.parts, row.seconds))
+            parts, seconds = self.tool_use_counts.get(number, (row.parts, row.seconds))
             found[number] = replace(make_tool_life(row), parts=parts, seconds=seconds)
         return found
 
-    def observe(self, snapshot: Snapshot, show_message: Callable[[str], None]) -> None:
+    def process_snapshot(self, snapshot: Snapshot, show_message: Callable[[str], None]) -> None:
         """Update the use of tools from a snapshot, and report tool life.
 
         This is called once a frame.
         """
         if self._control != self.read_control_id():
             self._begin(snapshot, self.read_control_id())
-        if not self.parts_book.load_count and self.parts_book.store is not None:
+        if not self.production_records.load_count and self.production_records.store is not None:
             return  # The stored counts are not known yet; the totals of the snapshot remain until then.
         for number, seconds in snapshot.cutting.items():
             more = seconds - self._cut.get(number, 0.0)
@@ -103,107 +103,115 @@ class ToolLifeWatch:
         """
         self._control, self._ends, self._cut = control, snapshot.ends, snapshot.cutting
         stored = (
-            ToolTotals.from_setting(self.parts_book.user_access.persistence.read_setting(TOTALS_SETTING))
+            ToolUseTotals.from_setting(
+                self.production_records.user_access.persistence.read_setting(TOTALS_SETTING)
+            )
             if control
             else None
         )
         if stored is not None and stored.control_identity == control:
             self._ends, self._cut, self._in_part = (
                 stored.finished_part_count,
-                stored.cutting_seconds,
-                set(stored.tools_in_part),
+                stored.cutting_seconds_by_tool,
+                set(stored.current_part_tools),
             )
         elif control:
-            self.parts_book.save_tool_use((), self._totals())
+            self.production_records.save_tool_use((), self._totals())
 
-    def _totals(self) -> ToolTotals | None:
+    def _totals(self) -> ToolUseTotals | None:
         if not self._control:
             return None
-        return ToolTotals(self._control, self._ends, dict(self._cut), frozenset(self._in_part))
+        return ToolUseTotals(self._control, self._ends, dict(self._cut), frozenset(self._in_part))
 
     def _add(self, number: int, parts: int, seconds: float) -> None:
-        row = self.parts_book.current_data.tool_lives.get(number, ToolLifeRow(number))
-        before = self.counted_use.get(number, (row.parts, row.seconds))
-        self.counted_use[number] = before[0] + parts, before[1] + seconds
+        row = self.production_records.current_data.tool_lives.get(number, ToolLifeRow(number))
+        before = self.tool_use_counts.get(number, (row.parts, row.seconds))
+        self.tool_use_counts[number] = before[0] + parts, before[1] + seconds
         self._changes += 1
 
     def _unkept(self, number: int) -> float:
-        used = self.counted_use.get(number)
+        used = self.tool_use_counts.get(number)
         return used[1] - self._kept.get(number, 0.0) if used is not None else 0.0
 
     def _keep(self, numbers: set[int]) -> None:
         rows = []
         for number in numbers:
-            parts, seconds = self.counted_use[number]
+            parts, seconds = self.tool_use_counts[number]
             self._kept[number] = seconds
             rows.append(ToolLifeRow(number, parts=parts, seconds=seconds))
         if rows:
-            self.parts_book.save_tool_use(rows, self._totals())
+            self.production_records.save_tool_use(rows, self._totals())
 
-    def save_all(self) -> None:
+    def save_all_tool_use(self) -> None:
         """Store the use of all tools when TurnDesk closes."""
-        self._keep({number for number in self.counted_use if self._unkept(number)})
+        self._keep({number for number in self.tool_use_counts if self._unkept(number)})
 
     def _report(self, show_message: Callable[[str], None]) -> None:
         """Report a tool once when it reaches its warning limit, and once when its life is used up."""
-        if self._seen is self.read_lives():
+        if self._seen is self.find_tool_lives():
             return
-        self._seen = self.read_lives()
-        for number, life in self.read_lives().items():
+        self._seen = self.find_tool_lives()
+        for number, life in self.find_tool_lives().items():
             before = self._told.get(number)
             self._told[number] = life.state
             if before is not None and life.state is not before and life.state in _REPORTED_STATES:
-                show_message(make_life_notice(life))
+                show_message(make_tool_life_notice(life))
 
     # --- inserts -------------------------------------------------------------------------------------
 
-    def change_insert(self, number: int, reason: str, on_done: Callable[[str], None]) -> None:
+    def record_insert_change(self, number: int, reason: str, on_done: Callable[[str], None]) -> None:
         """Reset the use of a tool after a change of insert.
 
         ``on_done`` is called with the result.
         """
-        parts, seconds = self.counted_use.get(number, (0, 0.0))
-        known, who = number in self.counted_use, self.parts_book.user_access.persistence.who()
+        parts, seconds = self.tool_use_counts.get(number, (0, 0.0))
+        known, who = number in self.tool_use_counts, self.production_records.user_access.persistence.who()
 
-        def operation(connection: sqlite3.Connection) -> None:
+        def write_insert_change(connection: sqlite3.Connection) -> None:
             if known:
-                tool_lives.save_use(connection, number, parts, seconds, self.parts_book.tool_kind)
-            tool_lives.record_insert_change(connection, number, reason, self.parts_book.tool_kind, who)
+                tool_lives.save_insert_use(
+                    connection, number, parts, seconds, self.production_records.tool_table_kind
+                )
+            tool_lives.record_insert_change(
+                connection, number, reason, self.production_records.tool_table_kind, who
+            )
 
-        def done() -> None:
-            more_parts, more_seconds = self.counted_use.get(number, (parts, seconds))
-            self.counted_use[number] = max(0, more_parts - parts), max(0.0, more_seconds - seconds)
+        def reset_tool_use() -> None:
+            more_parts, more_seconds = self.tool_use_counts.get(number, (parts, seconds))
+            self.tool_use_counts[number] = max(0, more_parts - parts), max(0.0, more_seconds - seconds)
             self._kept[number] = 0.0
             self._changes += 1
             words = tr("T{number}: NEW INSERT, TOOL LIFE STARTS AT ZERO")
-            if self.parts_book.tool_kind is OffsetKind.MILL_TOOL:
+            if self.production_records.tool_table_kind is OffsetKind.MILL_TOOL:
                 words = tr("T{number}: NEW TOOL, TOOL LIFE STARTS AT ZERO")
             on_done(tr(Message(words, number=number)))
 
-        self.parts_book.write_change(ProtectedChange.INSERTS, operation, done, on_done)
+        self.production_records.write_change(
+            ProtectedChange.INSERTS, write_insert_change, reset_tool_use, on_done
+        )
 
     def set_cutting_time(self, number: int, cutting_time_s: float, on_done: Callable[[str], None]) -> None:
         """Set the cutting time of the tool in the spindle in seconds.
 
         A value of 0 means a new tool.
         """
-        life = self.read_lives().get(number)
+        life = self.find_tool_lives().get(number)
         if cutting_time_s <= 0.0:
-            self.change_insert(number, life.words if life is not None else "", on_done)
+            self.record_insert_change(number, life.words if life is not None else "", on_done)
             return
         parts = life.parts if life is not None else 0
 
-        def done() -> None:
-            self.counted_use[number], self._kept[number] = (parts, cutting_time_s), cutting_time_s
+        def apply_cutting_time() -> None:
+            self.tool_use_counts[number], self._kept[number] = (parts, cutting_time_s), cutting_time_s
             self._changes += 1
             on_done(tr(Message("T{number} SAVED", number=number)))
 
-        self.parts_book.write_change(
+        self.production_records.write_change(
             ProtectedChange.INSERTS,
-            lambda connection: tool_lives.save_use(
-                connection, number, parts, cutting_time_s, self.parts_book.tool_kind
+            lambda connection: tool_lives.save_insert_use(
+                connection, number, parts, cutting_time_s, self.production_records.tool_table_kind
             ),
-            done,
+            apply_cutting_time,
             on_done,
             Message(
                 "cutting time of T{number} set to {seconds} min",
@@ -214,20 +222,23 @@ class ToolLifeWatch:
 
     def discard_counts(self) -> None:
         """Discard the counts, because another store replaces the current store."""
-        self.counted_use, self._kept = {}, {}
+        self.tool_use_counts, self._kept = {}, {}
         self._changes += 1
 
     # --- messages and lock -------------------------------------------------------------------------------
 
     def find_reminder(self) -> str:
         """Return the message about the tool that is nearest to the end of its life, or an empty string."""
-        lives = self.read_lives()
+        lives = self.find_tool_lives()
         if self._due[0] is not lives:
             alerts = [life for life in lives.values() if life.state in _REPORTED_STATES]
-            self._due = lives, make_life_notice(max(alerts, key=lambda life: life.share)) if alerts else ""
+            self._due = (
+                lives,
+                make_tool_life_notice(max(alerts, key=lambda life: life.share)) if alerts else "",
+            )
         return self._due[1]
 
-    def find_block_reason(self, snapshot: Snapshot, tools: Collection[int]) -> str:
+    def find_lock_reason(self, snapshot: Snapshot, tools: Collection[int]) -> str:
         """Return why no part with these tools may start, or an empty string if it may.
 
         The use by the current part is included.
@@ -235,17 +246,17 @@ class ToolLifeWatch:
         for life in self._stopping(tools):
             after = replace(life, parts=life.parts + 1) if snapshot.counts else life
             if after.state is ToolLifeState.USED_UP:
-                return describe_used_up_tool(after, self.parts_book.tool_kind)
+                return describe_used_up_tool(after, self.production_records.tool_table_kind)
         return ""
 
     def _stopping(self, used: Collection[int]) -> Iterator[ToolLife]:
-        yield from (life for life in self.read_lives().values() if life.stops and life.number in used)
+        yield from (life for life in self.find_tool_lives().values() if life.stops and life.number in used)
 
 
 _REPORTED_STATES = frozenset({ToolLifeState.WARNING, ToolLifeState.USED_UP})
 
 
-def make_life_notice(life: ToolLife) -> str:
+def make_tool_life_notice(life: ToolLife) -> str:
     """Return the message about a tool whose life is ending."""
     if life.state is ToolLifeState.USED_UP:
         return tr(Message("TOOL {number} LIFE USED UP: {words}", number=life.number, words=tr(life.words)))

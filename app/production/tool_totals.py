@@ -9,27 +9,27 @@ TOTALS_SETTING = "tool_totals"  # key of the setting
 
 
 @dataclass(frozen=True, slots=True)
-class ToolTotals:
+class ToolUseTotals:
     """Totals of a control: finished parts, cutting seconds by tool, and tools of the current part."""
 
     control_identity: str
     finished_part_count: int = 0
-    cutting_seconds: Mapping[int, float] = field(default_factory=dict)
-    tools_in_part: frozenset[int] = frozenset()
+    cutting_seconds_by_tool: Mapping[int, float] = field(default_factory=dict)
+    current_part_tools: frozenset[int] = frozenset()
 
     @property
     def setting_value(self) -> dict[str, object]:
         """Return the totals as the value of a setting."""
-        cut = {str(number): seconds for number, seconds in self.cutting_seconds.items()}
+        cut = {str(number): seconds for number, seconds in self.cutting_seconds_by_tool.items()}
         return {
             "control": self.control_identity,
             "ends": self.finished_part_count,
             "cut": cut,
-            "in_part": sorted(self.tools_in_part),
+            "in_part": sorted(self.current_part_tools),
         }
 
     @classmethod
-    def from_setting(cls, value: object) -> ToolTotals | None:
+    def from_setting(cls, value: object) -> ToolUseTotals | None:
         """Return the totals of a setting value, or None if the value is missing or damaged."""
         match value:
             case {

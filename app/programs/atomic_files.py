@@ -131,7 +131,7 @@ def flush_folder(folder: Path) -> None:
     sync_all_files()
 
 
-def read_if_exists(path: Path) -> bytes | None:
+def read_file_if_exists(path: Path) -> bytes | None:
     """Return the content of a file, or None if the file does not exist.
 
     Raise FileOperationError if the file cannot be read.

@@ -57,7 +57,7 @@ class FilePrompt(RowPanel):
         return FILE_NOT_FOUND_TEXT if self.is_not_found else ""
 
     @property
-    def wanted_name(self) -> str:
+    def requested_name(self) -> str:
         """Return the name or path of the program on which F3 acts.
 
         This is the row that the user selected, or otherwise the typed name, which may be an empty string.
@@ -128,7 +128,7 @@ class FilePrompt(RowPanel):
         self._narrow(text)
 
     def _narrow(self, text: str) -> None:
-        self._entries = self._shelf.find_matching(text)
+        self._entries = self._shelf.find_matching_programs(text)
         self._row = 0
         self.update()
 

@@ -22,10 +22,10 @@ from app.programs.atomic_files import (
     FileOperationError,
     copy_to_medium,
     flush_folder,
-    read_if_exists,
+    read_file_if_exists,
     write_program_file,
 )
-from app.programs.program_commands import COMMAND_IN_PROGRESS, complete_name, find_same_name
+from app.programs.program_commands import COMMAND_IN_PROGRESS, add_missing_extension, find_matching_file_name
 from app.programs.removable_media import FolderChooser, TargetMedium, describe_media_error, make_chooser_table
 from core.access.access_table import ProtectedChange
 from core.input_file import TooLargeError, read_input_bytes
@@ -51,7 +51,7 @@ class TransferResult:
     """
 
     copied_names: tuple[str, ...] = ()
-    different_names: tuple[str, ...] = ()
+    conflicting_names: tuple[str, ...] = ()
     proof_errors: tuple[str, ...] = ()
 
 
@@ -71,18 +71,18 @@ def import_programs(
     copied unless ``may_overwrite`` is True. Raise FileOperationError on failure.
     """
     texts = {
-        complete_name(path.name, path, lambda name: is_program_name(name) or is_drawing(name)): (
+        add_missing_extension(path.name, path, lambda name: is_program_name(name) or is_drawing(name)): (
             _bytes(path) if is_drawing(path.name) else _read_program(path)
         )
         for path in sources
     }
     differing = _find_different(texts, folder)
     if differing and not may_overwrite:
-        return TransferResult(different_names=differing)
+        return TransferResult(conflicting_names=differing)
     found = []
     for number, (name, text) in enumerate(texts.items()):
         report_progress(number, len(texts))
-        target = folder / (find_same_name(folder, name) or name)
+        target = folder / (find_matching_file_name(folder, name) or name)
         _keep_old(target, persistence, text)
         write_program_file(target, text)
         if not is_drawing(target.name) and (problem := check_program(target)):
@@ -106,19 +106,19 @@ def export_programs(
     """
     texts = {path.name: _bytes(path) for path in sources}
     medium = medium or TargetMedium.from_folder(folder)
-    medium.check_present()
+    medium.check_medium_present()
     differing = _find_different(texts, folder)
     if differing and not may_overwrite:
-        return TransferResult(different_names=differing)
+        return TransferResult(conflicting_names=differing)
     medium.check_free_space(sum(map(len, texts.values())))
     for number, (name, text) in enumerate(texts.items()):
         report_progress(number, len(texts))
         with _copy_context(medium, number, len(texts)):
-            medium.check_present()
-            copy_to_medium(folder / (find_same_name(folder, name) or name), text)
+            medium.check_medium_present()
+            copy_to_medium(folder / (find_matching_file_name(folder, name) or name), text)
     with _copy_context(medium, 0, len(texts)):
         flush_folder(folder)
-        medium.check_present()
+        medium.check_medium_present()
     return TransferResult(tuple(texts))
 
 
@@ -170,7 +170,7 @@ def _find_different(texts: dict[str, bytes], folder: Path) -> tuple[str, ...]:
     """Return the names of programs that exist in the folder with different text."""
     found = []
     for name, text in texts.items():
-        other = find_same_name(folder, name)
+        other = find_matching_file_name(folder, name)
         if other and _bytes(folder / other) != text:
             found.append(other)
     return tuple(found)
@@ -178,7 +178,7 @@ def _find_different(texts: dict[str, bytes], folder: Path) -> tuple[str, ...]:
 
 def _keep_old(target: Path, persistence: Persistence, text: bytes) -> None:
     try:
-        old = read_if_exists(target)
+        old = read_file_if_exists(target)
         if old is not None and old != text:
             persistence.save_version(target.name, old, "program replaced by an import")
     except (StoreError, FileOperationError) as error:
@@ -195,7 +195,7 @@ def _keep_old(target: Path, persistence: Persistence, text: bytes) -> None:
 
 
 @dataclass(slots=True)
-class ImportExport:
+class ProgramTransfer:
     """Import and export of programs through a folder chooser.
 
     ``check_program`` proves an imported program. ``on_finished`` is called when the program list must be
@@ -203,14 +203,14 @@ class ImportExport:
     """
 
     desk: Desk
-    own_folder: Path
+    operator_folder: Path
     persistence: Persistence
     worker: LatestRequestWorker
     check_program: CheckProgram
     folder_chooser: FolderChooser
     on_finished: Callable[[], None] = field(default=lambda: None)
     is_open: bool = False
-    is_export: bool = False
+    is_exporting: bool = False
     listed_paths: tuple[Path, ...] = ()  # programs of the list
     selected_path: Path | None = None  # selected program of the list
     _asked: tuple[Path, ...] = ()  # programs that are being copied
@@ -223,7 +223,7 @@ class ImportExport:
         """Open the folder chooser with the list of locations."""
         if not is_export and self.desk.is_refused(ProtectedChange.PROGRAMS):
             return
-        self.is_open, self.is_export, self.listed_paths, self.selected_path = (
+        self.is_open, self.is_exporting, self.listed_paths, self.selected_path = (
             True,
             is_export,
             listed_paths,
@@ -239,25 +239,27 @@ class ImportExport:
         self.is_open, self._asked = False, ()
 
     def _look(self) -> None:
-        self.worker.enqueue_work(self.folder_chooser.list_lines, self.folder_chooser.show_lines, self._unread)
+        self.worker.enqueue_work(
+            self.folder_chooser.list_entries, self.folder_chooser.show_entries, self._unread
+        )
 
     def _unread(self, why: str) -> None:
         self.desk.show_refusal(why)
         self.folder_chooser.current_folder = self.folder_chooser.top_folder = None
         self.worker.enqueue_work(
-            self.folder_chooser.list_lines, self.folder_chooser.show_lines, self.desk.say
+            self.folder_chooser.list_entries, self.folder_chooser.show_entries, self.desk.say
         )
 
     def make_table(self) -> TableContent:
         """Return the table of the open folder."""
         name = self.selected_path.name if self.selected_path else ""
         return make_chooser_table(
-            self.folder_chooser, Message("EXPORT {name}", name=name) if self.is_export else "IMPORT"
+            self.folder_chooser, Message("EXPORT {name}", name=name) if self.is_exporting else "IMPORT"
         )
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys for copying and refreshing."""
-        if self.is_export:
+        if self.is_exporting:
             return {
                 "F2": FunctionKey("REFRESH", self._look),
                 "F4": FunctionKey("COPY ONE", self._one_here),
@@ -274,20 +276,20 @@ class ImportExport:
         Arrow keys select a line, and Enter opens a folder or imports a program.
         """
         if key in ROW_STEPS:
-            self.select_line(self.folder_chooser.selected_row + ROW_STEPS[key])
+            self.select_entry(self.folder_chooser.selected_row + ROW_STEPS[key])
         elif key == "Enter":
             self._enter()
         else:
             return False
         return True
 
-    def select_line(self, row: int) -> None:
+    def select_entry(self, row: int) -> None:
         """Select a line of the chooser."""
         self._asked = ()
         self.desk.clear_prompt_line()
-        self.folder_chooser.selected_row = max(0, min(len(self.folder_chooser.listed_lines) - 1, row))
+        self.folder_chooser.selected_row = max(0, min(len(self.folder_chooser.listed_entries) - 1, row))
 
-    def touch_line(self, row: int) -> None:
+    def handle_entry_touch(self, row: int) -> None:
         """Select the touched line.
 
         A touch on the line that is already selected acts like Enter.
@@ -295,18 +297,18 @@ class ImportExport:
         if row == self.folder_chooser.selected_row:
             self._enter()
         else:
-            self.select_line(row)
+            self.select_entry(row)
 
     def _enter(self) -> None:
-        line = self.folder_chooser.selected_line
+        line = self.folder_chooser.selected_entry
         if line is None:
             return
         if line.is_folder:
             self._asked = ()
             self.desk.clear_prompt_line()
-            self.folder_chooser.open_line(line)
+            self.folder_chooser.open_entry(line)
             self._look()
-        elif self.is_export:
+        elif self.is_exporting:
             self.desk.say("F4: EXPORT TO THE OPEN FOLDER   ENTER: OPEN A FOLDER")
         else:
             self._send((line.path,))
@@ -338,14 +340,14 @@ class ImportExport:
         if self.worker.is_busy:
             self.desk.say(COMMAND_IN_PROGRESS)
             return
-        if not self.is_export and self.desk.is_refused(ProtectedChange.PROGRAMS):
+        if not self.is_exporting and self.desk.is_refused(ProtectedChange.PROGRAMS):
             return  # The access level may have expired since the chooser was opened.
         self._asked = paths
         self._at = at
         self._done_of = (0, len(paths))
         self.desk.clear_prompt_line()
         report_progress = self._update_progress
-        if self.is_export:
+        if self.is_exporting:
             work = partial(
                 export_programs,
                 paths,
@@ -358,7 +360,7 @@ class ImportExport:
             work = partial(
                 import_programs,
                 paths,
-                self.own_folder,
+                self.operator_folder,
                 self.persistence,
                 self.check_program,
                 may_overwrite=replace,
@@ -386,14 +388,14 @@ class ImportExport:
             return work()
         except FileOperationError:
             if medium is not None:
-                medium.check_present()
+                medium.check_medium_present()
             raise
 
     def _done(self, carried: TransferResult) -> None:
         self._done_of = (0, 0)
-        if carried.different_names:
-            names = ", ".join(carried.different_names[:3]) + (
-                " …" if len(carried.different_names) > 3 else ""
+        if carried.conflicting_names:
+            names = ", ".join(carried.conflicting_names[:3]) + (
+                " …" if len(carried.conflicting_names) > 3 else ""
             )
             asked = tr("EXISTS WITH DIFFERENT CONTENT: {names}. Y: REPLACE   N: KEEP")
             again = partial(self._carry, self._asked, self._at, replace=True)
@@ -401,11 +403,11 @@ class ImportExport:
             return
         self._asked = ()
         count = len(carried.copied_names)
-        if not self.is_export:
+        if not self.is_exporting:
             self.persistence.log_change(
                 Message("programs imported: {done}", done=", ".join(carried.copied_names))
             )
-        if self.is_export:
+        if self.is_exporting:
             words = tr(
                 Message(
                     "COPIED AND VERIFIED: {count}. YOU CAN REMOVE THE USB STICK",
@@ -437,6 +439,6 @@ class ImportExport:
         if of:
             words = tr("COPYING PROGRAM {number} OF {of}. DO NOT REMOVE THE USB STICK")
             return tr(Message(words, number=min(done + 1, of), of=of))
-        if self.is_export:
+        if self.is_exporting:
             return "ENTER: OPEN   F4: COPY FILE HERE   F5: COPY ALL   ESC: BACK"
         return "ENTER: OPEN FOLDER OR IMPORT   F5: IMPORT ALL   ESC: BACK"

@@ -16,7 +16,7 @@ from app.desk.persistence import Persistence
 from app.desk.programs.program_folder import PROGRAM_EXTENSIONS, AcceptsName, is_program_name
 from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
-from app.programs.atomic_files import FileOperationError, read_if_exists, write_program_file
+from app.programs.atomic_files import FileOperationError, read_file_if_exists, write_program_file
 from app.programs.program_rows import ListedFile
 from core.access.access_table import ProtectedChange
 from core.message import Message
@@ -29,7 +29,9 @@ COMMAND_IN_PROGRESS = "STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE"
 COPY, RENAME = "NAME FOR THE COPY?", "NEW NAME?"
 
 
-def complete_name(name: str, reference_name: Path, accepts_name: AcceptsName = is_program_name) -> str:
+def add_missing_extension(
+    name: str, reference_name: Path, accepts_name: AcceptsName = is_program_name
+) -> str:
     """Return ``name`` without surrounding blanks, with an extension that ``accepts_name`` accepts.
 
     The extension of ``reference_name`` is added if ``name`` has no extension or an extension that is not
@@ -60,7 +62,7 @@ def remove_extension(name: str) -> str:
     return name if Path(left).suffix.lower() in PROGRAM_EXTENSIONS - {""} else left
 
 
-def find_same_name(folder: Path, name: str) -> str:
+def find_matching_file_name(folder: Path, name: str) -> str:
     """Return the name of a file in the folder that is equal except for upper and lower case.
 
     Return an empty string if there is no such file.
@@ -77,7 +79,7 @@ def copy_program(source: Path, folder: Path, name: str, accepts_name: AcceptsNam
 
     Raise FileOperationError on failure.
     """
-    name = complete_name(name, source, accepts_name)
+    name = add_missing_extension(name, source, accepts_name)
     _free(folder, name)
     write_program_file(folder / name, _read(source))
     return name
@@ -91,7 +93,7 @@ def rename_program(
     Raise FileOperationError on failure. If only the store fails, the file already has its new name, and the
     versions, part count and run record remain under the old name.
     """
-    name = complete_name(name, source, accepts_name)
+    name = add_missing_extension(name, source, accepts_name)
     if name == source.name:
         raise FileOperationError(Message("THE PROGRAM IS ALREADY NAMED {name}", name=name))
     if name.lower() != source.name.lower():
@@ -135,12 +137,12 @@ def delete_program(path: Path, persistence: Persistence) -> str:
 
 
 def _free(folder: Path, name: str) -> None:
-    if other := find_same_name(folder, name):
+    if other := find_matching_file_name(folder, name):
         raise FileOperationError(Message("{other} ALREADY EXISTS. USE ANOTHER NAME", other=other))
 
 
 def _read(path: Path) -> bytes:
-    data = read_if_exists(path)
+    data = read_file_if_exists(path)
     if data is None:
         raise FileOperationError(Message("{path} NO LONGER EXISTS", path=path.name))
     return data
@@ -154,17 +156,17 @@ class ProgramCommands:
     """
 
     desk: Desk
-    own_folder: Path
+    operator_folder: Path
     persistence: Persistence
     worker: LatestRequestWorker
-    find_selected: Callable[[], ListedFile | None]
+    find_selected_program: Callable[[], ListedFile | None]
     on_changed: Callable[[str], None]
     question: str = ""
     name_field: InputField = field(default_factory=lambda: InputField(words=True))
 
-    def ask_name(self, question: str) -> None:
+    def ask_for_name(self, question: str) -> None:
         """Ask for the name of a copy, or for the new name of a program."""
-        here = self.find_selected()
+        here = self.find_selected_program()
         if here is None:
             self.desk.say(NO_SELECTION)
         elif self.desk.is_refused(ProtectedChange.PROGRAMS):
@@ -179,7 +181,7 @@ class ProgramCommands:
     @property
     def is_protected(self) -> bool:
         """Return whether the selected program cannot be renamed or deleted now."""
-        here = self.find_selected()
+        here = self.find_selected_program()
         return here is None or bool(self._find_protection(here))
 
     def _find_protection(self, program: ListedFile) -> str:
@@ -195,16 +197,18 @@ class ProgramCommands:
             return tr(Message("{name} IS RUNNING. LET IT FINISH FIRST", name=program.name))
         return ""
 
-    def execute_with_name(self) -> None:
+    def apply_entered_name(self) -> None:
         """Execute the command with the typed name."""
-        here, name, question = self.find_selected(), self.name_field.text, self.question
-        takes = self.desk.program_choice.program_folders.accepts_name
+        here, name, question = self.find_selected_program(), self.name_field.text, self.question
+        takes = self.desk.program_choice.program_folders.accepts_file_name
         if here is None:
             self.question = ""
         elif self.desk.is_refused(ProtectedChange.PROGRAMS):
             return  # The entry remains until an authorized user has signed in.
         elif question == COPY:
-            self._change(lambda: copy_program(here.path, self.own_folder, name, takes), "COPIED AS {name}")
+            self._change(
+                lambda: copy_program(here.path, self.operator_folder, name, takes), "COPIED AS {name}"
+            )
         else:
             self._change(
                 lambda: rename_program(here.path, name, self.persistence, takes), "RENAMED TO {name}"
@@ -215,7 +219,7 @@ class ProgramCommands:
 
         Its text remains stored as a version.
         """
-        here = self.find_selected()
+        here = self.find_selected_program()
         if here is None or self._find_protection(here):
             self.desk.say(self._find_protection(here) if here else NO_SELECTION)
             return
@@ -238,7 +242,7 @@ class ProgramCommands:
             self.desk.say(COMMAND_IN_PROGRESS)
             return
 
-        def done(name: str) -> None:
+        def report_change(name: str) -> None:
             self.question = ""
             self.desk.show_success(tr(Message(words, name=name)))
             self.persistence.log_change(
@@ -246,4 +250,4 @@ class ProgramCommands:
             )
             self.on_changed(name)
 
-        self.worker.enqueue_work(work, done, self.desk.show_refusal)
+        self.worker.enqueue_work(work, report_change, self.desk.show_refusal)

@@ -16,17 +16,17 @@ from app.desk.pages.page_entry import MANUAL_STATES
 from app.desk.pages.table_content import ROW_STEPS, FunctionKey, InputField, TableContent, TableRow, following
 from app.desk.persistence import Persistence
 from app.desk.status import formats
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
-from app.programs.import_export import ImportExport
+from app.programs.import_export import ProgramTransfer
 from app.programs.program_commands import COPY, NO_SELECTION, RENAME, ProgramCommands
 from app.programs.program_rows import (
     SORT_ORDERS,
     ListedFile,
     ProgramPreview,
     format_file_time,
-    format_store_time,
+    format_stored_time,
     list_programs,
     sort_programs,
 )
@@ -39,15 +39,15 @@ DRAWING_HINT = "{name} IS A DRAWING. F3: MAKE A PROGRAM FROM IT"
 class ProgramListModel:
     """Model of the program list.
 
-    ``own_folder`` is the operator's folder.
+    ``operator_folder`` is the operator's folder.
     """
 
     desk: Desk
-    own_folder: Path
+    operator_folder: Path
     persistence: Persistence
     worker: LatestRequestWorker
     preview: ProgramPreview
-    import_export: ImportExport
+    program_transfer: ProgramTransfer
     sort_order: str = "NAME"
     selected_row: int = 0
     search_field: InputField = field(default_factory=lambda: InputField(words=True))
@@ -57,10 +57,10 @@ class ProgramListModel:
     _after: str = ""  # name to select after the list was read again
 
     def __post_init__(self) -> None:
-        self.import_export.on_finished = self.reload_list
+        self.program_transfer.on_finished = self.reload_list
         self.program_commands = ProgramCommands(
             self.desk,
-            self.own_folder,
+            self.operator_folder,
             self.persistence,
             self.worker,
             lambda: self.selected_program,
@@ -90,7 +90,7 @@ class ProgramListModel:
         The result is shown in a later frame.
         """
         work = partial(
-            list_programs, self.desk.program_choice.program_folders, self.own_folder, self.persistence
+            list_programs, self.desk.program_choice.program_folders, self.operator_folder, self.persistence
         )
         self.worker.enqueue_work(work, self._found, self.desk.show_refusal)
 
@@ -122,20 +122,22 @@ class ProgramListModel:
 
     def make_table(self) -> TableContent:
         """Return the table of programs, or of the folder chooser while it is open."""
-        return self.import_export.make_table() if self.import_export.is_open else make_program_table(self)
+        return (
+            self.program_transfer.make_table() if self.program_transfer.is_open else make_program_table(self)
+        )
 
     # --- keys ----------------------------------------------------------------------------------------
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys that are available now."""
-        if self.import_export.is_open:
-            return self.import_export.make_function_keys()
+        if self.program_transfer.is_open:
+            return self.program_transfer.make_function_keys()
         return {
-            "F2": FunctionKey("SORT", self.select_next_order),
-            "F4": FunctionKey("COPY", lambda: self.program_commands.ask_name(COPY)),
+            "F2": FunctionKey("SORT", self.select_next_sort_order),
+            "F4": FunctionKey("COPY", lambda: self.program_commands.ask_for_name(COPY)),
             "F5": FunctionKey(
                 "RENAME",
-                lambda: self.program_commands.ask_name(RENAME),
+                lambda: self.program_commands.ask_for_name(RENAME),
                 barred=self.program_commands.is_protected,
             ),
             "F6": FunctionKey(
@@ -150,19 +152,19 @@ class ProgramListModel:
 
         Return False for all characters while the folder chooser is open.
         """
-        return not self.import_export.is_open and self.search_field.accepts_key(key)
+        return not self.program_transfer.is_open and self.search_field.accepts_key(key)
 
     def handle_key(self, key: str) -> bool:
         """Handle a key of the program list.
 
         Arrow keys select a row, Enter loads the program or accepts the name, and letters filter the list.
         """
-        if self.import_export.is_open:
-            return self.import_export.handle_key(key)
+        if self.program_transfer.is_open:
+            return self.program_transfer.handle_key(key)
         if key in ROW_STEPS and not self.name_question:
             self.select_row(self.selected_row + ROW_STEPS[key])
         elif key == "Enter":
-            self.program_commands.execute_with_name() if self.name_question else self.load_selected()
+            self.program_commands.apply_entered_name() if self.name_question else self.load_selected_program()
         elif (self.name_field if self.name_question else self.search_field).handle_key(key):
             self.desk.clear_prompt_line()
             if not self.name_question:
@@ -184,8 +186,8 @@ class ProgramListModel:
         """
         if self.desk.prompt_notice:
             self.desk.clear_prompt_line()
-        elif self.import_export.is_open:
-            self.import_export.handle_escape()
+        elif self.program_transfer.is_open:
+            self.program_transfer.handle_escape()
         elif self.name_question:
             self.program_commands.question = ""
         elif self.search_field.text:
@@ -198,11 +200,11 @@ class ProgramListModel:
     def on_close(self) -> None:
         """Clear questions and filters when the page closes."""
         self.program_commands.question = self.search_field.text = ""
-        self.import_export.close_chooser()
+        self.program_transfer.close_chooser()
         self.preview.find_picture(None)
         self._narrow(self.selected_program.name if self.selected_program else "")
 
-    def select_next_order(self) -> None:
+    def select_next_sort_order(self) -> None:
         """Handle F2: sort the list by the next criterion."""
         self.sort_order = following(SORT_ORDERS, self.sort_order)
         self._narrow(self.selected_program.name if self.selected_program else "")
@@ -218,11 +220,11 @@ class ProgramListModel:
             return False
         programs = self.desk.program_choice
         return (
-            programs.can_choose()
+            programs.can_choose_program()
             and programs.program_folders.find_path(str(self.selected_program.path)) is not None
         )
 
-    def load_selected(self) -> bool:
+    def load_selected_program(self) -> bool:
         """Load the selected program, after the operator confirms if necessary.
 
         Return False if loading is not possible.
@@ -243,7 +245,7 @@ class ProgramListModel:
             self.desk.say(NO_SELECTION)
         else:
             self.desk.clear_prompt_line()
-            self.import_export.open_chooser(
+            self.program_transfer.open_chooser(
                 tuple(p.path for p in self.listed_programs),
                 self.selected_program.path if self.selected_program else None,
                 out,
@@ -251,8 +253,8 @@ class ProgramListModel:
 
     def prompt_text(self) -> str:
         """Return the prompt for the keys that are available now."""
-        if self.import_export.is_open:
-            return self.import_export.prompt_text()
+        if self.program_transfer.is_open:
+            return self.program_transfer.prompt_text()
         if self.name_question:
             return "TYPE A NAME   BACKSPACE: EDIT   ENTER: ACCEPT   ESC: CANCEL"
         if self.search_field.text and not self.listed_programs:
@@ -295,10 +297,10 @@ def make_program_table(model: ProgramListModel) -> TableContent:
         (0.32, 0.25, 0.25, 0.09, 0.09),
         rows,
         model.selected_row if rows else -1,
-        question=question,
+        entry_prompt=question,
         text=text,
-        raw_columns=frozenset({0, 1, 2}),
-        number_columns=frozenset({3, 4}),
+        untranslated_columns=frozenset({0, 1, 2}),
+        numeric_columns=frozenset({3, 4}),
     )
 
 
@@ -308,16 +310,16 @@ def _row(program: ListedFile) -> TableRow:
     cells = (
         program.name,
         format_file_time(program.modified_time_s),
-        format_store_time(run.started),
+        format_stored_time(run.started),
         str(run.parts),
         best,
     )
     good = run.proof == "PROVED"
     lit = None if not run.proof else good
-    return TableRow(cells, lit, Tone.RUN if good else Tone.ALARM)
+    return TableRow(cells, lit, StatusTone.RUN if good else StatusTone.ALARM)
 
 
-def make_details(program: ListedFile) -> tuple[ProgramDetail, ...]:
+def make_program_details(program: ListedFile) -> tuple[ProgramDetail, ...]:
     """Return the details of a program.
 
     The last two texts can be long. The others are short.
@@ -332,13 +334,13 @@ def make_details(program: ListedFile) -> tuple[ProgramDetail, ...]:
         ("PLANNED TIME", _time(run.planned)),
         (
             "LAST RUN",
-            join_messages("  ·  ", (format_store_time(run.started), run.outcome))
+            join_messages("  ·  ", (format_stored_time(run.started), run.outcome))
             if run.outcome
-            else format_store_time(run.started),
+            else format_stored_time(run.started),
         ),
         (
             "LAST PROOF",
-            join_messages("  ·  ", (run.proof, format_store_time(run.proved)))
+            join_messages("  ·  ", (run.proof, format_stored_time(run.proved)))
             if run.proof
             else "NEVER PROVED",
         ),

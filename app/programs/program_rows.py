@@ -18,7 +18,7 @@ from app.desk.programs.program_loading import LoadingSteps
 from app.desk.status import formats
 from core.executor.job import Job
 from core.language.source import SourceError, load_source
-from core.store.program_records import make_text_key
+from core.store.program_records import make_text_record_key
 from core.store.store_rows import RunRow
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def list_programs(
 def _find_run_row(path: Path, _changed: int, _size: int) -> str:
     """Return the key of a file's run record, or an empty string if the file is not program text."""
     try:
-        return make_text_key(load_source(path).text)
+        return make_text_record_key(load_source(path).text)
     except SourceError:
         return ""
 
@@ -106,7 +106,7 @@ def sort_programs(order: str, programs: Sequence[ListedFile]) -> tuple[ListedFil
     return tuple(sorted(programs, key=SORT_ORDERS[order]))
 
 
-def format_store_time(utc_time: str | None) -> str:
+def format_stored_time(utc_time: str | None) -> str:
     """Return a time of the store in local time to the minute, or a dash if there is no time."""
     return formats.format_local_time(utc_time, with_seconds=False) if utc_time else formats.NO_VALUE
 
@@ -144,7 +144,7 @@ class ProgramPreview:
 
     loading_steps: LoadingSteps
     draw_thumbnail: DrawThumbnail | None = None  # None: parts are not drawn
-    wanted_key: ContentKey | None = None
+    requested_key: ContentKey | None = None
     error_text: str = ""
     _made: OrderedDict[ContentKey, ProgramPicture | str] = field(default_factory=OrderedDict)
     _worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("editing-preview"))
@@ -160,8 +160,8 @@ class ProgramPreview:
         self._worker.deliver_results()
         self.error_text = ""
         key = program.content_key if program is not None else None
-        if key != self.wanted_key:
-            self.wanted_key = key
+        if key != self.requested_key:
+            self.requested_key = key
             self._worker.cancel_request()
         if program is None:
             return None
@@ -207,7 +207,7 @@ class ProgramPreview:
     @property
     def is_busy(self) -> bool:
         """Return whether the requested picture is still being drawn."""
-        return self.wanted_key is not None and self.wanted_key not in self._made
+        return self.requested_key is not None and self.requested_key not in self._made
 
     def _begin(self, program: ListedFile) -> None:
         done = partial(self._keep, program.content_key)
@@ -227,6 +227,6 @@ class ProgramPreview:
 
     def close(self) -> None:
         """Cancel the drawing and stop the workers."""
-        self.wanted_key = None
+        self.requested_key = None
         self._drawing.close()
         self._worker.close()

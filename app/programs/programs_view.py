@@ -21,7 +21,7 @@ from app.desk.status.machine_status import MachineStatus
 from app.editor.editor_model import EditorModel
 from app.path.path_view import PathView
 from app.programs.program_commands import NO_SELECTION
-from app.programs.program_list_model import ProgramListModel, make_details
+from app.programs.program_list_model import ProgramListModel, make_program_details
 from app.programs.program_rows import ListedFile, Thumbnail
 from app.screen import page_table
 from app.screen.entry_panel import WIDE_NAME_KEYS, LetterPad
@@ -29,7 +29,7 @@ from app.screen.page_base import KeyActions, PageHost
 from app.screen.panel import Panel, RedrawingAttribute
 from app.screen.screen_theme import ThemedPainter
 from app.screen.table_panel import ListPage, TablePanel
-from app.working_plane.plane_instant import make_line_instant
+from app.working_plane.plane_instant import make_instant_after_line
 from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import Snapshot
 
@@ -57,7 +57,7 @@ class ProgramDetailPanel(Panel):
         If the preview has an error, the details include the error.
         """
         u = self.theme.unit_px
-        rows = list(make_details(self.program)) if self.program is not None else []
+        rows = list(make_program_details(self.program)) if self.program is not None else []
         preview_row_count = len(rows) - FULL_WIDTH_ROWS
         if self.error_text:
             rows.append(("PREVIEW", self.error_text))
@@ -117,7 +117,7 @@ class ProgramsPage(ListPage):
 
     def find_disabled_keys(self) -> frozenset[str]:
         """Return the disabled keys of the list, and F3 while the editor cannot be opened."""
-        closed = not self.model.import_export.is_open and find_editor_refusal(self.desk.read_snapshot())
+        closed = not self.model.program_transfer.is_open and find_editor_refusal(self.desk.read_snapshot())
         return super().find_disabled_keys() | ({"F3"} if closed else set())
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
@@ -127,7 +127,7 @@ class ProgramsPage(ListPage):
     def make_key_labels(self) -> tuple[str, ...]:
         """Return the key labels of the list or of the folder chooser."""
         added = {name: key.label for name, key in self.desk.page_registry.program_keys.items()}
-        own = {} if self.model.import_export.is_open else {"F3": "EDIT", **added}
+        own = {} if self.model.program_transfer.is_open else {"F3": "EDIT", **added}
         return self.make_function_key_labels(own, self.make_function_keys())
 
     def make_key_actions(self) -> KeyActions:
@@ -137,7 +137,7 @@ class ProgramsPage(ListPage):
             name: partial(self._use_program_key, key)
             for name, key in self.desk.page_registry.program_keys.items()
         }
-        own: KeyActions = {} if self.model.import_export.is_open else {"F3": self._open_editor, **added}
+        own: KeyActions = {} if self.model.program_transfer.is_open else {"F3": self._open_editor, **added}
         return {**own, **{name: partial(self._do, name) for name in keys}}
 
     def _do(self, name: str) -> None:
@@ -169,8 +169,8 @@ class ProgramsPage(ListPage):
 
     def _chosen(self, row: int) -> None:
         model = self.model
-        if model.import_export.is_open:
-            model.import_export.touch_line(row)
+        if model.program_transfer.is_open:
+            model.program_transfer.handle_entry_touch(row)
         elif row == model.selected_row:
             self.handle_key("Enter")
         else:
@@ -182,16 +182,16 @@ class ProgramsPage(ListPage):
         Enter on a program loads the program and opens the Automatic page.
         """
         model = self.model
-        if key == "Enter" and not model.import_export.is_open and not model.name_question:
+        if key == "Enter" and not model.program_transfer.is_open and not model.name_question:
             # The page changes first, because a question about an interrupted job belongs to the new page.
             if model.can_load() and self.host.open_page(page_table.AUTOMATIC):
-                model.load_selected()
+                model.load_selected_program()
             return True
         return model.handle_key(key)
 
     def has_text_field(self) -> bool:
         """Return whether a name can be typed."""
-        return not self.model.import_export.is_open
+        return not self.model.program_transfer.is_open
 
     def apply_theme(self) -> None:
         """Redraw the path in the current colors."""
@@ -204,7 +204,7 @@ class ProgramsPage(ListPage):
         self.table_panel.show_table(model.make_table())
         here = model.selected_program
         self._show_picture(model.preview.find_picture(None if here is not None and here.is_drawing else here))
-        lettered = (bool(model.name_question) or self._with_letters) and not model.import_export.is_open
+        lettered = (bool(model.name_question) or self._with_letters) and not model.program_transfer.is_open
         if lettered is self.letter_pad.isHidden():
             self.letter_pad.setVisible(lettered)
             self._lay_out()
@@ -216,16 +216,16 @@ class ProgramsPage(ListPage):
         )
 
     def _show_picture(self, picture: ProgramPicture | None) -> None:
-        scene = picture.scene if picture is not None else None
+        scene = picture.mill_scene if picture is not None else None
         if picture is not self._shown:
             self._shown = picture
             self.plane_view.show_scene(scene)
             self.plane_view.setVisible(scene is not None)
             self.path_view.show_picture(picture if scene is None else None)
         if scene is None:
-            self.path_view.draw_slice()
+            self.path_view.continue_drawing()
         else:
-            self.plane_view.show_instant(make_line_instant(scene, 0), "")
+            self.plane_view.show_instant(make_instant_after_line(scene, 0), "")
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Arrange the parts of the page after a change of size."""

@@ -51,7 +51,7 @@ class MountEntry:
     is_read_only: bool
 
 
-def list_sticks(
+def list_usb_sticks(
     media_roots: Sequence[Path] = MEDIA_ROOTS,
     is_mount_point: Callable[[Path], bool] = os.path.ismount,
     mount_table: Path = MOUNT_TABLE,
@@ -153,10 +153,10 @@ class TargetMedium:
         except OSError as error:
             raise FileOperationError(describe_media_error(error, folder)) from error
 
-    def check_present(self) -> None:
+    def check_medium_present(self) -> None:
         """Raise FileOperationError if another medium or no medium is present now."""
         if TargetMedium.from_folder(self.folder).device_number != self.device_number:
-            raise FileOperationError(describe_unplugged(self.folder))
+            raise FileOperationError(describe_unplugged_medium(self.folder))
 
     def check_free_space(self, size_bytes: int) -> None:
         """Raise FileOperationError if fewer than ``size_bytes`` bytes are free."""
@@ -174,7 +174,7 @@ class TargetMedium:
             )
 
 
-def describe_unplugged(folder: Path) -> str:
+def describe_unplugged_medium(folder: Path) -> str:
     """Return the message about a stick that was unplugged."""
     return tr(Message("{place} IS NO LONGER CONNECTED. PLUG IT IN AGAIN AND PRESS F2", place=folder.name))
 
@@ -187,7 +187,7 @@ def describe_media_error(error: OSError, folder: Path) -> str:
         words = tr("{place} IS WRITE-PROTECTED. UNLOCK IT OR USE ANOTHER USB STICK")
         return tr(Message(words, place=folder.name))
     if error.errno in _UNPLUGGED_ERRORS:
-        return describe_unplugged(folder)
+        return describe_unplugged_medium(folder)
     return tr(Message("{place}: {why}", place=folder.name, why=error.strerror or str(error)))
 
 
@@ -196,7 +196,7 @@ MAX_LINES = 2000
 
 
 @dataclass(frozen=True, slots=True)
-class FolderLine:
+class FolderEntry:
     """Line of the folder chooser: a location, a folder, the parent folder or a program."""
 
     name: str
@@ -210,21 +210,21 @@ class FolderLine:
 class FolderChooser:
     """Chooser of a folder.
 
-    ``current_folder`` is the open folder, or None while the list of locations is shown. ``list_lines`` can
+    ``current_folder`` is the open folder, or None while the list of locations is shown. ``list_entries`` can
     take a while.
     """
 
     home_folder: Path
-    list_sticks: Callable[[], Sequence[UsbStick]] = list_sticks
+    list_usb_sticks: Callable[[], Sequence[UsbStick]] = list_usb_sticks
     accepts_name: AcceptsName = is_program_name
     current_folder: Path | None = None
     top_folder: Path | None = None  # folder of the open place, where going up ends
-    listed_lines: tuple[FolderLine, ...] = ()
+    listed_entries: tuple[FolderEntry, ...] = ()
     selected_row: int = 0
     medium: TargetMedium | None = None  # the open place at the time of opening
     error_text: str = field(default="")
 
-    def list_lines(self) -> tuple[FolderLine, ...]:
+    def list_entries(self) -> tuple[FolderEntry, ...]:
         """Return the lines of the open folder.
 
         This runs on a worker. Raise FileOperationError if the folder cannot be read.
@@ -232,26 +232,27 @@ class FolderChooser:
         if self.current_folder is None:
             self.medium = None
             places = [
-                FolderLine(s.label, s.path, True, s.free_bytes, s.is_read_only) for s in self.list_sticks()
+                FolderEntry(s.label, s.path, True, s.free_bytes, s.is_read_only)
+                for s in self.list_usb_sticks()
             ]
-            return (*places, FolderLine(tr("THIS CONTROL"), self.home_folder, True))
+            return (*places, FolderEntry(tr("THIS CONTROL"), self.home_folder, True))
         if self.medium is None:
             self.medium = TargetMedium.from_folder(self.top_folder or self.current_folder)
-        self.medium.check_present()
+        self.medium.check_medium_present()
         try:
             return (
-                FolderLine(PARENT_NAME, self.current_folder.parent, True),
+                FolderEntry(PARENT_NAME, self.current_folder.parent, True),
                 *_inside(self.current_folder, self.accepts_name),
             )
         except OSError as error:
             raise FileOperationError(describe_media_error(error, self.current_folder)) from error
 
-    def show_lines(self, lines: tuple[FolderLine, ...]) -> None:
-        """Show the lines that ``list_lines`` has returned."""
-        self.listed_lines, self.error_text = lines, ""
+    def show_entries(self, lines: tuple[FolderEntry, ...]) -> None:
+        """Show the lines that ``list_entries`` has returned."""
+        self.listed_entries, self.error_text = lines, ""
         self.selected_row = min(self.selected_row, max(0, len(lines) - 1))
 
-    def open_line(self, line: FolderLine) -> None:
+    def open_entry(self, line: FolderEntry) -> None:
         """Open a folder or its parent folder.
 
         The parent of the top folder of a location is the list of locations.
@@ -265,22 +266,24 @@ class FolderChooser:
             self.current_folder = line.path
 
     @property
-    def selected_line(self) -> FolderLine | None:
+    def selected_entry(self) -> FolderEntry | None:
         """Return the selected line, or None if no line is selected."""
-        return self.listed_lines[self.selected_row] if self.selected_row < len(self.listed_lines) else None
+        return (
+            self.listed_entries[self.selected_row] if self.selected_row < len(self.listed_entries) else None
+        )
 
     @property
     def program_paths(self) -> tuple[Path, ...]:
         """Return the paths of the programs in the open folder."""
-        return tuple(line.path for line in self.listed_lines if not line.is_folder)
+        return tuple(line.path for line in self.listed_entries if not line.is_folder)
 
 
-def _inside(folder: Path, takes: AcceptsName) -> list[FolderLine]:
+def _inside(folder: Path, takes: AcceptsName) -> list[FolderEntry]:
     paths = sorted(folder.iterdir(), key=lambda path: path.name.lower())[:MAX_LINES]
     seen = [path for path in paths if not path.name.startswith(".")]
-    folders = [FolderLine(path.name, path, True) for path in seen if path.is_dir()]
+    folders = [FolderEntry(path.name, path, True) for path in seen if path.is_dir()]
     files = [path for path in seen if takes(path.name) and path.is_file()]
-    return folders + [FolderLine(path.name, path, False, path.stat().st_size) for path in files]
+    return folders + [FolderEntry(path.name, path, False, path.stat().st_size) for path in files]
 
 
 def make_chooser_table(chooser: FolderChooser, title: str) -> TableContent:
@@ -293,7 +296,7 @@ def make_chooser_table(chooser: FolderChooser, title: str) -> TableContent:
                 formats.format_file_size(line.size_bytes) if line.size_bytes else "",
             )
         )
-        for line in chooser.listed_lines
+        for line in chooser.listed_entries
     )
     where = str(chooser.current_folder) if chooser.current_folder else "LOCATIONS"
     return TableContent(
@@ -303,6 +306,6 @@ def make_chooser_table(chooser: FolderChooser, title: str) -> TableContent:
         rows,
         chooser.selected_row if rows else -1,
         notes=(chooser.error_text,) if chooser.error_text else (),
-        raw_columns=frozenset({2} if chooser.current_folder is None else {0, 2}),
-        number_columns=frozenset({2}),
+        untranslated_columns=frozenset({2} if chooser.current_folder is None else {0, 2}),
+        numeric_columns=frozenset({2}),
     )

@@ -41,7 +41,7 @@ class RunHistory:
     _lines: int = 0
     _loaded: LoadedProgram | None = None
 
-    def observe(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
+    def process_snapshot(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Record the runs and proofs that a snapshot shows.
 
         This is called once a frame. If the store rejects a record, the error is reported elsewhere.
@@ -59,7 +59,7 @@ class RunHistory:
             if snapshot.timed_cycle_count > self._timed:
                 self.persistence.runs.record_cycle(name, snapshot.last_cycle)
             if not self.running_program:
-                self.persistence.runs.record_start(name)
+                self.persistence.runs.record_run_start(name)
             self._end(name, COMPLETE)
         elif parts is not None and snapshot.ends > self._ends and self.running_program:
             self._end(name, UNCOUNTED)
@@ -69,13 +69,13 @@ class RunHistory:
         under_way = snapshot.state in _RUNNING_STATES and snapshot.block > 0 and snapshot.lines == self._lines
         if under_way and not self.running_program and name:
             self.running_program = name
-            self.persistence.runs.record_start(name)
+            self.persistence.runs.record_run_start(name)
         elif self.running_program and snapshot.state not in _RUNNING_STATES:
             self._end(self.running_program, _outcome(snapshot))
 
     def _end(self, name: str, outcome: str) -> None:
         self.running_program = ""
-        self.persistence.runs.record_end(name, outcome)
+        self.persistence.runs.record_run_end(name, outcome)
 
     def _proof(self, loaded: LoadedProgram) -> None:
         if loaded is self._loaded:
@@ -137,15 +137,19 @@ class PartCounter:
     _seen: int | None = None
     _announced: int = -1
     _made: int = -1  # count that was last sent to the executor
-    text_digest: str = ""  # digest of the program text whose parts are counted
+    program_digest: str = ""  # digest of the program text whose parts are counted
 
     @property
-    def count_text(self) -> str:
+    def part_count_text(self) -> str:
         """Return the number of parts, with the target if there is one, for example ``12`` or ``12/100``."""
-        return f"{self.part_count}/{self.final_count}" if self.final_count else str(self.part_count)
+        return (
+            f"{self.part_count}/{self.effective_target_count}"
+            if self.effective_target_count
+            else str(self.part_count)
+        )
 
     @property
-    def final_count(self) -> int:
+    def effective_target_count(self) -> int:
         """Return the count at which production ends, or 0 without a target.
 
         This is the target of the active job if it has one, and otherwise the target of the program.
@@ -155,9 +159,9 @@ class PartCounter:
     @property
     def is_complete(self) -> bool:
         """Return whether all requested parts have been made."""
-        return 0 < self.final_count <= self.part_count
+        return 0 < self.effective_target_count <= self.part_count
 
-    def observe(
+    def process_snapshot(
         self,
         snapshot: Snapshot,
         post_command: Callable[[Command], None],
@@ -170,9 +174,9 @@ class PartCounter:
         ``text_digest`` is the digest of the loaded program text.
         """
         name = Path(snapshot.program).name
-        if name != self.program_name or text_digest != self.text_digest:
+        if name != self.program_name or text_digest != self.program_digest:
             self._load(name)
-            self.text_digest = text_digest
+            self.program_digest = text_digest
             self._seen = snapshot.parts
         if self._seen is not None and snapshot.parts > self._seen:
             self.part_count += snapshot.parts - self._seen
@@ -194,7 +198,11 @@ class PartCounter:
     def _stop_at(
         self, snapshot: Snapshot, post: Callable[[Command], None], say: Callable[[str], None]
     ) -> None:
-        last = snapshot.counts and self.final_count > 0 and self.part_count + 1 >= self.final_count
+        last = (
+            snapshot.counts
+            and self.effective_target_count > 0
+            and self.part_count + 1 >= self.effective_target_count
+        )
         if (
             last
             and snapshot.cycle_repeat

@@ -118,7 +118,7 @@ def make_drawing_block(drawing: str, caption: str) -> str:
     return f"<figure>{drawing}<figcaption>{escape(caption)}</figcaption></figure>"
 
 
-def make_pair_table(rows: Iterable[tuple[str, str]]) -> str:
+def make_name_value_table(rows: Iterable[tuple[str, str]]) -> str:
     """Return an HTML table with two columns, names and values.
 
     Names and values are escaped.
@@ -137,7 +137,7 @@ def make_table(column_headings: Iterable[str], rows: Iterable[Sequence[str]]) ->
     return f"<table><tr>{top}</tr>{lines}</table>"
 
 
-def format_minutes(seconds: float) -> str:
+def format_duration(seconds: float) -> str:
     """Return a duration as minutes and seconds."""
     minutes, rest = divmod(seconds, 60.0)
     return (
@@ -147,6 +147,6 @@ def format_minutes(seconds: float) -> str:
     )
 
 
-def hash_text(source: ProgramSource) -> str:
+def hash_program_text(source: ProgramSource) -> str:
     """Return the SHA-256 hash of a program text, which identifies the text."""
     return sha256(source.text.encode("utf-8", "surrogatepass")).hexdigest()

@@ -9,7 +9,7 @@ from html import escape
 from core.interpreter.shared.elementary_blocks import BlockKind
 from core.part.insert_codes import InsertCodeError
 from core.part.stock import Clamping, Stock
-from core.part.tool_outline import ToolOutline, make_outline
+from core.part.tool_outline import ToolOutline, make_tool_outline
 from core.part.tool_shape import ToolShape
 from core.part.turned_part import PartedPiece
 from core.proving.tip_moves import TipMove
@@ -93,7 +93,7 @@ class SvgDrawing:
         )
 
 
-def find_window(
+def find_drawing_window(
     points: Sequence[PointMm], margin_mm: float, min_size_mm: float = 1.0
 ) -> tuple[PointMm, PointMm]:
     """Return the corners of the region that contains the points and a margin in mm.
@@ -154,7 +154,7 @@ def draw_finding(
     """Return the drawing of a finding: the previous material, the move, and the tool at its end."""
     near = _find_bounds(move.points, material.outside_profile)
     drawing = SvgDrawing(
-        *find_window(near, 3.0, 8.0), max_width_px=_FINDING_WIDTH, max_height_px=_FINDING_WIDTH
+        *find_drawing_window(near, 3.0, 8.0), max_width_px=_FINDING_WIDTH, max_height_px=_FINDING_WIDTH
     )
     _chuck(drawing, clamping)
     _draw_material(drawing, material.outside_profile, material.bore_profile, "part")
@@ -178,7 +178,7 @@ def draw_tool(shape: ToolShape | None) -> str:
     edge = [(z, r) for polygon in lines.cutting_outlines for z, r in polygon.tolist()]
     size = max(max(p[k] for p in edge) - min(p[k] for p in edge) for k in (0, 1))
     drawing = SvgDrawing(
-        *find_window([*edge, (0.0, 0.0)], 0.35 * size, 2.0),
+        *find_drawing_window([*edge, (0.0, 0.0)], 0.35 * size, 2.0),
         max_width_px=_TOOL_WIDTH,
         max_height_px=_TOOL_WIDTH,
     )
@@ -191,18 +191,18 @@ def draw_tool(shape: ToolShape | None) -> str:
 
 def _outline(shape: ToolShape | None) -> ToolOutline | None:
     try:
-        return make_outline(shape) if shape is not None else None
+        return make_tool_outline(shape) if shape is not None else None
     except InsertCodeError:
         return None
 
 
 def _framed(stock: Stock, clamping: Clamping | None) -> SvgDrawing:
     around = [(stock.back_z_mm, -stock.max_radius_mm), (stock.front_z_mm, stock.max_radius_mm)]
-    if clamping is not None and clamping.diameter:
-        reach = max(clamping.diameter, clamping.jaw_diameter) / 2
+    if clamping is not None and clamping.chuck_diameter:
+        reach = max(clamping.chuck_diameter, clamping.jaw_diameter) / 2
         around += [(-clamping.stick_out - 5.0, -min(reach, 2 * stock.max_radius_mm))]
         around += [(-clamping.stick_out, min(reach, 2 * stock.max_radius_mm))]
-    return SvgDrawing(*find_window(around, _PATH_MARGIN_MM), max_width_px=_WIDE, max_height_px=_HIGH)
+    return SvgDrawing(*find_drawing_window(around, _PATH_MARGIN_MM), max_width_px=_WIDE, max_height_px=_HIGH)
 
 
 def _chuck(drawing: SvgDrawing, clamping: Clamping | None) -> None:
@@ -212,7 +212,7 @@ def _chuck(drawing: SvgDrawing, clamping: Clamping | None) -> None:
         drawing.add_polygon(
             [*tailstock.outside_profile, *((z, -r) for z, r in reversed(tailstock.outside_profile))], "chuck"
         )
-    if not clamping.diameter:
+    if not clamping.chuck_diameter:
         return
     upper = [
         *clamping.chuck_outline,
@@ -257,7 +257,7 @@ def _group_moves(moves: Sequence[TipMove]) -> Iterator[tuple[list[PointMm], str]
     points: list[PointMm] = []
     look = ""
     for move in moves[1:]:
-        now = "thread" if move.kind is BlockKind.THREAD else "rapid" if move.is_fast else "cut"
+        now = "thread" if move.block_kind is BlockKind.THREAD else "rapid" if move.is_fast else "cut"
         if now != look or (points and points[-1] != move.points[0]):
             if points:
                 yield points, look

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 
 from app.report import part_drawings
 from app.report.html_tables import (
-    format_minutes,
-    hash_text,
+    format_duration,
+    hash_program_text,
     make_drawing_block,
-    make_pair_table,
+    make_name_value_table,
     make_result_line,
     make_table,
 )
-from app.report.run_record import RunRecorder
+from app.report.run_record import ReportRecorder
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, ProgramSource
 from core.message import Message
@@ -26,7 +26,7 @@ from core.part.tool_shape import ToolShape
 from core.tool_edges import format_edge_name
 
 if TYPE_CHECKING:
-    from core.interpreter.shared.job_setup import Setup
+    from core.interpreter.shared.job_setup import InterpreterSetup
     from core.machine.machine_model import Machine
     from core.proving.proof_report import PartReport, ProofReport
 
@@ -42,9 +42,9 @@ class ProgramReport:
         source: ProgramSource,
         report: ProofReport,
         part_report: PartReport | None,
-        run_record: RunRecorder,
+        run_record: ReportRecorder,
         machine: Machine,
-        setup: Setup,
+        setup: InterpreterSetup,
     ) -> None:
         self._source, self._report, self._part, self._record = source, report, part_report, run_record
         self._machine, self._setup = machine, setup
@@ -74,7 +74,7 @@ class ProgramReport:
     # --- --- result --------
 
     def _head(self) -> str:
-        report, times = self._report, self._report.times
+        report, times = self._report, self._report.program_times
         errors, warnings = len(report.errors), self._count(Severity.WARNING)
         words = (
             Message("{errors}; the program will not run", errors=_many(errors, "error"))
@@ -93,22 +93,22 @@ class ProgramReport:
                     dialect=report.dialect,
                 ),
             ),
-            ("Text (SHA-256)", hash_text(self._source)),
+            ("Text (SHA-256)", hash_program_text(self._source)),
             (
                 "Cycle",
                 Message(
                     "{cycle}: cutting {cutting} s, rapid {rapid} s, dwell {dwell} s, waiting {wait} s",
-                    cycle=format_minutes(times.cycle_s),
-                    cutting=f"{times.cutting_s:.1f}",
-                    rapid=f"{times.rapid_s:.1f}",
-                    dwell=f"{times.dwell_s:.1f}",
-                    wait=f"{times.wait_s:.1f}",
+                    cycle=format_duration(times.cycle_time_s),
+                    cutting=f"{times.cutting_time_s:.1f}",
+                    rapid=f"{times.rapid_time_s:.1f}",
+                    dwell=f"{times.dwell_time_s:.1f}",
+                    wait=f"{times.wait_time_s:.1f}",
                 ),
             ),
             *self._stock_rows(),
         ]
         look = "bad" if errors else "doubt" if warnings else "good"
-        return make_result_line(look, words) + make_pair_table(rows)
+        return make_result_line(look, words) + make_name_value_table(rows)
 
     def _count(self, severity: Severity) -> int:
         return sum(each.severity is severity for each in self._report.diagnostics)
@@ -148,7 +148,7 @@ class ProgramReport:
         part, record = self._part, self._record
         if part is None or part.stock is None:
             return "<p>No section view is shown because the program does not turn a part.</p>"
-        clamping = record.part_setting.clamping
+        clamping = record.part_settings.clamping
         short = (
             Message(
                 "; only the first {moves_count} moves are shown", moves_count=f"{len(record.tip_moves):,}"
@@ -197,9 +197,9 @@ class ProgramReport:
         wanted = list(dict.fromkeys(each.block_number for each in found if each.block_number))[:_MAX_PICTURES]
         if self._part is None or not wanted:
             return {}
-        held = self._record.find_material(wanted)
+        held = self._record.find_material_before_blocks(wanted)
         moves = {move.n: move for move in self._record.tip_moves if move.n in held}
-        shapes, clamping = self._part.tool_shapes, self._record.part_setting.clamping
+        shapes, clamping = self._part.tool_shapes, self._record.part_settings.clamping
         return {
             n: part_drawings.draw_finding(move, held[n], shapes.get(move.modal.tool), clamping)
             for n, move in moves.items()
@@ -210,7 +210,10 @@ class ProgramReport:
     def _tools(self) -> str:
         shapes = self._part.tool_shapes if self._part is not None else {}
         numbers = sorted(
-            {*self._report.tool_numbers, *(n for n, time in self._record.tool_times.items() if time.total_s)}
+            {
+                *self._report.tool_numbers,
+                *(n for n, time in self._record.tool_times.items() if time.total_time_s),
+            }
         )
         rows = [self._tool(n, shapes.get(n)) for n in numbers]
         return (
@@ -222,7 +225,7 @@ class ProgramReport:
         time = self._record.tool_times.get(number)
         seconds = (time.cutting_s, time.rapid_s, time.other_s) if time is not None else (0.0, 0.0, 0.0)
         name = format_edge_name(number) if number else "no tool"
-        said = "" if shape == self._record.part_setting.shapes.get(number) else " (assumed)"
+        said = "" if shape == self._record.part_settings.shapes.get(number) else " (assumed)"
         words = escape(self._describe_shape(shape) + said)
         return name, part_drawings.draw_tool(shape), words, *(f"{each:.1f}" for each in seconds)
 
@@ -245,7 +248,7 @@ class ProgramReport:
             (
                 f"M0{int(stop.is_optional)}",
                 str(stop.line_number),
-                format_minutes(stop.time_s),
+                format_duration(stop.time_s),
                 escape(stop.message),
             )
             for stop in self._record.program_stops
@@ -267,11 +270,11 @@ class ProgramReport:
         ]
         rows += [
             (format_edge_name(n), "not set", "not set", "X and Z are assumed to be 0")
-            for n in self._report.missing_tools
+            for n in self._report.missing_tool_numbers
         ]
         rows += [
             (f"D{n}", length(d.x), length(d.z), f"radius {length(d.nose_radius)}")
-            for n in sorted(self._record.used_secondary)
+            for n in sorted(self._record.used_secondary_offsets)
             if (d := setup.secondary.get(n)) is not None
         ]
         rows += [

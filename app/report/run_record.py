@@ -27,7 +27,7 @@ class ToolTimes:
     other_s: float = 0.0
 
     @property
-    def total_s(self) -> float:
+    def total_time_s(self) -> float:
         """Return the total time in seconds."""
         return self.cutting_s + self.rapid_s + self.other_s
 
@@ -46,14 +46,14 @@ class PlannedStop:
 
 
 @dataclass(slots=True)
-class RunRecorder:
+class ReportRecorder:
     """Recorder that collects report data from the time spans of a proving pass."""
 
-    part_setting: PartSettings
+    part_settings: PartSettings
     tip_moves: list[TipMove] = field(default_factory=list)
     tool_times: dict[int, ToolTimes] = field(default_factory=dict)
     program_stops: list[PlannedStop] = field(default_factory=list)
-    used_secondary: set[int] = field(default_factory=set)  # D numbers that are called
+    used_secondary_offsets: set[int] = field(default_factory=set)  # D numbers that are called
     used_zero_offsets: set[int] = field(default_factory=set)  # zero offsets that are called, 54 to 59
     blank_corners: BlankCorners | None = None  # corners of BLK FORM on a mill
     is_truncated: bool = False  # not all moves are drawn
@@ -62,9 +62,9 @@ class RunRecorder:
     _tool: int = 0
 
     def __post_init__(self) -> None:
-        self._part = PartProof(self.part_setting)
+        self._part = PartProof(self.part_settings)
 
-    def add_span(self, span: MotionSpan | RestSpan) -> None:
+    def add_time_span(self, span: MotionSpan | RestSpan) -> None:
         """Add the moves, times and stops of the next time span."""
         self._part.add_span(span)
         for each in span.iter_group_times():
@@ -88,7 +88,7 @@ class RunRecorder:
     def _count(self, block: Block, seconds: float) -> None:
         modal = block.modal
         self._tool = modal.tool
-        self.used_secondary |= {modal.secondary} - {0}
+        self.used_secondary_offsets |= {modal.secondary} - {0}
         self.used_zero_offsets |= {modal.settable} - {0}
         if block.swivel is not None:
             self.blank_corners = block.swivel.system.blank_corners
@@ -116,6 +116,6 @@ class RunRecorder:
                 elif isinstance(step, LiveToolStep):
                     self.tip_moves.append(make_live_tool_move(step))
 
-    def find_material(self, block_numbers: Collection[int]) -> dict[int, PartedPiece]:
+    def find_material_before_blocks(self, block_numbers: Collection[int]) -> dict[int, PartedPiece]:
         """Return the material before each of these blocks, but only for blocks with X and Z motion."""
         return self._part.find_material_before_blocks(block_numbers)

@@ -33,7 +33,7 @@ class CurveColumns:
     Column n of ``column_numbers`` starts at n · ``width_s`` seconds.
     """
 
-    width_s: float
+    column_width_s: float
     column_numbers: IntArray
     minima: FloatArray
     maxima: FloatArray
@@ -58,7 +58,7 @@ class CurveColumns:
         if not len(finite_index):
             return
         times, values = times[finite_index], values[finite_index]
-        of = np.floor(times / self.width_s).astype(np.int64)
+        of = np.floor(times / self.column_width_s).astype(np.int64)
         first = np.flatnonzero(np.diff(of, prepend=of[0] - 1))
         numbers = of[first]
         low, high = np.minimum.reduceat(values, first), np.maximum.reduceat(values, first)
@@ -78,15 +78,15 @@ class CurveColumns:
         self.maxima = np.concatenate([self.maxima, high])
         self.preceding_samples = np.concatenate([self.preceding_samples, before])
 
-    def remove_before(self, time_s: float) -> None:
+    def remove_columns_before(self, time_s: float) -> None:
         """Remove the columns that ended before a time in seconds."""
-        cut = int(np.searchsorted(self.column_numbers, int(np.floor(time_s / self.width_s))))
+        cut = int(np.searchsorted(self.column_numbers, int(np.floor(time_s / self.column_width_s))))
         self.column_numbers, self.preceding_samples = self.column_numbers[cut:], self.preceding_samples[cut:]
         self.minima, self.maxima = self.minima[cut:], self.maxima[cut:]
 
     def make_points(self) -> CurvePoints:
         """Return a vertical line per column, and lines that bridge the gaps of a continuous curve."""
-        at = (self.column_numbers + 0.5) * self.width_s
+        at = (self.column_numbers + 0.5) * self.column_width_s
         later = 1 + np.flatnonzero(
             (np.diff(self.column_numbers) > 1) & np.isfinite(self.preceding_samples[1:])
         )
@@ -99,7 +99,7 @@ class CurveColumns:
         return CurvePoints(times, values, has_line_pairs=True)
 
 
-def make_points(times: FloatArray, values: FloatArray, pixel_width_s: float) -> CurvePoints:
+def make_curve_points(times: FloatArray, values: FloatArray, pixel_width_s: float) -> CurvePoints:
     """Return the points that are drawn for the samples.
 
     One pixel is ``pixel_width_s`` seconds wide.

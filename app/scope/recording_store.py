@@ -39,7 +39,7 @@ class RecordingFile(NamedTuple):
     size: int
 
     @property
-    def modified_text(self) -> str:
+    def modified_time_text(self) -> str:
         """Return the month, day and time of the last modification.
 
         The year is in the file name.
@@ -68,7 +68,7 @@ class RecordingStore:
     folder: Path
     save_recording: SaveRecording
     open_recording: OpenRecording
-    write_table: WriteCsvTable
+    write_csv_table: WriteCsvTable
     read_time_s: Callable[[], float] = time.time
     recording_files: tuple[RecordingFile, ...] = field(default=())
 
@@ -86,7 +86,7 @@ class RecordingStore:
                         found.append(RecordingFile(Path(entry.path), file_stat.st_mtime, file_stat.st_size))
         return tuple(sorted(found, key=lambda each: -each.modified_time_s)[:MAX_FILES])
 
-    def save_named(self, record: ScopeRecord, name_stem: str = "scope") -> Path:
+    def save_dated_record(self, record: ScopeRecord, name_stem: str = "scope") -> Path:
         """Save a record under a name with date and time, and return its path.
 
         Raise RecordingFileError if there is not enough disk space or the folder cannot be used. Errors of
@@ -103,12 +103,12 @@ class RecordingStore:
         """
         path = self._make_path("scope", ".csv")
 
-        def write() -> None:
+        def replace_csv_file() -> None:
             with _draft(path) as draft, draft.open("w", encoding="utf-8", newline="") as file:
-                self.write_table(record, file.write)
+                self.write_csv_table(record, file.write)
             replace_atomically(draft, path)
 
-        self._write_guarded(path, write)
+        self._write_guarded(path, replace_csv_file)
         return path
 
     def write_picture(self, png: bytes) -> Path:
@@ -118,12 +118,12 @@ class RecordingStore:
         """
         path = self._make_path("scope", ".png")
 
-        def write() -> None:
+        def replace_picture_file() -> None:
             with _draft(path) as draft:
                 draft.write_bytes(png)
             replace_atomically(draft, path)
 
-        self._write_guarded(path, write)
+        self._write_guarded(path, replace_picture_file)
         return path
 
     def read_recording(self, path: Path) -> ScopeRecord:
@@ -150,7 +150,7 @@ class RecordingStore:
     def _write_guarded(self, path: Path, write: Callable[[], None]) -> None:
         """Write a file, but first check that there is enough disk space."""
 
-        def carefully() -> None:
+        def write_with_space_check() -> None:
             self.folder.mkdir(parents=True, exist_ok=True)
             if shutil.disk_usage(self.folder).free < _RESERVED_BYTES:
                 raise RecordingFileError(
@@ -159,7 +159,7 @@ class RecordingStore:
                 )
             write()
 
-        self._run_reporting(path, carefully)
+        self._run_reporting(path, write_with_space_check)
 
     def _run_reporting(self, path: Path, work: Callable[[], T]) -> T:
         """Run a file operation, and convert an OSError into a RecordingFileError with the file name."""
@@ -192,7 +192,7 @@ class _DraftFile:
                 self._path.unlink()
 
 
-def find_zero_instant(record: ScopeRecord) -> float:
+def find_zero_time(record: ScopeRecord) -> float:
     """Return the zero time of a record (its trigger or alarm), in seconds of the record's clock.
 
     Without a trigger or alarm, the zero time is the last sample.

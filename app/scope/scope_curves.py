@@ -12,7 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
-from app.scope.curve_points import CurveColumns, CurvePoints, FloatArray, make_points, update_range
+from app.scope.curve_points import CurveColumns, CurvePoints, FloatArray, make_curve_points, update_range
 from app.scope.signals import Quantity, ScopeSignal
 from app.scope.time_window import Trigger
 from core.executor.snapshot import MachineState
@@ -41,11 +41,11 @@ class LiveSamples(Protocol):
         ...
 
     @property
-    def buffer_length_s(self) -> float:
+    def buffer_duration_s(self) -> float:
         """Return the length of the ring buffer in seconds."""
         ...
 
-    def read_between(
+    def read_samples_between(
         self, start_s: float, end_s: float, channel_names: Collection[str] | None = None
     ) -> ScopeRecord:
         """Return the samples from ``start_s`` to ``end_s``, both included.
@@ -79,7 +79,7 @@ class ScopePicture:
     overlay_curves: tuple[ScopeCurve, ...] = ()  # curves of the overlaid record
     begin_s: float = -1.0
     end_s: float = 0.0
-    zero_s: float = 0.0
+    zero_time_s: float = 0.0
     sample_rate_hz: float = 0.0
     is_live: bool = True
     is_metric: bool = False
@@ -108,17 +108,17 @@ class PictureRequest:
     armed: float = -np.inf  # time of the newest sample when the trigger was armed
 
     @property
-    def span_s(self) -> float:
+    def window_span_s(self) -> float:
         """Return the width of the window in seconds."""
         return self.end - self.begin
 
     @property
     def width(self) -> float:
         """Return the width of one pixel in seconds."""
-        return self.span_s / max(1, self.width_px)
+        return self.window_span_s / max(1, self.width_px)
 
 
-def convert_to_displayed(points: CurvePoints, scale: float, zero_s: float) -> CurvePoints:
+def convert_to_display_units(points: CurvePoints, scale: float, zero_s: float) -> CurvePoints:
     """Return the points in displayed units, with times relative to ``zero_s``."""
     return CurvePoints(
         points.times_s - zero_s, points.values * scale, points.has_line_pairs, points.is_joined_to_next
@@ -143,7 +143,7 @@ def find_lane_ranges(
             found[quantity] = present_ranges.get(quantity, (0.0, 1.0))
         else:
             low, high = min(float(v.min()) for v in values), max(float(v.max()) for v in values)
-            least = quantity.min_range * quantity.find_scale(request.metric)
+            least = quantity.smallest_range * quantity.find_display_scale(request.metric)
             found[quantity] = update_range(present_ranges.get(quantity), low, high, least)
     return found
 
@@ -180,12 +180,12 @@ class RecordingCurves:
     """
 
     record: ScopeRecord
-    zero_s: float
+    zero_time_s: float
     _columns: dict[str, FloatArray] = field(default_factory=dict)
     _ranges: Mapping[Quantity, ValueRange] = field(default_factory=dict)
     _metric: bool | None = None
 
-    def read_column(self, signal: ScopeSignal) -> FloatArray | None:
+    def read_signal_values(self, signal: ScopeSignal) -> FloatArray | None:
         """Return all values of a signal in internal units, or None if it is not in the record."""
         source = self.record.values_by_channel.get(signal.channel_name)
         if source is None:
@@ -197,16 +197,16 @@ class RecordingCurves:
     def make_curves(self, request: PictureRequest) -> tuple[ScopeCurve, ...]:
         """Return the curves of the window."""
         times = self.record.times_s
-        begin, end = self.zero_s + request.begin, self.zero_s + request.end
+        begin, end = self.zero_time_s + request.begin, self.zero_time_s + request.end
         first = max(0, int(np.searchsorted(times, begin)) - 1)
         last = int(np.searchsorted(times, end, side="right")) + 1
         found = []
         for signal in request.signals:
-            column = self.read_column(signal)
+            column = self.read_signal_values(signal)
             if column is not None:
-                points = make_points(times[first:last], column[first:last], request.width)
-                scale = signal.quantity.find_scale(request.metric)
-                found.append(ScopeCurve(signal, convert_to_displayed(points, scale, self.zero_s)))
+                points = make_curve_points(times[first:last], column[first:last], request.width)
+                scale = signal.quantity.find_display_scale(request.metric)
+                found.append(ScopeCurve(signal, convert_to_display_units(points, scale, self.zero_time_s)))
         return tuple(found)
 
     def make_picture(self, request: PictureRequest, overlay: RecordingCurves | None = None) -> ScopePicture:
@@ -229,7 +229,7 @@ class RecordingCurves:
             earlier,
             request.begin,
             request.end,
-            self.zero_s,
+            self.zero_time_s,
             self.record.sampling_rate_hz,
             False,
             request.metric,
@@ -244,12 +244,12 @@ class RecordingCurves:
 
         A value outside the record is NaN.
         """
-        column, times = self.read_column(signal), self.record.times_s
+        column, times = self.read_signal_values(signal), self.record.times_s
         if column is None or not len(times):
             return np.nan, np.nan
-        scale, values = signal.quantity.find_scale(metric), []
+        scale, values = signal.quantity.find_display_scale(metric), []
         for cursor in cursors:
-            when = self.zero_s + cursor
+            when = self.zero_time_s + cursor
             i = int(np.searchsorted(times, when))
             if i > 0 and (i == len(times) or when - times[i - 1] <= times[i] - when):
                 i -= 1
@@ -282,27 +282,29 @@ class LiveCurves:
         """Return the picture of the last seconds up to the newest sample."""
         newest = self.live_samples.newest_time_s
         width = request.width
-        known = (request.signals, request.span_s, request.width_px, request.metric)
+        known = (request.signals, request.window_span_s, request.width_px, request.metric)
         if known != self._of or not np.isfinite(newest):
             self._of = known
             self._columns = {each.key: CurveColumns.make_empty(width) for each in request.signals}
             self._done, self._latest = {}, {}
             self._ranges = {}
         if not np.isfinite(newest):
-            return ScopePicture(begin_s=-request.span_s, end_s=0.0, is_metric=request.metric)
+            return ScopePicture(begin_s=-request.window_span_s, end_s=0.0, is_metric=request.metric)
         end = np.ceil(newest / width) * width  # Partial columns would make the curve flicker.
         rate = self._extend_curves(request, newest)
         curves = []
         for signal in request.signals:
             columns = self._columns[signal.key]
-            columns.remove_before(end - request.span_s - width)
-            scale = signal.quantity.find_scale(request.metric)
+            columns.remove_columns_before(end - request.window_span_s - width)
+            scale = signal.quantity.find_display_scale(request.metric)
             latest = self._latest.get(signal.key, np.nan) * scale
-            curves.append(ScopeCurve(signal, convert_to_displayed(columns.make_points(), scale, end), latest))
+            curves.append(
+                ScopeCurve(signal, convert_to_display_units(columns.make_points(), scale, end), latest)
+            )
         earlier = overlay.make_curves(request) if overlay is not None else ()
         self._ranges = find_lane_ranges((*curves, *earlier), self._ranges, request)
         released = self._find_trigger_time(request, newest)
-        begin = -request.span_s
+        begin = -request.window_span_s
         return ScopePicture(
             tuple(curves),
             earlier,
@@ -320,20 +322,24 @@ class LiveCurves:
 
     def _extend_curves(self, wanted: PictureRequest, newest: float) -> float:
         """Add the new samples to the columns, and return the sample rate."""
-        start = newest - wanted.span_s
-        back = max((each.span_s for each in wanted.signals), default=0.0) + QUERY_LEAD_S
+        start = newest - wanted.window_span_s
+        back = max((each.calculation_window_s for each in wanted.signals), default=0.0) + QUERY_LEAD_S
         done = min((self._done.get(each.key, start) for each in wanted.signals), default=start)
         names = {each.channel_name for each in wanted.signals}
-        record = self.live_samples.read_between(max(done, start) - back, newest, names)
+        record = self.live_samples.read_samples_between(max(done, start) - back, newest, names)
         times = record.times_s
         for signal in wanted.signals:
             source = record.values_by_channel.get(signal.channel_name)
             if source is None or not len(times):
                 continue
             values = signal.calculate_values(times, source)
-            sure = float(times[-1]) - 0.5 * signal.span_s if signal.span_s else float(times[-1])
+            sure = (
+                float(times[-1]) - 0.5 * signal.calculation_window_s
+                if signal.calculation_window_s
+                else float(times[-1])
+            )
             first, last = np.searchsorted(times, (self._done.get(signal.key, start), sure), side="right")
-            if signal.span_s:
+            if signal.calculation_window_s:
                 finite_index = np.flatnonzero(np.isfinite(values[first:last]))
                 last = first + (finite_index[-1] + 1 if len(finite_index) else 0)
             if last > first:
@@ -355,8 +361,12 @@ class LiveCurves:
         if not name:
             return None
         signal = next((each for each in wanted.signals if each.key == name), None)
-        channel, back = (signal.channel_name, signal.span_s) if signal is not None else (name, 0.0)
-        record = self.live_samples.read_between(self._watched - back - QUERY_LEAD_S, newest, {channel})
+        channel, back = (
+            (signal.channel_name, signal.calculation_window_s) if signal is not None else (name, 0.0)
+        )
+        record = self.live_samples.read_samples_between(
+            self._watched - back - QUERY_LEAD_S, newest, {channel}
+        )
         column = record.values_by_channel.get(channel)
         if column is None or len(record.times_s) < 2:
             return None
@@ -367,10 +377,10 @@ class LiveCurves:
         first = max(0, int(np.searchsorted(record.times_s, self._watched)) - 1)
         cut = slice(first, int(finite_index[-1]) + 1)
         self._watched = max(self._watched, float(record.times_s[finite_index[-1]]))
-        return trigger.find_trigger_time(record.times_s[cut], values[cut], find_alarm_values(record))
+        return trigger.find_trigger_time(record.times_s[cut], values[cut], find_alarm_state_values(record))
 
 
-def find_alarm_values(record: ScopeRecord) -> frozenset[int]:
+def find_alarm_state_values(record: ScopeRecord) -> frozenset[int]:
     """Return the values of the channel ``state`` that indicate an alarm or an E-stop."""
     words = record.about.get("states", "").split("|")
     return frozenset(i for i, word in enumerate(words) if word in ALARM_STATES)

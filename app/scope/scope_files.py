@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from app.desk.translation import tr
-from app.scope.recording_store import ZERO_INSTANT_KEY, RecordingFile, find_zero_instant
+from app.scope.recording_store import ZERO_INSTANT_KEY, RecordingFile, find_zero_time
 from app.scope.scope_curves import RecordingCurves
 from app.scope.scope_model import CURVES_ARE_LIVE_MESSAGE, ScopeModel, SidePanel
 from core.access.access_table import ProtectedChange
@@ -31,22 +31,22 @@ class ScopeFiles:
             self.scope_model.desk.say(CURVES_ARE_LIVE_MESSAGE)
             return None
         begin, end = (
-            frozen.zero_s + self.scope_model.time_window.begin_s,
-            frozen.zero_s + self.scope_model.time_window.end_s,
+            frozen.zero_time_s + self.scope_model.time_window.begin_s,
+            frozen.zero_time_s + self.scope_model.time_window.end_s,
         )
-        cut = frozen.record.select_between(begin, end)
+        cut = frozen.record.select_time_range(begin, end)
         if not len(cut.times_s):
             self.scope_model.desk.say(tr("THE RECORD CONTAINS NO SAMPLES FOR THIS TIME RANGE"))
             return None
-        metadata = {**cut.about, ZERO_INSTANT_KEY: f"{frozen.zero_s - float(cut.times_s[0]):.6f}"}
+        metadata = {**cut.about, ZERO_INSTANT_KEY: f"{frozen.zero_time_s - float(cut.times_s[0]):.6f}"}
         return replace(cut, about=metadata)
 
-    def save_visible(self) -> None:
+    def save_visible_record(self) -> None:
         """Save the visible window as a record."""
         record = self.make_visible_record()
         if record is not None:
             self.scope_model.file_worker.enqueue_work(
-                lambda: self.scope_model.recording_store.save_named(record),
+                lambda: self.scope_model.recording_store.save_dated_record(record),
                 self._written,
                 self.scope_model.desk.show_refusal,
             )
@@ -80,28 +80,30 @@ class ScopeFiles:
         folder, shelf = self.scope_model.recording_store.folder, self.scope_model.recording_store
         self.scope_model.side_panel = SidePanel.READINGS
 
-        def work() -> ScopeRecord:
+        def read_alarm_record() -> ScopeRecord:
             return (
                 recorder.open_alarm_record(name)
                 if recorder is not None
                 else shelf.read_recording(folder / name)
             )
 
-        def done(record: ScopeRecord) -> None:
+        def show_alarm_record(record: ScopeRecord) -> None:
             self.scope_model.show_recording(record, name)
 
-        self.scope_model.file_worker.enqueue_work(work, done, self.scope_model.desk.show_refusal)
+        self.scope_model.file_worker.enqueue_work(
+            read_alarm_record, show_alarm_record, self.scope_model.desk.show_refusal
+        )
 
     def open_file(self, file: RecordingFile) -> None:
         """Open a record from the disk."""
         path, shelf = file.path, self.scope_model.recording_store
 
-        def done(record: ScopeRecord) -> None:
+        def show_opened_record(record: ScopeRecord) -> None:
             self.scope_model.side_panel = SidePanel.READINGS
             self.scope_model.show_recording(record, path.name)
 
         self.scope_model.file_worker.enqueue_work(
-            lambda: shelf.read_recording(path), done, self.scope_model.desk.show_refusal
+            lambda: shelf.read_recording(path), show_opened_record, self.scope_model.desk.show_refusal
         )
 
     def overlay_file(self, file: RecordingFile) -> None:
@@ -115,14 +117,14 @@ class ScopeFiles:
             return
         path, shelf = file.path, self.scope_model.recording_store
 
-        def done(record: ScopeRecord) -> None:
+        def set_overlay(record: ScopeRecord) -> None:
             self.scope_model.overlay_curves, self.scope_model.overlay_name = (
-                RecordingCurves(record, find_zero_instant(record)),
+                RecordingCurves(record, find_zero_time(record)),
                 path.name,
             )
 
         self.scope_model.file_worker.enqueue_work(
-            lambda: shelf.read_recording(path), done, self.scope_model.desk.show_refusal
+            lambda: shelf.read_recording(path), set_overlay, self.scope_model.desk.show_refusal
         )
 
     def delete_file(self, file: RecordingFile) -> None:
@@ -130,22 +132,22 @@ class ScopeFiles:
         if self.scope_model.desk.is_refused(ProtectedChange.RECORDS):
             return
 
-        def gone(_nothing: object) -> None:
+        def report_deletion(_nothing: object) -> None:
             self.scope_model.desk.user_access.persistence.log_change(
                 Message("record {path} deleted", path=file.path.name)
             )
             self.scope_model.desk.say(tr(Message("DELETED: {path}", path=file.path.name)))
             self.reload_files()
 
-        def yes() -> None:
+        def start_deletion() -> None:
             self.scope_model.file_worker.enqueue_work(
                 lambda: self.scope_model.recording_store.delete_recording(file.path),
-                gone,
+                report_deletion,
                 self.scope_model.desk.show_refusal,
             )
 
         question = tr(Message("PRESS Y TO DELETE {path}, N TO KEEP IT", path=file.path.name))
-        self.scope_model.desk.ask_operator(question, yes)
+        self.scope_model.desk.ask_operator(question, start_deletion)
 
     def write_picture(self, render_png: Callable[[], bytes]) -> None:
         """Save a picture of the page on a worker. ``render_png`` returns the PNG bytes."""

@@ -5,13 +5,13 @@ from __future__ import annotations
 from app.desk.pages.table_content import TableRow
 from app.desk.translation import tr
 from app.scope.scope_model import ScopeModel
-from app.special.special_functions import PageFunction
+from app.special.special_functions import SeparatePageFunction
 from core.message import Message
 
 SCOPE_PAGE = "SCOPE"  # name of the page in app.screen.page_table
 
 
-class ScopeFunction(PageFunction):
+class ScopeFunction(SeparatePageFunction):
     """Special function that opens the scope and shows how much time the recorded data covers."""
 
     name = "SCOPE"
@@ -22,7 +22,7 @@ class ScopeFunction(PageFunction):
         "and switches back to that page."
     )
 
-    def make_fact_rows(self) -> tuple[TableRow, ...]:
+    def make_information_rows(self) -> tuple[TableRow, ...]:
         """Return the rows with the recorded duration and the number of channels."""
         scope = self.desk.page_registry.find_model(ScopeModel)
         live = scope.live_samples if scope is not None else None
@@ -32,7 +32,7 @@ class ScopeFunction(PageFunction):
             TableRow(
                 (
                     tr("STORED"),
-                    tr(Message("THE LAST {minutes} MINUTES", minutes=f"{live.buffer_length_s / 60.0:g}")),
+                    tr(Message("THE LAST {minutes} MINUTES", minutes=f"{live.buffer_duration_s / 60.0:g}")),
                 )
             ),
             TableRow((tr("CHANNELS"), str(len(live.channels)))),

@@ -15,7 +15,7 @@ import numpy as np
 from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
 from app.desk.translation import tr
-from app.scope.recording_store import ZERO_INSTANT_KEY, RecordingStore, find_zero_instant
+from app.scope.recording_store import ZERO_INSTANT_KEY, RecordingStore, find_zero_time
 from app.scope.scope_curves import (
     LiveCurves,
     LiveSamples,
@@ -24,7 +24,7 @@ from app.scope.scope_curves import (
     ScopePicture,
     ValueRange,
 )
-from app.scope.signals import Quantity, ScopeSignal, find_default_keys, list_signals
+from app.scope.signals import Quantity, ScopeSignal, find_default_signal_keys, list_signals
 from app.scope.time_window import PAN_STEP_FRACTION, TimeCursors, TimeWindow, Trigger, TriggerEvent
 from core.executor.snapshot import Snapshot
 from core.message import Message
@@ -64,9 +64,9 @@ class ScopeModel:
     cursors: TimeCursors = field(default_factory=TimeCursors)
     trigger: Trigger = field(default_factory=Trigger)
     side_panel: SidePanel = SidePanel.READINGS
-    selected_keys: tuple[str, ...] = ()
+    selected_signal_keys: tuple[str, ...] = ()
     marked: int = 0  # index of the displayed curve on which keys act
-    width_px: int = 800
+    chart_width_px: int = 800
     picture: ScopePicture = field(default_factory=ScopePicture)
     signals: tuple[ScopeSignal, ...] = ()
     frozen_curves: RecordingCurves | None = None
@@ -86,8 +86,8 @@ class ScopeModel:
         if self.live_samples is not None:
             self._carried = LiveCurves(self.live_samples)
             self.signals = list_signals(self.live_samples.channels)
-            self.time_window.limits_s = (-self.live_samples.buffer_length_s, 0.0)
-        self.selected_keys = find_default_keys(self.signals)
+            self.time_window.limits_s = (-self.live_samples.buffer_duration_s, 0.0)
+        self.selected_signal_keys = find_default_signal_keys(self.signals)
 
     @property
     def is_live(self) -> bool:
@@ -102,7 +102,7 @@ class ScopeModel:
     @property
     def shown(self) -> tuple[ScopeSignal, ...]:
         """Return the displayed signals in the order of the signal list."""
-        return tuple(each for each in self.signals if each.key in self.selected_keys)
+        return tuple(each for each in self.signals if each.key in self.selected_signal_keys)
 
     @property
     def selected_signal(self) -> ScopeSignal | None:
@@ -135,12 +135,12 @@ class ScopeModel:
         cursors = self.cursors.times_s if self.cursors.shown and self.frozen_curves is not None else None
         trigger = self.trigger if self.is_armed and self._released is None else Trigger()
         if self.frozen_curves is None:
-            self.time_window.begin_s, self.time_window.end_s = -self.time_window.span_s, 0.0
+            self.time_window.begin_s, self.time_window.end_s = -self.time_window.window_span_s, 0.0
         return PictureRequest(
             self.shown,
             self.time_window.begin_s,
             self.time_window.end_s,
-            self.width_px,
+            self.chart_width_px,
             self.metric,
             trigger,
             cursors,
@@ -156,10 +156,11 @@ class ScopeModel:
         released = self._released
         if (
             released is not None
-            and live.newest_time_s >= released + (1.0 - self.trigger.fraction_before) * wanted.span_s
+            and live.newest_time_s
+            >= released + (1.0 - self.trigger.fraction_before_event) * wanted.window_span_s
         ):
             self._released = None
-            self._freeze_window(released, wanted.span_s)
+            self._freeze_window(released, wanted.window_span_s)
             return
         if not self._is_unchanged(wanted):
             self._asked = wanted, self.desk.read_snapshot(), self.desk.clock.read_seconds()
@@ -196,27 +197,27 @@ class ScopeModel:
         live = self.live_samples is not None and bool(np.isfinite(self.live_samples.newest_time_s))
         return self.frozen_curves is not None or live
 
-    def toggle_frozen(self) -> None:
+    def toggle_freeze(self) -> None:
         """Handle F2: freeze the curves, or return to live curves."""
         self.desk.clear_prompt_line()
         if self.frozen_curves is not None:
-            self.return_to_live()
+            self.return_to_live_curves()
         elif not self.has_samples:
             self.desk.say(NO_SAMPLES_MESSAGE)
         else:
-            self._freeze_window(None, self.time_window.span_s)
+            self._freeze_window(None, self.time_window.window_span_s)
 
-    def return_to_live(self) -> None:
+    def return_to_live_curves(self) -> None:
         """Show live curves again, and rearm the trigger."""
         if self.live_samples is None:
             self.desk.say(NO_SAMPLES_MESSAGE)
             return
-        span = self.time_window.span_s
+        span = self.time_window.window_span_s
         self.frozen_curves, self.recording_name, self._drawn, self._released = None, "", None, None
         self.cursors.active_index = -1
-        self.time_window.limits_s = (-self.live_samples.buffer_length_s, 0.0)
+        self.time_window.limits_s = (-self.live_samples.buffer_duration_s, 0.0)
         self.time_window.end_s = 0.0
-        self.time_window.begin_s = -min(span, self.live_samples.buffer_length_s)
+        self.time_window.begin_s = -min(span, self.live_samples.buffer_duration_s)
         self._arm_trigger()
         self._set_signals(list_signals(self.live_samples.channels))
 
@@ -231,18 +232,18 @@ class ScopeModel:
 
         def copy_samples(_request: object) -> ScopeRecord:
             end = live.newest_time_s
-            record = live.read_between(end - most, end)
+            record = live.read_samples_between(end - most, end)
             if instant is None or not len(record.times_s):
                 return record
             metadata = {**record.about, ZERO_INSTANT_KEY: f"{instant - float(record.times_s[0]):.6f}"}
             return replace(record, about=metadata)
 
-        def done(record: ScopeRecord) -> None:
-            before = 1.0 if instant is None else self.trigger.fraction_before
+        def show_frozen_record(record: ScopeRecord) -> None:
+            before = 1.0 if instant is None else self.trigger.fraction_before_event
             self.is_armed = False
             self.show_recording(record, "", (-before * span, (1.0 - before) * span))
 
-        self.worker.request_work(copy_samples, done, self.desk.say)
+        self.worker.request_work(copy_samples, show_frozen_record, self.desk.say)
 
     def show_recording(
         self, record: ScopeRecord, recording_name: str, window: tuple[float, float] | None = None
@@ -254,7 +255,7 @@ class ScopeModel:
         if not len(record.times_s):
             self.desk.say(tr("THE RECORD CONTAINS NO SAMPLES FOR THIS TIME RANGE"))
             return
-        zero = find_zero_instant(record)
+        zero = find_zero_time(record)
         self.frozen_curves, self.recording_name, self._drawn = (
             RecordingCurves(record, zero),
             recording_name,
@@ -263,7 +264,7 @@ class ScopeModel:
         self.is_armed, self._released = False, None
         self.cursors.active_index = -1
         self.time_window.limits_s = (float(record.times_s[0]) - zero, float(record.times_s[-1]) - zero)
-        self.time_window.show_all()
+        self.time_window.show_whole_record()
         if window is not None:
             self.time_window.begin_s, self.time_window.end_s = window
         self._set_signals(list_signals(record.channels))
@@ -272,8 +273,8 @@ class ScopeModel:
         """Replace the available signals, and hide curves whose signal no longer exists."""
         self.signals = signals
         there = {each.key for each in signals}
-        kept = tuple(each for each in self.selected_keys if each in there)
-        self.selected_keys = kept or find_default_keys(signals)
+        kept = tuple(each for each in self.selected_signal_keys if each in there)
+        self.selected_signal_keys = kept or find_default_signal_keys(signals)
         self._ranges.clear()
 
     # --- curves --------------------------------------------------------------------------------------
@@ -281,8 +282,10 @@ class ScopeModel:
     def toggle_curve(self, signal: ScopeSignal) -> None:
         """Show or hide the curve of a signal."""
         self.desk.clear_prompt_line()
-        if signal.key in self.selected_keys:
-            self.selected_keys = tuple(each for each in self.selected_keys if each != signal.key)
+        if signal.key in self.selected_signal_keys:
+            self.selected_signal_keys = tuple(
+                each for each in self.selected_signal_keys if each != signal.key
+            )
             return
         logic = signal.quantity is Quantity.LOGIC_LEVEL
         alike = [each for each in self.shown if (each.quantity is Quantity.LOGIC_LEVEL) is logic]
@@ -291,13 +294,13 @@ class ScopeModel:
             text = tr("{most} CURVES IS THE MAXIMUM. REMOVE A CURVE FIRST")
             self.desk.say(tr(Message(text, most=most)))
             return
-        self.selected_keys = (*self.selected_keys, signal.key)
+        self.selected_signal_keys = (*self.selected_signal_keys, signal.key)
 
     def mark(self, index: int) -> None:
         """Select the curve to which the keys apply."""
         self.marked = max(0, min(index, len(self.shown) - 1))
 
-    def stretch_lane(self, steps: int, quantity: Quantity | None = None) -> None:
+    def zoom_lane(self, steps: int, quantity: Quantity | None = None) -> None:
         """Magnify the lane of the selected curve around its middle by a number of steps.
 
         Negative steps make the curve smaller.
@@ -311,11 +314,11 @@ class ScopeModel:
     def shift_lane(self, steps: float, quantity: Quantity | None = None) -> None:
         """Move the range of a lane up by a number of steps of 10 % of the range."""
 
-        def change(low: float, high: float) -> ValueRange:
+        def shift_range(low: float, high: float) -> ValueRange:
             by = PAN_STEP_FRACTION * steps * (high - low)
             return low + by, high + by
 
-        self._change_range(quantity, change)
+        self._change_range(quantity, shift_range)
 
     def _change_range(self, quantity: Quantity | None, change: Callable[[float, float], ValueRange]) -> None:
         marked = self.selected_signal
@@ -325,12 +328,12 @@ class ScopeModel:
         now = self._ranges.get(quantity, self.picture.lane_ranges[quantity])
         self._ranges[quantity] = change(*now)
 
-    def show_all(self) -> None:
+    def show_whole_record(self) -> None:
         """Show the whole record, with all lanes scaled to their curves."""
         self.desk.clear_prompt_line()
         self._ranges.clear()
         if self.frozen_curves is not None:
-            self.time_window.show_all()
+            self.time_window.show_whole_record()
 
     # --- the window ----------------------------------------------------------------------------------
 
@@ -350,13 +353,13 @@ class ScopeModel:
         If the curves are live, freeze them instead.
         """
         if self.is_live:
-            self.toggle_frozen()
+            self.toggle_freeze()
             return
         self.time_window.pan_window(shift_s)
 
-    def pan_by_steps(self, step_count: int) -> None:
+    def pan_window_by_steps(self, step_count: int) -> None:
         """Move the time window by a number of steps of 10 % of its width."""
-        self.pan_window(step_count * PAN_STEP_FRACTION * self.time_window.span_s)
+        self.pan_window(step_count * PAN_STEP_FRACTION * self.time_window.window_span_s)
 
     # --- cursors -------------------------------------------------------------------------------------
 
@@ -376,7 +379,7 @@ class ScopeModel:
         The window then moves as far as necessary to show the cursor.
         """
         now = self.cursors.times_s[self.cursors.active_index]
-        to = now + step_px * self.time_window.span_s / max(1, self.width_px)
+        to = now + step_px * self.time_window.window_span_s / max(1, self.chart_width_px)
         self.cursors.move_cursor(max(self.time_window.limits_s[0], min(to, self.time_window.limits_s[1])))
         self.time_window.show_time(self.cursors.times_s[self.cursors.active_index])
 
@@ -397,7 +400,7 @@ class ScopeModel:
         self._released = None
 
     @property
-    def trigger_text(self) -> str:
+    def trigger_state_text(self) -> str:
         """Return the state of the trigger as text."""
         if self.trigger.trigger_event is TriggerEvent.OFF:
             return ""

@@ -63,7 +63,7 @@ class ScopeReadings(RowPanel):
         if (
             picture.is_live
             and known == self._known
-            and abs(picture.zero_s - self.picture.zero_s) < _UPDATE_INTERVAL_S
+            and abs(picture.zero_time_s - self.picture.zero_time_s) < _UPDATE_INTERVAL_S
         ):
             return
         self.picture, self._known = picture, known
@@ -111,7 +111,7 @@ class ScopeReadings(RowPanel):
 
     def _draw_between(self, painter: ThemedPainter, area: QRectF) -> QRectF:
         """Draw the time between the cursors, and return the area that remains below it."""
-        u, apart = self.theme.unit_px, self.scope_model.cursors.distance_s
+        u, apart = self.theme.unit_px, self.scope_model.cursors.time_difference_s
         hertz = Message("{item} Hz", item=f"{1.0 / abs(apart):.4g}") if apart else formats.NO_VALUE
         row = QRectF(area.x(), area.y(), area.width(), 2.6 * u)
         painter.draw_text_line(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from app.desk.arithmetic import EntryError, evaluate_expression, evaluate_line_number
+from app.desk.arithmetic import InvalidEntryError, evaluate_expression, evaluate_line_number
 from app.desk.pages.table_content import ROW_STEPS, FunctionKey, InputField, TableContent, TableRow, refused
 from app.desk.status import formats
 from app.desk.translation import tr
@@ -69,7 +69,7 @@ class ScopeTables:
         scope = self.scope_model
         metric = scope.metric
         rows = tuple(
-            TableRow((each.title, each.quantity.unit(metric)), each.key in scope.selected_keys)
+            TableRow((each.title, each.quantity.unit(metric)), each.key in scope.selected_signal_keys)
             for each in scope.signals
         )
         notes = (tr("Velocities and ripple are calculated over the time shown next to their names."),)
@@ -80,7 +80,7 @@ class ScopeTables:
             rows,
             self.selected_row,
             notes=notes,
-            raw_columns=frozenset({0}),
+            untranslated_columns=frozenset({0}),
         )
 
     def _trigger(self) -> TableContent:
@@ -91,7 +91,8 @@ class ScopeTables:
             quantity = signal.quantity
             unit = quantity.unit(scope.metric)
             what = formats.format_fixed(
-                trigger.trigger_level * quantity.find_scale(scope.metric), quantity.places(scope.metric)
+                trigger.trigger_level * quantity.find_display_scale(scope.metric),
+                quantity.places(scope.metric),
             )
         elif trigger.trigger_event is TriggerEvent.LINE:
             what = str(trigger.line_number)
@@ -103,25 +104,27 @@ class ScopeTables:
             TableRow(
                 ("LINE" if trigger.trigger_event is TriggerEvent.LINE else "LEVEL", f"{what} {unit}".strip())
             ),
-            TableRow(("TRIGGER POSITION IN WINDOW", formats.format_percent(trigger.fraction_before))),
+            TableRow(("TRIGGER POSITION IN WINDOW", formats.format_percent(trigger.fraction_before_event))),
         )
         asked = self.selected_row == _LEVEL and bool(what)
         return TableContent(
-            tr("TRIGGER") + (f"  ·  {scope.trigger_text}" if scope.trigger_text else ""),
+            tr("TRIGGER") + (f"  ·  {scope.trigger_state_text}" if scope.trigger_state_text else ""),
             ("", ""),
             (0.45, 0.55),
             rows,
             self.selected_row,
-            question=("LINE?" if trigger.trigger_event is TriggerEvent.LINE else "LEVEL?") if asked else "",
+            entry_prompt=("LINE?" if trigger.trigger_event is TriggerEvent.LINE else "LEVEL?")
+            if asked
+            else "",
             text=self.input_field.text,
             notes=("The trigger freezes the curves only once.",),
-            raw_columns=frozenset({1}),
+            untranslated_columns=frozenset({1}),
         )
 
     def _files(self) -> TableContent:
         files = self.scope_model.recording_store.recording_files
         rows = tuple(
-            TableRow((each.path.stem, each.modified_text, each.size_text), self._lit(each.path.name))
+            TableRow((each.path.stem, each.modified_time_text, each.size_text), self._lit(each.path.name))
             for each in files
         )
         notes = () if files else (tr("No scope records yet. F2 saves the current view."),)
@@ -133,7 +136,7 @@ class ScopeTables:
             rows,
             self.selected_row,
             notes=notes,
-            raw_columns=frozenset({0}),
+            untranslated_columns=frozenset({0}),
         )
 
     def _lit(self, name: str) -> bool:
@@ -151,7 +154,7 @@ class ScopeTables:
         if self.scope_model.side_panel is not SidePanel.FILES:
             return {}
         return {
-            "F2": FunctionKey("SAVE", self.scope_files.save_visible),
+            "F2": FunctionKey("SAVE", self.scope_files.save_visible_record),
             "F3": FunctionKey("OPEN", self._open),
             "F4": FunctionKey("OVERLAY", self._overlay),
             "F5": FunctionKey("CSV", self.scope_files.write_csv),
@@ -173,7 +176,7 @@ class ScopeTables:
     @property
     def needs_value(self) -> bool:
         """Return whether the operator has to enter a value."""
-        return self.scope_model.side_panel is SidePanel.TRIGGER and bool(self._trigger().question)
+        return self.scope_model.side_panel is SidePanel.TRIGGER and bool(self._trigger().entry_prompt)
 
     def accepts_key(self, key: str) -> bool:
         """Return whether a character can be entered as part of a value."""
@@ -201,7 +204,7 @@ class ScopeTables:
         if self.scope_model.side_panel is SidePanel.READINGS:
             self.scope_model.mark(row)
 
-    def touch_row(self, row: int) -> None:
+    def handle_row_touch(self, row: int) -> None:
         """Handle a touch of a row.
 
         A curve is shown or hidden at once. Other rows are executed by a second touch.
@@ -256,12 +259,12 @@ class ScopeTables:
             self.input_field.text = ""
             return
         signal = self._signal
-        scale = signal.quantity.find_scale(scope.metric) if signal is not None else 1.0
+        scale = signal.quantity.find_display_scale(scope.metric) if signal is not None else 1.0
         try:
             scope.set_trigger(
                 replace(trigger, trigger_level=evaluate_expression(self.input_field.text) / scale)
             )
-        except EntryError as error:
+        except InvalidEntryError as error:
             self.input_field.text = refused(self.input_field.text)
             scope.desk.show_refusal(str(error))
             return

@@ -92,7 +92,7 @@ class CurveArea(QWidget):
             return
         at = event.position()
         if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
-            self.scope_model.stretch_lane(steps, self.chart.find_quantity(at))
+            self.scope_model.zoom_lane(steps, self.chart.find_quantity(at))
         else:
             self.scope_model.zoom_window(steps, self.chart.find_time(at))
         event.accept()
@@ -182,7 +182,7 @@ class ScopePage(ListPage):
         self.head_line = ScopeHeader(self.theme, self)
         self.curve_area = CurveArea(self.theme, scope, self)
         self.readings = ScopeReadings(self.theme, scope, self._marked, self)
-        self.table_panel = TablePanel(self.theme, self.scope_tables.touch_row, self)
+        self.table_panel = TablePanel(self.theme, self.scope_tables.handle_row_touch, self)
         self.number_pad = NumberPad(self.theme, self.handle_touched_key, page_key=None, parent=self)
         self._laid: object = None
         self._drawn: object = None
@@ -196,7 +196,7 @@ class ScopePage(ListPage):
         chart.setGeometry(self.curve_area.rect())
         chart.show()
 
-    def prepare_slice(self) -> bool:
+    def continue_preparation(self) -> bool:
         """Create the chart and its lanes in steps before the page is first shown.
 
         Return whether work remains.
@@ -228,12 +228,12 @@ class ScopePage(ListPage):
             return {**self.scope_tables.make_function_keys(), **pictured}
         return {
             "F2": FunctionKey(
-                "FREEZE" if scope.is_live else "LIVE", scope.toggle_frozen, barred=not scope.has_samples
+                "FREEZE" if scope.is_live else "LIVE", scope.toggle_freeze, barred=not scope.has_samples
             ),
             "F3": FunctionKey("TRIGGER", partial(open_, SidePanel.TRIGGER)),
             "F4": FunctionKey("CURVES", partial(open_, SidePanel.CURVES)),
             "F5": FunctionKey("CURSORS", scope.toggle_cursors, barred=scope.is_live),
-            "F6": FunctionKey("FIT", scope.show_all),
+            "F6": FunctionKey("FIT", scope.show_whole_record),
             **(
                 {"F8": FunctionKey("ANALYZE", self._analyse)}
                 if page_table.has_page(page_table.ANALYSES)
@@ -249,13 +249,13 @@ class ScopePage(ListPage):
             **{name: key.action for name, key in self.make_function_keys().items()},
             "Zoom in": partial(scope.zoom_window, 1),
             "Zoom out": partial(scope.zoom_window, -1),
-            "Pan left": partial(scope.pan_by_steps, -1),
-            "Pan right": partial(scope.pan_by_steps, 1),
-            "Pan up": partial(scope.stretch_lane, 1),
-            "Pan down": partial(scope.stretch_lane, -1),
+            "Pan left": partial(scope.pan_window_by_steps, -1),
+            "Pan right": partial(scope.pan_window_by_steps, 1),
+            "Pan up": partial(scope.zoom_lane, 1),
+            "Pan down": partial(scope.zoom_lane, -1),
             "Page up": partial(scope.shift_lane, 1),
             "Page down": partial(scope.shift_lane, -1),
-            "Follow": scope.show_all,
+            "Follow": scope.show_whole_record,
         }
 
     def is_animating(self) -> bool:
@@ -292,7 +292,7 @@ class ScopePage(ListPage):
         """Draw the last finished picture, and request the next picture."""
         scope, chart = self.scope_model, self.curve_area.chart
         if chart is not None and chart.curve_area.width() > 1.0:
-            scope.width_px = round(chart.curve_area.width())
+            scope.chart_width_px = round(chart.curve_area.width())
         scope.poll()
         self._lay_out_if()
         self.head_line.header_texts = self._words()
@@ -312,10 +312,10 @@ class ScopePage(ListPage):
         if self.curve_area.chart is None:
             return tr("OPENING …"), "", False
         rate = tr(Message("{rate} samples per second", rate=f"{sight.sample_rate_hz:g}"))
-        span = tr(Message("window {span}", span=format_span(scope.time_window.span_s)))
+        span = tr(Message("window {span}", span=format_time_span(scope.time_window.window_span_s)))
         what = tr("LIVE") if scope.is_live else scope.recording_name or tr("FROZEN")
         over = "  ·  " + tr(Message("overlay: {name}", name=scope.overlay_name)) if scope.overlay_name else ""
-        return join_messages("  ·  ", (what, rate, span, over)), scope.trigger_text, scope.is_armed
+        return join_messages("  ·  ", (what, rate, span, over)), scope.trigger_state_text, scope.is_armed
 
     def apply_theme(self) -> None:
         """Apply the current colors."""
@@ -405,7 +405,7 @@ def _find_view_key(sight: ScopePicture) -> object:
     return level_texts, dict(sight.lane_ranges), sight.begin_s, sight.end_s, sight.is_metric
 
 
-def format_span(seconds: float) -> str:
+def format_time_span(seconds: float) -> str:
     """Return a duration as text with a suitable unit."""
     if seconds < 1.0:
         return Message(

@@ -51,7 +51,7 @@ class Quantity(Enum):
         return str(self.value[0])
 
     @property
-    def min_range(self) -> float:
+    def smallest_range(self) -> float:
         """Return the smallest useful range in internal units."""
         return float(self.value[3])
 
@@ -64,7 +64,7 @@ class Quantity(Enum):
         """Return the display unit in the operator's language."""
         return tr(self.value[1] if is_metric else self.value[2])
 
-    def find_scale(self, is_metric: bool) -> float:
+    def find_display_scale(self, is_metric: bool) -> float:
         """Return the factor from internal units to display units."""
         if self is Quantity.OVERRIDE:
             return 100.0
@@ -108,9 +108,9 @@ def _as_it_is(_times: FloatArray, values: FloatArray) -> FloatArray:
 class ScopeSignal:
     """Signal that the scope can show as a curve, calculated from one channel.
 
-    ``span_s`` is the length of the calculation window in seconds. ``axis_letter`` is the axis, or empty for
-    signals of the machine. ``display_name`` is the English name. ``is_untranslated`` is True if the name
-    comes from the machine file.
+    ``calculation_window_s`` is the length of the calculation window in seconds. ``axis_letter`` is the axis,
+    or empty for signals of the machine. ``display_name`` is the English name. ``is_untranslated`` is True if
+    the name comes from the machine file.
     """
 
     key: str
@@ -119,7 +119,7 @@ class ScopeSignal:
     channel_name: str
     axis_letter: str = ""
     derive_values: DeriveValues = _as_it_is
-    span_s: float = 0.0
+    calculation_window_s: float = 0.0
     is_untranslated: bool = False
 
     @property
@@ -131,7 +131,11 @@ class ScopeSignal:
     @property
     def note(self) -> str:
         """Return the text about the calculation window, or an empty string for directly sampled signals."""
-        return tr(Message("{ms} ms window", ms=f"{1000.0 * self.span_s:g}")) if self.span_s else ""
+        return (
+            tr(Message("{ms} ms window", ms=f"{1000.0 * self.calculation_window_s:g}"))
+            if self.calculation_window_s
+            else ""
+        )
 
     def calculate_values(self, times: FloatArray, column: FloatArray) -> FloatArray:
         """Return the values of the signal for the samples of its channel, in internal units."""
@@ -193,7 +197,7 @@ _MACHINE_SIGNALS = (
         Quantity.SPEED_RIPPLE,
         "spindle speed",
         "",
-        record.calculate_ripple,
+        record.calculate_speed_ripple,
         record.RIPPLE_SPAN_S,
     ),
     ScopeSignal("spindle turns", tr("Spindle revolutions"), Quantity.REVOLUTIONS, "spindle turns"),
@@ -224,7 +228,7 @@ def list_signals(channels: Sequence[Channel]) -> tuple[ScopeSignal, ...]:
     return tuple(each for each in found if each.channel_name in there)
 
 
-def find_default_keys(signals: Sequence[ScopeSignal]) -> tuple[str, ...]:
+def find_default_signal_keys(signals: Sequence[ScopeSignal]) -> tuple[str, ...]:
     """Return the keys of the signals that the scope shows initially.
 
     These are the following errors and velocities of the axes, and the spindle. There are at most as many as

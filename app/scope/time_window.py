@@ -31,12 +31,12 @@ class TimeWindow:
     limits_s: tuple[float, float] = (-300.0, 0.0)
 
     @property
-    def span_s(self) -> float:
+    def window_span_s(self) -> float:
         """Return the width of the window in seconds."""
         return self.end_s - self.begin_s
 
     @property
-    def middle_s(self) -> float:
+    def middle_time_s(self) -> float:
         """Return the middle of the window in seconds."""
         return 0.5 * (self.begin_s + self.end_s)
 
@@ -45,19 +45,19 @@ class TimeWindow:
 
         The time ``time_s`` does not move.
         """
-        near = [each for each in ROUND_SPANS_S if each < self.span_s * 0.999]
-        far = [each for each in ROUND_SPANS_S if each > self.span_s * 1.001]
+        near = [each for each in ROUND_SPANS_S if each < self.window_span_s * 0.999]
+        far = [each for each in ROUND_SPANS_S if each > self.window_span_s * 1.001]
         for _ in range(abs(steps)):
             row = near if steps > 0 else far
-            span = (row.pop() if steps > 0 else row.pop(0)) if row else self.span_s
-            self.magnify(self.span_s / span, time_s)
+            span = (row.pop() if steps > 0 else row.pop(0)) if row else self.window_span_s
+            self.magnify(self.window_span_s / span, time_s)
 
     def magnify(self, factor: float, time_s: float | None = None) -> None:
         """Magnify the window by a factor, around a time or around the middle."""
-        time_s = self.middle_s if time_s is None else time_s
+        time_s = self.middle_time_s if time_s is None else time_s
         whole = self.limits_s[1] - self.limits_s[0]
-        span = min(max(self.span_s / factor, MIN_SPAN_S), max(whole, MIN_SPAN_S))
-        share = (time_s - self.begin_s) / self.span_s if self.span_s else 0.5
+        span = min(max(self.window_span_s / factor, MIN_SPAN_S), max(whole, MIN_SPAN_S))
+        share = (time_s - self.begin_s) / self.window_span_s if self.window_span_s else 0.5
         self.begin_s = time_s - share * span
         self.end_s = self.begin_s + span
         self._stay()
@@ -67,19 +67,19 @@ class TimeWindow:
         self.begin_s, self.end_s = self.begin_s + shift_s, self.end_s + shift_s
         self._stay()
 
-    def show_all(self) -> None:
+    def show_whole_record(self) -> None:
         """Show the whole record."""
         self.begin_s, self.end_s = self.limits_s
-        if self.span_s < MIN_SPAN_S:
+        if self.window_span_s < MIN_SPAN_S:
             self.begin_s = self.end_s - MIN_SPAN_S
 
     def show_time(self, time_s: float) -> None:
         """Pan only as far as necessary to show a time."""
         if not self.begin_s <= time_s <= self.end_s:
-            self.pan_window(time_s - self.middle_s)
+            self.pan_window(time_s - self.middle_time_s)
 
     def _stay(self) -> None:
-        span = self.span_s
+        span = self.window_span_s
         self.begin_s = max(self.limits_s[0], min(self.begin_s, self.limits_s[1] - span))
         self.end_s = self.begin_s + span
 
@@ -100,13 +100,13 @@ class TimeCursors:
         return self.active_index >= 0
 
     @property
-    def distance_s(self) -> float:
+    def time_difference_s(self) -> float:
         """Return the time from the first to the second cursor in seconds."""
         return self.times_s[1] - self.times_s[0]
 
     def place_in_window(self, window: TimeWindow) -> None:
         """Place the cursors at one quarter and three quarters of the window."""
-        quarter = 0.25 * window.span_s
+        quarter = 0.25 * window.window_span_s
         self.times_s, self.active_index = (window.begin_s + quarter, window.end_s - quarter), 0
 
     def move_cursor(self, time_s: float, cursor: int | None = None) -> None:
@@ -149,15 +149,15 @@ TRIGGER_POSITIONS = (0.1, 0.5, 0.9)  # shares of the window before the trigger
 class Trigger:
     """Trigger of the scope.
 
-    ``signal_key`` is the key of a signal. ``trigger_level`` is in internal units. ``fraction_before`` is the
-    fraction of the window before the event.
+    ``signal_key`` is the key of a signal. ``trigger_level`` is in internal units. ``fraction_before_event``
+    is the fraction of the window before the event.
     """
 
     trigger_event: TriggerEvent = TriggerEvent.OFF
     signal_key: str = ""
     trigger_level: float = 0.0
     line_number: int = 1
-    fraction_before: float = 0.5
+    fraction_before_event: float = 0.5
 
     @property
     def watched_key(self) -> str:
@@ -172,9 +172,11 @@ class Trigger:
     def with_next_position(self) -> Trigger:
         """Return a copy in which the event is at the next of the possible positions in the window."""
         at = (
-            TRIGGER_POSITIONS.index(self.fraction_before) if self.fraction_before in TRIGGER_POSITIONS else -1
+            TRIGGER_POSITIONS.index(self.fraction_before_event)
+            if self.fraction_before_event in TRIGGER_POSITIONS
+            else -1
         )
-        return replace(self, fraction_before=TRIGGER_POSITIONS[(at + 1) % len(TRIGGER_POSITIONS)])
+        return replace(self, fraction_before_event=TRIGGER_POSITIONS[(at + 1) % len(TRIGGER_POSITIONS)])
 
     def find_trigger_time(
         self, times: FloatArray, values: FloatArray, alarm_values: frozenset[int]

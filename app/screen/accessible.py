@@ -38,7 +38,7 @@ def _make_interface(kind: str, shown: QObject) -> QAccessibleInterface | None:
     """
     if kind != "QWidget" or not isinstance(shown, QWidget):
         return None
-    return AccessiblePanel(shown) if isinstance(shown, Panel) else AccessiblePart(shown)
+    return AccessiblePanel(shown) if isinstance(shown, Panel) else AccessibleContainer(shown)
 
 
 def announce_text(widget: QWidget, text: str) -> None:
@@ -50,7 +50,7 @@ def announce_text(widget: QWidget, text: str) -> None:
         QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(widget, text))
 
 
-class AccessiblePart(QAccessibleWidget):
+class AccessibleContainer(QAccessibleWidget):
     """Accessible interface of a page or another widget that contains panels.
 
     A part without an ``accessible_name`` uses the name of its parent widget.
@@ -71,7 +71,7 @@ class AccessiblePart(QAccessibleWidget):
         return super().text(kind)
 
 
-class AccessiblePanel(AccessiblePart):
+class AccessiblePanel(AccessibleContainer):
     """Accessible interface of a panel, whose children are the touch targets.
 
     Its name is the title of the panel, and its description is the other texts.

@@ -134,7 +134,7 @@ class ChartPlot(pg.GraphicsWidget):  # type: ignore[misc]
             lines.append(QLineF(room.x(), y, room.right(), y))
         return lines
 
-    def find_values(self, position: QPointF) -> tuple[float, float]:
+    def map_to_axis_values(self, position: QPointF) -> tuple[float, float]:
         """Return the horizontal and vertical axis values at a position in pixels of the chart."""
         (x0, x1), (y0, y1) = self.vb.viewRange()
         room = self.find_curve_area()

@@ -39,12 +39,12 @@ _DRAWING_MARGIN = 5.0  # Units around the drawing, for dimensions.
 class SketchPanel(Panel):
     """Panel that draws a sketch with its dimensions.
 
-    ``displayed`` contains the sketch, the (word, value) pairs of its dimensions, the word of the selected
-    field, and the words of fields with errors.
+    ``displayed_sketch`` contains the sketch, the (word, value) pairs of its dimensions, the word of the
+    selected field, and the words of fields with errors.
     """
 
     title = "DRAWING"
-    displayed: RedrawingAttribute[tuple[Sketch, tuple[tuple[str, str], ...], str, frozenset[str]]] = (
+    displayed_sketch: RedrawingAttribute[tuple[Sketch, tuple[tuple[str, str], ...], str, frozenset[str]]] = (
         RedrawingAttribute((Sketch(), (), "", frozenset()))
     )
 
@@ -69,18 +69,20 @@ class SketchPanel(Panel):
 
         The dimension of the selected field is highlighted, and dimensions with errors have the alarm color.
         """
-        drawn, labels, here, wrong = self.displayed
+        drawn, labels, here, wrong = self.displayed_sketch
         if not drawn.outlines:
             return
         self._fit_sketch(drawn)
         for each in drawn.outlines:
             self._outline(painter, each)
         said = dict(labels)
-        for number, dim in enumerate(sorted(drawn.dimensions, key=lambda dim: dim.field_word == here)):
-            if said.get(dim.field_word, ""):
-                ink = "alarm" if dim.field_word in wrong else "lit" if dim.field_word == here else "text"
+        for number, dim in enumerate(sorted(drawn.dimensions, key=lambda dim: dim.field_label == here)):
+            if said.get(dim.field_label, ""):
+                ink = "alarm" if dim.field_label in wrong else "lit" if dim.field_label == here else "text"
                 share = _NUMBER_POSITIONS[number % len(_NUMBER_POSITIONS)] if _is_diameter(dim) else 0.5
-                self._dimension(painter, dim, said[dim.field_word], ink, share, marked=dim.field_word == here)
+                self._dimension(
+                    painter, dim, said[dim.field_label], ink, share, marked=dim.field_label == here
+                )
 
     def _fit_sketch(self, drawn: Sketch) -> None:
         """Center the drawing in the panel at the largest possible scale."""
@@ -100,9 +102,9 @@ class SketchPanel(Panel):
         x = self._centre.x() + (point[0] - self._middle[0]) * self._scale
         return QPointF(x, self._centre.y() - (point[1] - self._middle[1]) * self._scale)
 
-    def press_at(self, position: QPointF) -> bool:
+    def press_target_at(self, position: QPointF) -> bool:
         """Handle a touch on a dimension or on any other point of the sketch."""
-        if not super().press_at(position):
+        if not super().press_target_at(position):
             away = position - self._centre
             self._beside((self._middle[0] + away.x() / self._scale, self._middle[1] - away.y() / self._scale))
         return True
@@ -137,7 +139,7 @@ class SketchPanel(Panel):
             self._draw_arrow(painter, line)
             self._draw_arrow(painter, QLineF(line.p2(), line.p1()))
             middle = line.pointAt(share)
-        self._figure(painter, middle, dim.prefix + figure, ink, dim.field_word, marked=marked)
+        self._figure(painter, middle, dim.prefix + figure, ink, dim.field_label, marked=marked)
 
     def _draw_arrow(self, painter: ThemedPainter, line: QLineF) -> None:
         """Draw an arrowhead at the first point of a line."""
@@ -221,13 +223,13 @@ def _make_transform(box: QRectF, outline: ToolOutline) -> QTransform:
     cutting = _polygon(outline.cutting_outlines[0]).boundingRect()
     for points in outline.cutting_outlines[1:]:
         cutting = cutting.united(_polygon(points).boundingRect())
-    share = 1.15 if outline.is_axial else _DRAWING_SCALE
-    if outline.is_axial and outline.body_outlines:
+    share = 1.15 if outline.is_axially_symmetric else _DRAWING_SCALE
+    if outline.is_axially_symmetric and outline.body_outlines:
         cutting = cutting.united(_polygon(outline.body_outlines[0]).boundingRect())
     scale = min(box.width() / cutting.width(), box.height() / cutting.height()) / share
     # Shift the center of the drawing toward the body.
     middle = cutting.center()
-    if outline.body_outlines and not outline.is_axial:
+    if outline.body_outlines and not outline.is_axially_symmetric:
         whole = _polygon(outline.body_outlines[0]).boundingRect().center() - middle
         reach = max(abs(whole.x()), abs(whole.y()), 1e-9)
         middle += whole * (0.3 * min(cutting.width(), cutting.height()) / reach)

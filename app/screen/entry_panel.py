@@ -111,7 +111,7 @@ class EntryTexts:
     subject_text: str = ""
     question_text: str = ""
     text: str = ""
-    change_text: str = ""
+    change_description: str = ""
     footer_text: str = ""
     is_rejected: bool = field(init=False)  # The next character replaces the text.
 
@@ -134,7 +134,7 @@ class EntryPanel(Panel):
         )
         left = 28 * u if asked.subject_text else 0.0
         change = QRectF(room.x() + left, room.y(), room.width() - left, 3.2 * u)
-        painter.draw_text_line(change, asked.change_text, 2.0, "accent")
+        painter.draw_text_line(change, asked.change_description, 2.0, "accent")
         self._ask(painter, QRectF(room.x(), room.y() + 3.5 * u, room.width(), 4.8 * u))
         room.setTop(room.bottom() - 3.0 * u)
         painter.draw_text_line(room, asked.footer_text, 1.8, "soft", bold=False)
@@ -206,7 +206,7 @@ class NumberPad(LetterPad):
     """A touch keyboard for numbers and arithmetic operators."""
 
     accessible_name = "NUMBER PAD"
-    page_key: RedrawingAttribute[tuple[str, str] | None] = RedrawingAttribute(
+    selected_page_key: RedrawingAttribute[tuple[str, str] | None] = RedrawingAttribute(
         None
     )  # Key name and label of the page's own key.
 
@@ -223,7 +223,7 @@ class NumberPad(LetterPad):
         ``page_key`` is the name and label of a key that the page adds, or None for no such key.
         """
         super().__init__(theme, press, parent, _NUMBER_KEYS)
-        self.page_key = page_key
+        self.selected_page_key = page_key
         self.show()
 
     def draw_pad_key(self, painter: ThemedPainter, box: QRectF, key: str) -> None:
@@ -232,7 +232,9 @@ class NumberPad(LetterPad):
         The position of the key that the page adds remains empty if the page adds no key.
         """
         key, shown = (
-            (self.page_key or ("", "")) if key == _PAGE_KEY else (key, _KEY_LABELS.get(key, key.upper()))
+            (self.selected_page_key or ("", ""))
+            if key == _PAGE_KEY
+            else (key, _KEY_LABELS.get(key, key.upper()))
         )
         if key:
             ink = "text" if key.isdigit() or key == "." else "accent"

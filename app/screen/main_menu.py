@@ -54,7 +54,7 @@ class MenuPage(Page):
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
         """Dim the tiles of pages that cannot be opened now."""
         super().refresh(snapshot, status, loaded)
-        self.menu_list.barred_pages = self.find_disabled_keys()
+        self.menu_list.disabled_pages = self.find_disabled_keys()
 
     def make_key_actions(self) -> KeyActions:
         """Return the actions of the menu's keys."""
@@ -86,7 +86,7 @@ class _MenuTiles(Panel):
     """The menu entries in two columns."""
 
     title = page_table.MENU
-    barred_pages: RedrawingAttribute[frozenset[str]] = RedrawingAttribute(
+    disabled_pages: RedrawingAttribute[frozenset[str]] = RedrawingAttribute(
         frozenset()
     )  # Keys of pages that cannot be opened now.
 
@@ -110,11 +110,11 @@ class _MenuTiles(Panel):
             box = QRectF(room.x() + column * wide, room.y() + row * high, wide - u, tall)
             self._tile(painter, box, entry)
             press = partial(self._press, MENU_KEYS.get(entry.key, entry.key))
-            self.add_target(box, press, is_disabled=entry.key in self.barred_pages)
+            self.add_target(box, press, is_disabled=entry.key in self.disabled_pages)
 
     def _tile(self, painter: ThemedPainter, box: QRectF, entry: PageDescription) -> None:
         u = self.theme.unit_px
-        barred = entry.key in self.barred_pages
+        barred = entry.key in self.disabled_pages
         ink = "soft" if barred else "accent"
         painter.draw_box(box, "frame" if barred else "accent", 0.2, "panel" if barred else "key")
         painter.draw_text_line(

@@ -11,16 +11,16 @@ first opened. A page may override the following members:
 - ``make_key_labels()``: the labels, if they change.
 - ``find_disabled_keys()``: the function keys that are disabled now. They are drawn dim, and show the reason
   when they are pressed.
-- ``STARTS``: whether the start buttons can start cycles while the page is shown.
+- ``CAN_START_CYCLES``: whether the start buttons can start cycles while the page is shown.
 - ``make_key_actions()``: its key actions, by the key names of ``app.screen.window.key_table``. They
   have priority over the actions of the frame. H, E, D, R and the pots work on every page without
   a caret, and F1 works on all pages.
 - ``handle_key_press``: receives every key press first, including repeats. True means that the page
   has handled the key.
-- ``stop_held_actions()``: called before any other key or touch acts. Actions that need a key held down
+- ``stop_held_key_actions()``: called before any other key or touch acts. Actions that need a key held down
   end.
 - ``handle_key_release``: receives every key release.
-- ``release_all()``: called if no more key releases will arrive. All such actions end.
+- ``release_all_keys()``: called if no more key releases will arrive. All such actions end.
 - ``handle_key(key)``: handles a key as text input: one character, or ``Enter Back Delete Tab Up
   Down``, ``Page up``, ``Page down``. True means that the page has handled the key. A standard
   widget with the focus handles its keys itself.
@@ -32,13 +32,13 @@ first opened. A page may override the following members:
 - ``find_marked_help()``: help about the marked word, field or function, which the key ``?`` shows first.
 - ``can_open()``: whether the page can be opened now. If not, it shows the reason with ``desk.say``.
 - ``on_open()``: called when the page has opened. It may take the focus from the window.
-- ``try_leave()``: called before the page or the window closes. False prevents closing. The page then
+- ``try_leave_page()``: called before the page or the window closes. False prevents closing. The page then
   shows the reason with ``desk.say``.
 - ``is_esc_stop_key()``: whether Esc starts feed hold while the machine moves. False if Esc has another
   function.
 - ``handle_escape()``: handles Esc. False means that the page closed nothing. The window then closes its
   question, starts feed hold, or opens the Automatic page.
-- ``prepare_slice()``: prepares slow parts in slices before the page is shown. False means that no work
+- ``continue_preparation()``: prepares slow parts in slices before the page is shown. False means that no work
   remains.
 - ``is_animating()``: whether the page shows an animation, so that it is drawn 60 times per second.
 - ``refresh``: called once a frame with the snapshot, status and loaded program of one instant.
@@ -59,7 +59,7 @@ from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.desk import Desk
-from app.desk.pages.editor_panel import PanelModel
+from app.desk.pages.editor_panel import EditorPanelModel
 from app.desk.pages.guide_text import GuideBlock
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
@@ -99,7 +99,7 @@ class Page(QWidget):
 
     NAME: ClassVar[str]
     LABELS: ClassVar[tuple[str, ...]] = ("MENU", "", "", "", "", "", "ALARMS", "", "", "")
-    STARTS: ClassVar[bool] = False
+    CAN_START_CYCLES: ClassVar[bool] = False
 
     def __init__(self, host: PageHost, parent: QWidget) -> None:
         super().__init__(parent)
@@ -142,10 +142,10 @@ class Page(QWidget):
         The base class does nothing.
         """
 
-    def stop_held_actions(self) -> None:
+    def stop_held_key_actions(self) -> None:
         """End the actions that last while a key is held down, because another key or touch acts next."""
 
-    def release_all(self) -> None:
+    def release_all_keys(self) -> None:
         """End the actions that last while a key is held down, because no key releases will arrive."""
 
     def handle_key(self, _key: str) -> bool:
@@ -173,7 +173,7 @@ class Page(QWidget):
         """Return whether an input field of the page has the keyboard focus."""
         return False
 
-    def prepare_slice(self) -> bool:
+    def continue_preparation(self) -> bool:
         """Prepare one slice of the slow parts before the page is shown.
 
         Return False if no work remains.
@@ -206,7 +206,7 @@ class Page(QWidget):
         The base class does nothing.
         """
 
-    def try_leave(self) -> bool:
+    def try_leave_page(self) -> bool:
         """Prepare for closing, and return whether another page may replace this page.
 
         If not, show the reason on the prompt line.
@@ -297,11 +297,11 @@ class EditorPanel(QWidget):
     """
 
     KEYS: Sequence[str] = ()
-    model: PanelModel
+    model: EditorPanelModel
 
     def __init__(self, host: PageHost, editor_page: Page) -> None:  # noqa: ARG002
         super().__init__(editor_page)
-        self.model = PanelModel()
+        self.model = EditorPanelModel()
         self.hide()
 
     def make_header_keys(self, program_name: str) -> Sequence[HeaderKey]:  # noqa: ARG002

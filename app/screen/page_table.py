@@ -11,7 +11,7 @@ from typing import Any
 from PySide6 import QtCore, QtGui, QtWidgets
 from PySide6.QtWidgets import QWidget
 
-from app.compose.optional_features import extras, insert_after
+from app.compose.optional_features import extras, insert_items_after
 from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
 from app.desk.page_description import LATHES, MILLS, PageDescription
@@ -122,8 +122,8 @@ _OWN_PAGES = (
     ),
     PageDescription(
         SPECIAL,
-        "app.special.special_view.SpecialPage",
-        "app.special.special_functions.SpecialFunctionList",
+        "app.special.special_view.SpecialFunctionsPage",
+        "app.special.special_functions.SpecialFunctionsModel",
         "F10",
         "SPECIAL",
         "speed limit, parts, inputs and outputs, log, backup",
@@ -131,7 +131,7 @@ _OWN_PAGES = (
     PageDescription(
         PART,
         "app.part.part_page_view.PartPage",
-        "app.part.part_model.PartModel",
+        "app.part.part_model.PartPageModel",
         "B",
         "PART",
         "program findings, stock, checks turned off",
@@ -149,11 +149,11 @@ _OWN_PAGES = (
     PageDescription(SHAPE, "app.offsets.tool_offsets_view.ToolShapePage"),
     PageDescription(MENU, "app.screen.main_menu.MenuPage"),
     PageDescription(
-        SEARCHTO_PAGE, "app.searchto.searchto_view.SearchtoPage", "app.searchto.searchto_model.SearchtoModel"
+        SEARCHTO_PAGE, "app.searchto.searchto_view.RestartPage", "app.searchto.searchto_model.RestartModel"
     ),
 )
 ALL_PAGES = tuple(
-    insert_after(
+    insert_items_after(
         _OWN_PAGES,
         lambda entry: entry.name,
         [(page, page.preceding_page) for extra in extras().values() for page in extra.page_descriptions],
@@ -175,7 +175,7 @@ def find_replacement_page(language: str, name: str) -> str:
 
 def list_menu_entries(language: str) -> tuple[PageDescription, ...]:
     """Return the entries of the main menu on a machine with this language."""
-    return tuple(entry for entry in MENU_PAGES if language in entry.languages)
+    return tuple(entry for entry in MENU_PAGES if language in entry.program_languages)
 
 
 def map_menu_keys(language: str) -> dict[str, PageDescription]:
@@ -185,7 +185,7 @@ def map_menu_keys(language: str) -> dict[str, PageDescription]:
     """
     entries = list_menu_entries(language)
     by_name = {entry.name: entry for entry in entries}
-    absent = [entry for entry in MENU_PAGES if language not in entry.languages]
+    absent = [entry for entry in MENU_PAGES if language not in entry.program_languages]
     instead = {
         entry.key: by_name[find_replacement_page(language, entry.name)]
         for entry in absent
@@ -199,7 +199,7 @@ _ENTRIES_BY_NAME = {entry.name: entry for entry in ALL_PAGES}
 
 def list_pages(language: str) -> tuple[PageDescription, ...]:
     """Return the pages of a machine with this language."""
-    return tuple(entry for entry in ALL_PAGES if language in entry.languages)
+    return tuple(entry for entry in ALL_PAGES if language in entry.program_languages)
 
 
 def has_page(name: str) -> bool:
@@ -265,13 +265,13 @@ def create_qt_classes() -> Iterator[bool]:
     crash. Yield False after each slice of a few milliseconds.
     """
     for module in (QtCore, QtGui, QtWidgets):
-        for slice_ in batch_names(dir(module)):
+        for slice_ in split_into_batches(dir(module)):
             for name in slice_:
                 getattr(module, name, None)
             yield False
 
 
-def batch_names(names: list[str]) -> Iterator[list[str]]:
+def split_into_batches(names: list[str]) -> Iterator[list[str]]:
     """Yield the names in lists of at most ``TYPES_PER_SLICE`` names."""
     for first in range(0, len(names), TYPES_PER_SLICE):
         yield names[first : first + TYPES_PER_SLICE]
@@ -290,7 +290,7 @@ class PagePreloader:
         self._next = desk.clock.read_seconds() + MIN_SLICE_INTERVAL_S
         self.is_done = False
 
-    def run_slice(self) -> None:
+    def continue_loading(self) -> None:
         """Execute the next slice if no program is being loaded.
 
         This is called once a frame.
@@ -326,7 +326,7 @@ class PagePreloader:
             if found and entry.deferred_modules and self._has_model(entry):
                 page = self._page_of(entry.name)
                 yield False
-                while page.prepare_slice():
+                while page.continue_preparation():
                     yield False
 
     def _has_model(self, entry: PageDescription) -> bool:

@@ -109,9 +109,9 @@ class Panel(QWidget):
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Press the target as soon as the mouse button is pressed or a touch begins."""
-        self.press_at(event.position())
+        self.press_target_at(event.position())
 
-    def press_at(self, position: QPointF) -> bool:
+    def press_target_at(self, position: QPointF) -> bool:
         """Press the target at this position.
 
         Return False if there is no target.
@@ -297,7 +297,7 @@ class TouchPanel(Panel):
         """Release the control that the mouse has pressed, because the button's release event was lost."""
         self._up(MOUSE_TOUCH_ID)
 
-    def release_all(self) -> None:
+    def release_all_controls(self) -> None:
         """Release all controls, because their release events will not arrive."""
         for finger in tuple(self._held):
             self._up(finger)
@@ -309,7 +309,7 @@ class TouchPanel(Panel):
         for point in event.points():
             self._finger(point)
         if event.type() == QEvent.Type.TouchCancel:
-            self.release_all()
+            self.release_all_controls()
         event.accept()
         return True
 

@@ -52,7 +52,7 @@ class ProgramListing(RowPanel):
         """Return the number of the marked line, or 0 while no line is executed or selected."""
         return self._line
 
-    def show_run(self, active_line: int, block_text: str, next_block_text: str) -> None:
+    def show_run_position(self, active_line: int, block_text: str, next_block_text: str) -> None:
         """Show the executed line, the generated block and the next block.
 
         ``active_line`` is 0 while no line is executed. The next block is hidden if it equals the next

@@ -59,7 +59,7 @@ def run_screen(
     before, sys.excepthook = sys.excepthook, start.handle_exception
     # Use exit and not quit, because a window may refuse to close, and a shutdown cannot wait.
     handlers = [(number, signal.signal(number, lambda *_: app.exit(0))) for number in END_SIGNALS]
-    QTimer.singleShot(0, start.run)
+    QTimer.singleShot(0, start.build_and_show_model)
     status = app.exec()
     sys.excepthook = before
     for number, handler in handlers:
@@ -78,7 +78,7 @@ class _Startup:
         self._desk: Desk | None = None
         self._trouble: Exception | None = None
 
-    def run(self) -> None:
+    def build_and_show_model(self) -> None:
         """Build the model, and open it.
 
         An error ends the event loop, and ``close`` then raises the error.
@@ -104,11 +104,11 @@ class _Startup:
 
     def _listen(self) -> None:
         """Start to receive programs that a second instance of TurnDesk passes to this screen."""
-        from app.screen.window.file_opening import FileOpening
-        from app.screen.window.running_screen import RunningScreen
+        from app.screen.window.file_opening import FileOpener
+        from app.screen.window.running_screen import OpenProgramReceiver
 
-        opening = FileOpening(self._window)
-        RunningScreen(opening.open_file, self._window).start_listening()
+        opening = FileOpener(self._window)
+        OpenProgramReceiver(opening.open_file, self._window).start_listening()
 
     def handle_exception(
         self, kind: type[BaseException], error: BaseException, trace: TracebackType | None
@@ -134,13 +134,13 @@ def _import_builder(machine: str | None, offsets: str | None) -> BuildModel:
 
     begun = find_or_start_control(machine)
 
-    def build() -> Desk:
+    def build_model() -> Desk:
         from app.compose.screen_desk import build_desk
         from app.compose.stored_offsets import make_offsets_reader
 
         return build_desk(machine, make_offsets_reader(offsets), begun)
 
-    return build
+    return build_model
 
 
 def _application(theme: str) -> QApplication:

@@ -24,10 +24,10 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QApplication
 
 from app.desk.screen_settings import SYSTEM_THEME
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.desk.translation import ENGLISH_CODE, Translate, set_translator, tr
 from app.screen.color_palettes import DARK_PALETTE, LIGHT_PALETTE, PALETTES, ColorPalette
-from app.screen.text_sizes import PanelSize, TextRole
+from app.screen.text_sizes import ScreenResolution, TextRole
 from app.screen.window_layout import FINGERTIP_PX
 from core.message import Message
 
@@ -74,11 +74,11 @@ class ScreenTheme:
         self.is_caret_shown = (
             False  # An input field of the current page has the keyboard, so its caret is drawn.
         )
-        self.screen = PanelSize()
+        self.screen = ScreenResolution()
         self._colours: dict[str, QColor] = {}
         self._fonts: dict[tuple[float, bool], QFont] = {}
 
-    def set_unit(self, unit_px: float) -> None:
+    def set_unit_px(self, unit_px: float) -> None:
         """Set the size unit of the theme in pixels."""
         if unit_px != self.unit_px:
             self.unit_px = unit_px
@@ -330,7 +330,7 @@ def style_application(palette: ColorPalette) -> None:
 # --- state symbols ------------------------------------------------------------------------------------
 
 
-def draw_state_symbol(painter: QPainter, box: QRectF, tone: Tone, color: QColor) -> None:
+def draw_state_symbol(painter: QPainter, box: QRectF, tone: StatusTone, color: QColor) -> None:
     """Draw the symbol of a machine state.
 
     Running is a triangle, paused is two bars, waiting is dots, an alarm is a triangle with a bar, and ready
@@ -389,28 +389,28 @@ def _off(painter: QPainter, box: QRectF, colour: QColor) -> None:
 
 
 _STATE_SYMBOLS = {
-    Tone.RUN: _run,
-    Tone.PAUSE: _pause,
-    Tone.WAIT: _wait,
-    Tone.ALARM: _alarm,
-    Tone.READY: _ready,
-    Tone.OFF: _off,
+    StatusTone.RUN: _run,
+    StatusTone.PAUSE: _pause,
+    StatusTone.WAIT: _wait,
+    StatusTone.ALARM: _alarm,
+    StatusTone.READY: _ready,
+    StatusTone.OFF: _off,
 }
 
 
 TRANSLATION_CONTEXT = "turndesk"
 
 
-def use_language(language: str) -> None:
+def set_language(language: str) -> None:
     """Show texts in this language from now on.
 
     Raise FileNotFoundError if the language has no catalog.
     """
-    set_translator(None if language == ENGLISH_CODE else load_catalog(language), language)
+    set_translator(None if language == ENGLISH_CODE else load_translator(language), language)
 
 
 @cache
-def load_catalog(language: str) -> Translate:
+def load_translator(language: str) -> Translate:
     """Return the translation function of a language.
 
     The catalog is read only once. The function returns an empty string if a text has no translation. Raise

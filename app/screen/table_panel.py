@@ -214,7 +214,7 @@ class TablePanel(RowPanel):
 
     def _find_list_height(self, notes: int) -> float:
         """Return the height that remains for rows above this many note lines, in theme units."""
-        foot = notes * NOTE + (self._entry_height if self.table.question else 0.0)
+        foot = notes * NOTE + (self._entry_height if self.table.entry_prompt else 0.0)
         return self.height() / self.theme.unit_px - 4.0 - HEAD - foot
 
     @property
@@ -235,7 +235,7 @@ class TablePanel(RowPanel):
         fits = self._fit(len(self._visible_notes))
         if fits < len(self.table.rows):
             fits = self._fit(len(self._visible_notes), self._scroll_key_height)
-        return max(0 if self.table.question else 1, fits)
+        return max(0 if self.table.entry_prompt else 1, fits)
 
     def _fit(self, notes: int, below: float = 0.0) -> int:
         return int((self._find_list_height(notes) - below) / self._high)
@@ -259,7 +259,7 @@ class TablePanel(RowPanel):
         No notes are shown if notes and entry line would leave no space for the selected row.
         """
         notes = self.table.notes
-        return () if self.table.question and self._fit(len(notes)) < 1 else notes
+        return () if self.table.entry_prompt and self._fit(len(notes)) < 1 else notes
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the heading, the visible rows and the foot, and register each row as a target."""
@@ -279,9 +279,9 @@ class TablePanel(RowPanel):
 
     def _columns(self, box: QRectF) -> Iterator[tuple[int, QRectF]]:
         u = self.theme.unit_px
-        lamp = LAMP_SIZE * u if any(row.is_lit is not None for row in self.table.rows) else 0.8 * u
+        lamp = LAMP_SIZE * u if any(row.is_lamp_lit is not None for row in self.table.rows) else 0.8 * u
         x, wide = box.x() + lamp, box.width() - lamp - 0.6 * u
-        for number, share in enumerate(self.table.column_shares):
+        for number, share in enumerate(self.table.relative_column_widths):
             yield number, QRectF(x, box.y(), share * wide - 1.0 * u, box.height())
             x += share * wide
 
@@ -290,21 +290,25 @@ class TablePanel(RowPanel):
             painter.draw_text_line(at, self.table.column_heads[number], 1.6, "soft", at=self._side(number))
 
     def _side(self, number: int) -> Qt.AlignmentFlag:
-        return ALIGN_RIGHT if number in self.table.number_columns else ALIGN_LEFT
+        return ALIGN_RIGHT if number in self.table.numeric_columns else ALIGN_LEFT
 
     def _row(self, painter: ThemedPainter, box: QRectF, row: TableRow, marked: bool) -> None:
         u = self.theme.unit_px
         if marked:
             painter.fill_rect(box, "here")
             painter.fill_rect(QRectF(box.x(), box.y(), 0.5 * u, box.height()), "lit")
-        if row.is_lit is not None:
+        if row.is_lamp_lit is not None:
             side = min(1.6 * u, 0.5 * box.height())
             lamp = QRectF(box.x() + 1.0 * u, box.center().y() - side / 2, side, side)
-            painter.draw_box(lamp, row.tone.value, 0.2, row.tone.value if row.is_lit else "")
+            painter.draw_box(lamp, row.tone.value, 0.2, row.tone.value if row.is_lamp_lit else "")
         for number, at in self._columns(box):
             if row.bar_fraction is not None and number == len(row.cells) - 1:
                 self._draw_filled(painter, at, row)
-            side, bold, raw = self._side(number), number == 0 or marked, number in self.table.raw_columns
+            side, bold, raw = (
+                self._side(number),
+                number == 0 or marked,
+                number in self.table.untranslated_columns,
+            )
             first, two, second = row.cells[number].partition("\n")
             if two:
                 half = QRectF(at.x(), at.center().y(), at.width(), 0.44 * at.height())
@@ -314,10 +318,12 @@ class TablePanel(RowPanel):
                 at.setTop(at.y() + 0.06 * at.height())
                 at.setHeight(half.height())
             painter.draw_text_line(at, first, 2.1 * self._text_scale, "text", at=side, bold=bold, raw=raw)
-            if row.outline is not None and number == len(row.cells) - 1:
+            if row.tool_outline is not None and number == len(row.cells) - 1:
                 from app.screen.drawings import draw_tool_outline
 
-                draw_tool_outline(painter, at.adjusted(0, 0.2 * u, 0, -0.2 * u), row.outline, is_small=True)
+                draw_tool_outline(
+                    painter, at.adjusted(0, 0.2 * u, 0, -0.2 * u), row.tool_outline, is_small=True
+                )
 
     def _draw_filled(self, painter: ThemedPainter, at: QRectF, row: TableRow) -> None:
         """Draw a progress bar below the text of the last cell."""
@@ -334,7 +340,7 @@ class TablePanel(RowPanel):
         for number, note in enumerate(notes):
             row = QRectF(room.x(), y + number * NOTE * u, room.width(), NOTE * u)
             painter.draw_text_line(row, note, 1.8, "soft", bold=False)
-        if sheet.question:
+        if sheet.entry_prompt:
             self._ask(
                 painter,
                 QRectF(room.x(), y - self._entry_height * u, room.width(), (self._entry_height - 0.6) * u),
@@ -343,7 +349,7 @@ class TablePanel(RowPanel):
     def _ask(self, painter: ThemedPainter, row: QRectF) -> None:
         u, sheet = self.theme.unit_px, self.table
         asked = QRectF(row.x(), row.y(), 0.5 * row.width(), row.height())
-        painter.draw_text_line(asked, sheet.question, 2.2, "text", margin=1.0)
+        painter.draw_text_line(asked, sheet.entry_prompt, 2.2, "text", margin=1.0)
         box = QRectF(asked.right(), row.y() + 0.2 * u, row.right() - asked.right(), row.height() - 0.4 * u)
         draw_entry_box(painter, box, sheet.text, 2.6)
         if self.on_entry_touched is not None:
@@ -403,7 +409,7 @@ class ListPage(ModelPage):
         """Return the prompt of the model."""
         return self.model.prompt_text()
 
-    def try_leave(self) -> bool:
+    def try_leave_page(self) -> bool:
         """Cancel unfinished entries and questions, and allow the page to close."""
         self.desk.clear_prompt_line()
         self.model.on_close()

@@ -44,21 +44,25 @@ _SEEN = {
 
 
 @dataclass(frozen=True, slots=True)
-class PanelSize:
+class ScreenResolution:
     """Resolution of a screen in pixels per mm.
 
     ``is_small`` is True if the diagonal of the screen is less than 10 inches.
     """
 
     pixels_per_mm: float = DEFAULT_DPI / _INCH
-    is_small: bool = False
+    is_small_screen: bool = False
 
     def find_min_em_px(self, role: TextRole) -> float:
         """Return the smallest permitted em height of a text in pixels."""
-        return role.find_min_height_mm(is_small=self.is_small) * self.pixels_per_mm / CAPITAL_HEIGHT_RATIO
+        return (
+            role.find_min_height_mm(is_small=self.is_small_screen) * self.pixels_per_mm / CAPITAL_HEIGHT_RATIO
+        )
 
 
-def make_panel_size(width_px: int, height_px: int, width_mm: float, height_mm: float) -> PanelSize:
+def make_screen_resolution(
+    width_px: int, height_px: int, width_mm: float, height_mm: float
+) -> ScreenResolution:
     """Return the resolution of a screen from its size in pixels and its reported size in mm.
 
     Some screens report no size, the size of another screen, or only an aspect ratio. For an implausible
@@ -70,4 +74,4 @@ def make_panel_size(width_px: int, height_px: int, width_mm: float, height_mm: f
     if not plausible or abs(across / down - 1.0) > _ALIKE:
         across = down = DEFAULT_DPI / _INCH
     diagonal = math.hypot(width_px / across, height_px / down)
-    return PanelSize((across + down) / 2.0, diagonal < _SMALL * _INCH)
+    return ScreenResolution((across + down) / 2.0, diagonal < _SMALL * _INCH)

@@ -32,7 +32,7 @@ class Rect(NamedTuple):
         return self.y + self.h
 
 
-class LowLayout(NamedTuple):
+class CompactLayout(NamedTuple):
     """Layout of a page with low readouts: rectangles of readouts, lamps, page and run line."""
 
     readout_line: Rect
@@ -76,7 +76,7 @@ def find_unit_px(width_px: int, height_px: int) -> float:
     return min(width_px / ACROSS, height_px / DOWN)
 
 
-def make_layout(width: int, height: int, has_dock: bool) -> AutomaticLayout:
+def make_automatic_layout(width: int, height: int, has_dock: bool) -> AutomaticLayout:
     """Return the layout of the Automatic page for a window of this size in pixels."""
     u = find_unit_px(width, height)
     gap = _gap(u)
@@ -124,14 +124,16 @@ def find_work_area(layout: AutomaticLayout) -> Rect:
     return Rect(layout.listing.x, layout.listing.y, layout.path.right - layout.listing.x, layout.path.h)
 
 
-def make_low_layout(width: int, height: int, has_dock: bool, *, has_axis_motion: bool = False) -> LowLayout:
+def make_compact_layout(
+    width: int, height: int, has_dock: bool, *, has_axis_motion: bool = False
+) -> CompactLayout:
     """Return the layout with low readouts, for a window of this size in pixels.
 
     The readouts are in one row. On a page on which axes can move, large positions are above the other
     readouts, unless the touch targets of the page would then become too small. Title, dock, prompt and
     function keys have the same positions as on the Automatic page.
     """
-    at, u = make_layout(width, height, has_dock), find_unit_px(width, height)
+    at, u = make_automatic_layout(width, height, has_dock), find_unit_px(width, height)
     gap, wide = _gap(u), at.strip.w
     head = Rect(
         at.strip.x,
@@ -142,7 +144,7 @@ def make_low_layout(width: int, height: int, has_dock: bool, *, has_axis_motion:
     strip = Rect(head.x, head.bottom + gap, wide, at.strip.h)
     top, high = strip.bottom + gap, round(2.8 * u)
     run = Rect(head.x, at.prompt.y - gap - high, wide, high)
-    return LowLayout(head, strip, Rect(head.x, top, wide, run.y - gap - top), run)
+    return CompactLayout(head, strip, Rect(head.x, top, wide, run.y - gap - top), run)
 
 
 def _gap(u: float) -> int:

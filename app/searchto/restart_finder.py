@@ -9,20 +9,20 @@ from typing import TYPE_CHECKING
 
 from app.desk.arithmetic import evaluate_line_number
 from app.desk.background_work import LatestRequestWorker, ProgressCallback
-from app.desk.pages.table_content import edit_text
+from app.desk.pages.table_content import apply_edit_key
 from app.desk.programs.program_loading import ProvedJob
 from core.executor.job import Job
 from core.interpreter.restart.cut_record import CutRecord
-from core.interpreter.restart.restart_point import Interruption, RestartPoint, RestartRefusal
+from core.interpreter.restart.restart_point import Interruption, RestartPoint, RestartRejection
 
 if TYPE_CHECKING:
-    from core.interpreter.restart.program_search import BlockSearch
-    from core.interpreter.restart.state_rebuild import OmniturnSearch
+    from core.interpreter.restart.program_search import RestartLineSearch
+    from core.interpreter.restart.state_rebuild import OmniturnRestartSearch
 
-    RestartSearch = OmniturnSearch | BlockSearch
+    RestartSearch = OmniturnRestartSearch | RestartLineSearch
 
 
-RestartSearchResult = RestartPoint | RestartRefusal | CutRecord | tuple[Job, ProvedJob]
+RestartSearchResult = RestartPoint | RestartRejection | CutRecord | tuple[Job, ProvedJob]
 
 
 @dataclass(slots=True)
@@ -40,7 +40,7 @@ class RestartFinder:
     worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("loading-search"))
     _rebuild: tuple[Job, RestartSearch] | None = None  # Used by the worker only.
 
-    def find_line(
+    def find_restart_line(
         self, job: Job, line_number: int, pass_number: int = 0, interruption: Interruption | None = None
     ) -> None:
         """Request the machine state at a line of this job's program.
@@ -48,7 +48,7 @@ class RestartFinder:
         ``pass_number`` is the execution of the line, counted from 1. If it is 0, the interrupted execution
         is used, or the first execution if none was interrupted.
         """
-        self._ask(job, lambda rebuild: rebuild.find_restart(line_number, pass_number, interruption))
+        self._ask(job, lambda rebuild: rebuild.find_restart_point(line_number, pass_number, interruption))
 
     def calculate_cuts(self, job: Job) -> None:
         """Calculate all cuts of the program of this job."""
@@ -90,13 +90,13 @@ _QUOTE = '"'
 class LineCursor:
     """The selected program line, counted from 1, and the text entered to find another line."""
 
-    lines: Sequence[str] = ()
+    program_lines: Sequence[str] = ()
     selected_line: int = 1
     entry_text: str = ""
     is_text_found: bool = False  # The line was found by the present text.
 
     @property
-    def entered_number(self) -> int | None:
+    def entered_line_number(self) -> int | None:
         """Return the entered line number, or None if the entry is a search text.
 
         The number may be entered as an expression.
@@ -105,7 +105,7 @@ class LineCursor:
         return int(passes[1]) if passes else evaluate_line_number(self.entry_text)
 
     @property
-    def entered_pass(self) -> int:
+    def entered_pass_number(self) -> int:
         """Return the pass (execution) of the line that was entered, for example 4 in ``8P4``.
 
         Return 0 if no pass was entered.
@@ -123,18 +123,21 @@ class LineCursor:
 
     def set_program(self, lines: Sequence[str], line_number: int) -> None:
         """Set the program lines and the selected line."""
-        self.lines, self.entry_text, self.is_text_found = lines, "", False
+        self.program_lines, self.entry_text, self.is_text_found = lines, "", False
         self.select_line(line_number)
 
     def select_line(self, line_number: int) -> None:
         """Select this line, or the nearest line that exists."""
-        self.selected_line = max(1, min(line_number, len(self.lines)))
+        self.selected_line = max(1, min(line_number, len(self.program_lines)))
 
     def handle_key(self, key: str) -> bool:
         """Handle a character or an editing key, and return False for any other key."""
         taken = key in {"Back", "Delete"} or (len(key) == 1 and key.isprintable())
         if taken:
-            self.entry_text, self.is_text_found = edit_text(self.entry_text, key, MAX_ENTRY_LENGTH), False
+            self.entry_text, self.is_text_found = (
+                apply_edit_key(self.entry_text, key, MAX_ENTRY_LENGTH),
+                False,
+            )
         return taken
 
     def find_text(self, direction: int) -> bool:
@@ -142,12 +145,12 @@ class LineCursor:
 
         Return False if no line contains the text.
         """
-        count, wanted = len(self.lines), self.search_text
+        count, wanted = len(self.program_lines), self.search_text
         if not wanted:
             return False
         for step in range(1, count + 1):
             at = (self.selected_line - 1 + direction * step) % count
-            if wanted in self.lines[at].upper():
+            if wanted in self.program_lines[at].upper():
                 self.selected_line, self.is_text_found = at + 1, True
                 return True
         return False

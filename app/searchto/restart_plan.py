@@ -17,13 +17,13 @@ from core.executor.job import Job
 from core.executor.snapshot import POWER_LOST_REASON, Snapshot
 from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.restart_approach import (
+    CurrentMachineState,
     OperatorChoices,
-    PresentState,
     explain_missing_path,
     find_start_position,
     list_starting_functions,
-    make_lathe_start,
-    make_mill_start,
+    make_lathe_pass_start,
+    make_mill_pass_start,
     plan_exit_moves,
     plan_retract_from_part,
 )
@@ -38,9 +38,9 @@ from core.interpreter.shared.actions import (
 )
 from core.interpreter.shared.checkpoint import (
     ApproachStep,
-    AxesLeg,
     Checkpoint,
     FunctionStep,
+    MultiAxisLeg,
     PassStart,
     StraightLeg,
 )
@@ -70,7 +70,7 @@ def plan_retract(cut_state: CutRecord, snapshot: Snapshot, job: Job, choices: Op
     now = read_machine_state(snapshot, job)
     found, tool = plan_retract_from_part(cut_state, now)
     steps = plan_exit_moves(cut_state, now, choices) if found.is_known else ()
-    begin = PassStart(Checkpoint(snapshot.modal), is_mdi_line=True, approach=steps)
+    begin = PassStart(Checkpoint(snapshot.modal), is_mdi_line=True, approach_steps=steps)
     metric = snapshot.modal.metric
     feed = Message(
         "{modest} {metric}",
@@ -88,7 +88,7 @@ def plan_retract(cut_state: CutRecord, snapshot: Snapshot, job: Job, choices: Op
     )
 
 
-def read_machine_state(snapshot: Snapshot, job: Job) -> PresentState:
+def read_machine_state(snapshot: Snapshot, job: Job) -> CurrentMachineState:
     """Return the current machine state, with the interruption of the loaded program if there is one.
 
     If the text has changed since the interruption, the interrupted block is unknown.
@@ -99,7 +99,7 @@ def read_machine_state(snapshot: Snapshot, job: Job) -> PresentState:
     if found is not None and same and found.block:
         stale = found.why == POWER_LOST_REASON
         broken = Interruption(found.block, found.tool, found.where, found.begun, stale)
-    return PresentState(snapshot.demand, snapshot.modal, broken)
+    return CurrentMachineState(snapshot.demand, snapshot.modal, broken)
 
 
 def make_approach_legs(
@@ -122,13 +122,13 @@ def describe_manual_retract(retract: Retract, tool: int) -> str:
     """Return the instruction for a manual retract, or an empty string if a retract path is known."""
     if retract.is_known:
         return ""
-    if retract.situation is ToolSituation.IN_TAPPED_HOLE:
+    if retract.tool_situation is ToolSituation.IN_TAPPED_HOLE:
         words = tr(
             "TAP T{tool} IS STILL IN THE THREAD: TURN THE SPINDLE BY HAND TO BACK IT OUT, AND LET Z FOLLOW"
         )
-    elif retract.situation is ToolSituation.IN_THREAD:
+    elif retract.tool_situation is ToolSituation.IN_THREAD:
         words = tr("T{tool} IS IN A THREAD: JOG X FIRST, NOT Z, UNTIL IT IS CLEAR")
-    elif retract.situation is ToolSituation.PART_TURNED:
+    elif retract.tool_situation is ToolSituation.PART_TURNED:
         words = tr(
             "C AXIS HAS TURNED SINCE T{tool} ENTERED THE PART: TURN THE SPINDLE BY HAND UNTIL "
             "THE TOOL IS FREE, THEN JOG T{tool} OUT"
@@ -157,12 +157,12 @@ class StateRow:
 
     label: str
     required_value: str
-    present_value: str
+    current_value: str
 
     @property
     def must_change(self) -> bool:
         """Return whether the restart must change this value."""
-        return self.required_value != self.present_value
+        return self.required_value != self.current_value
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,7 +172,7 @@ class RestartPlan:
     restart_point: RestartPoint
     start_state: PassStart
     state_rows: tuple[StateRow, ...]
-    started_functions: tuple[str, ...]  # Functions that will start, such as spindle and coolant.
+    functions_to_start: tuple[str, ...]  # Functions that will start, such as spindle and coolant.
     drawn_legs: tuple[Drawn, ...]
     error_text: str = ""  # Why the restart cannot start in the present machine state.
     warning_text: str = ""  # What the restart omits.
@@ -188,7 +188,7 @@ def make_restart_plan(
     if job.setup.kinematics is not None:
         return _on_mill(restart_point, snapshot, job, choices, job.setup.kinematics)
     now = read_machine_state(snapshot, job)
-    begin = make_lathe_start(restart_point, now, choices)
+    begin = make_lathe_pass_start(restart_point, now, choices)
     modal = begin.checkpoint.modal
     out = (
         describe_manual_retract(*plan_retract_from_part(restart_point.cut_record, now))
@@ -199,13 +199,13 @@ def make_restart_plan(
         restart_point=restart_point,
         start_state=begin,
         state_rows=(*_make_pass_rows(restart_point), *_rows(begin.checkpoint, snapshot, job.source.dialect)),
-        started_functions=tuple(
+        functions_to_start=tuple(
             _words(step, restart_point.checkpoint, job.source.dialect)
             for step in list_starting_functions(restart_point, now, choices)
         ),
         drawn_legs=()
         if out
-        else make_approach_legs(begin.approach, snapshot, (modal.drawing_zero_x, modal.drawing_zero_z)),
+        else make_approach_legs(begin.approach_steps, snapshot, (modal.drawing_zero_x, modal.drawing_zero_z)),
         warning_text=_left_out(restart_point),
         error_text=_collet(restart_point.checkpoint, snapshot) or out,
     )
@@ -215,7 +215,7 @@ def _on_mill(
     found: RestartPoint, snapshot: Snapshot, job: Job, choices: OperatorChoices, machine: Kinematics
 ) -> RestartPlan:
     now = read_machine_state(snapshot, job)
-    begin = make_mill_start(found, now, choices, machine)
+    begin = make_mill_pass_start(found, now, choices, machine)
     goal = find_start_position(found, now, machine)
     places = tuple(
         StateRow(tr(Message("MACHINE {axis}", axis=name)), _place(name, goal[name]), _place(name, at))
@@ -226,13 +226,13 @@ def _on_mill(
         restart_point=found,
         start_state=begin,
         state_rows=(*places, *_make_state_rows(begin.checkpoint, snapshot, job.source.dialect)),
-        started_functions=tuple(
+        functions_to_start=tuple(
             _words(step, found.checkpoint, job.source.dialect)
             for step in list_starting_functions(found, now, choices)
         ),
         drawn_legs=(),
         approach_texts=tuple(
-            step.text for step in begin.approach if isinstance(step, AxesLeg | FunctionStep)
+            step.text for step in begin.approach_steps if isinstance(step, MultiAxisLeg | FunctionStep)
         ),
         axis_positions=goal,
         warning_text=_left_out(found) or _check_rotary_axes(found, now, machine),
@@ -240,7 +240,7 @@ def _on_mill(
     )
 
 
-def _check_rotary_axes(found: RestartPoint, now: PresentState, machine: Kinematics) -> str:
+def _check_rotary_axes(found: RestartPoint, now: CurrentMachineState, machine: Kinematics) -> str:
     """Return a warning if a rotary axis is not at zero and no earlier line positions it.
 
     Return an empty string if no rotary axis needs a warning.

@@ -11,7 +11,7 @@ from enum import Enum, auto
 from typing import TYPE_CHECKING
 
 from app.desk.background_work import ProgressCallback
-from app.desk.pages.page_entry import find_searchto_refusal
+from app.desk.pages.page_entry import find_restart_refusal
 from app.desk.programs.program_loading import LoadedProgram, ProgramLoader, ProvedJob
 from app.desk.translation import tr
 from app.searchto.restart_finder import LineCursor, RestartFinder, RestartSearchResult
@@ -22,12 +22,12 @@ from app.searchto.restart_plan import (
     plan_retract,
     read_machine_state,
 )
-from core.executor.commands import Command, PrepareStart
+from core.executor.commands import Command, PrepareCycleStart
 from core.executor.job import Job, make_job
 from core.executor.snapshot import CYCLE_STATES, MachineState, Snapshot, StartAction
 from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.restart_approach import OperatorChoices
-from core.interpreter.restart.restart_point import RestartPoint, RestartRefusal
+from core.interpreter.restart.restart_point import RestartPoint, RestartRejection
 from core.language.source import ProgramSource
 from core.message import Message
 
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 RETRACT_TEXT = "(RETRACT FROM THE PART)"
 
 
-class SearchtoStage(Enum):
+class RestartStage(Enum):
     """The stages of a restart, from choosing a line to being ready for Cycle Start."""
 
     CHOOSING = auto()
@@ -49,7 +49,7 @@ class SearchtoStage(Enum):
 
 
 @dataclass(slots=True)
-class SearchtoModel:
+class RestartModel:
     """The model of the SEARCHTO page.
 
     ``show_message`` shows a message, and ``clear_message`` removes it.
@@ -68,15 +68,15 @@ class SearchtoModel:
     ]  # Proves a restart and checks its first move; called on the worker.
     restart_choices: OperatorChoices = field(default_factory=OperatorChoices)
     line_cursor: LineCursor = field(default_factory=LineCursor)
-    stage: SearchtoStage = SearchtoStage.CHOOSING
+    stage: RestartStage = RestartStage.CHOOSING
     is_open: bool = False
-    search_refusal: RestartRefusal | None = None
+    restart_refusal: RestartRejection | None = None
     restart_plan: RestartPlan | None = None
     retract_plan: RetractPlan | None = None  # A retract without a restart.
     pass_number: int = 0  # The wanted pass of the line; 0: the interrupted pass, or else the first.
     pass_count: int = 0  # Number of passes of the line; 0: not known yet.
     proved_job: ProvedJob | None = None
-    is_started: bool = False  # The restart has started, so the Automatic page must be shown.
+    has_restart_started: bool = False  # The restart has started, so the Automatic page must be shown.
     restart_finder: RestartFinder = field(init=False)
     _job: Job | None = None
     _of: Job | None = None  # The job that was searched.
@@ -101,7 +101,7 @@ class SearchtoModel:
 
     def can_open(self) -> bool:
         """Return whether SEARCHTO can be opened now, and show the reason if not."""
-        why = find_searchto_refusal(self.read_snapshot(), self.program_loader.loaded_program)
+        why = find_restart_refusal(self.read_snapshot(), self.program_loader.loaded_program)
         if why:
             self.show_message(why)
         return not why
@@ -110,9 +110,9 @@ class SearchtoModel:
         """Restrict Cycle Start to a confirmed restart while the page is open."""
         loaded, snapshot = self.program_loader.loaded_program, self.read_snapshot()
         self.clear_message()  # The operator has read the earlier message.
-        self.is_open, self.is_started = True, False
+        self.is_open, self.has_restart_started = True, False
         lines = loaded.source.lines if loaded.source is not None else ()
-        before = self.line_cursor.selected_line if self.line_cursor.lines is lines else 1
+        before = self.line_cursor.selected_line if self.line_cursor.program_lines is lines else 1
         self.line_cursor.set_program(lines, snapshot.interrupted_line or before)
         self.pass_number = self.pass_count = 0
         self._going_out = False
@@ -123,7 +123,7 @@ class SearchtoModel:
         if self.is_open:
             self.is_open = False
             self._withdraw()
-            self.post_command(PrepareStart(StartAction.PROGRAM))
+            self.post_command(PrepareCycleStart(StartAction.PROGRAM))
 
     def close(self) -> None:
         """Stop the worker that searches for restart lines."""
@@ -135,12 +135,12 @@ class SearchtoModel:
         if self.is_open and self.can_choose_line:
             # The end of the retract must not discard an entry that begins at the same time.
             self._going_out = False
-            self.post_command(PrepareStart(StartAction.RESTART))
+            self.post_command(PrepareCycleStart(StartAction.RESTART))
 
     def _withdraw(self) -> None:
         self.restart_finder.worker.cancel_request()
-        self.stage, self.search_refusal, self.restart_plan, self.proved_job = (
-            SearchtoStage.CHOOSING,
+        self.stage, self.restart_refusal, self.restart_plan, self.proved_job = (
+            RestartStage.CHOOSING,
             None,
             None,
             None,
@@ -167,7 +167,7 @@ class SearchtoModel:
             self.pass_number, self.pass_count = pass_number, 0
             self.rebuild_selected_line()
 
-    def step_pass(self, steps: int) -> None:
+    def change_pass_number(self, steps: int) -> None:
         """Select a later or earlier pass (execution) of the selected line."""
         if self.pass_count < 2:
             self.show_message(tr("NO REPETITIONS FOUND FOR THIS LINE. ENTER: REBUILD STATE"))
@@ -193,9 +193,9 @@ class SearchtoModel:
 
     def handle_enter(self) -> None:
         """Handle Enter: go to a line number, find a text, or rebuild the machine state at the line."""
-        number = self.line_cursor.entered_number
+        number = self.line_cursor.entered_line_number
         if number is not None:
-            self.select_line(number, self.line_cursor.entered_pass)
+            self.select_line(number, self.line_cursor.entered_pass_number)
         elif self.line_cursor.entry_text and not self.line_cursor.is_text_found:
             self.find_text(1)
         else:
@@ -208,13 +208,13 @@ class SearchtoModel:
             found |= {"F2", "F3"}
         if self._needs_manual_retract:
             found.add("F4")
-        if not self._is_decided and self.stage not in {SearchtoStage.PROVING, SearchtoStage.READY}:
+        if not self._is_decided and self.stage not in {RestartStage.PROVING, RestartStage.READY}:
             found.add("F10")
         return frozenset(found)
 
     @property
     def _has_text(self) -> bool:
-        return bool(self.line_cursor.entry_text) and self.line_cursor.entered_number is None
+        return bool(self.line_cursor.entry_text) and self.line_cursor.entered_line_number is None
 
     @property
     def _needs_manual_retract(self) -> bool:
@@ -230,7 +230,7 @@ class SearchtoModel:
         """Return whether a retract path or a valid line is shown."""
         whole = self.program_loader.loaded_program.job is not None
         return (
-            self.stage is SearchtoStage.PLAN_SHOWN
+            self.stage is RestartStage.PLAN_SHOWN
             and whole
             and (self._cut is not None or self.restart_plan is not None)
         )
@@ -252,18 +252,18 @@ class SearchtoModel:
         job, line = loaded.job, self.line_cursor.selected_line
         if job is None:
             return
-        self.stage, self._of = SearchtoStage.SEARCHING, job
-        self.restart_finder.find_line(
+        self.stage, self._of = RestartStage.SEARCHING, job
+        self.restart_finder.find_restart_line(
             job, line, self.pass_number, read_machine_state(self.read_snapshot(), job).interruption
         )
 
     def select_nearest_valid_line(self, direction: int) -> None:
         """Select the nearest valid line before or after a rejected line."""
-        if self.search_refusal is not None:
+        if self.restart_refusal is not None:
             self.select_line(
-                self.search_refusal.nearest_line_before
+                self.restart_refusal.nearest_line_before
                 if direction < 0
-                else self.search_refusal.nearest_line_after
+                else self.restart_refusal.nearest_line_after
             )
 
     # --- confirm -------------------------------------------------------------------------------------
@@ -275,7 +275,7 @@ class SearchtoModel:
         if self._needs_manual_retract:
             self.show_message(tr("RESTARTING RETRACTS TOOL ALONG ITS AXIS FIRST; OR JOG IT OUT"))
         elif (job := self.program_loader.loaded_program.job) is not None:
-            self.stage, self._of = SearchtoStage.SEARCHING, job
+            self.stage, self._of = RestartStage.SEARCHING, job
             self.restart_finder.calculate_cuts(job)
 
     def toggle_coolant(self) -> None:
@@ -284,7 +284,7 @@ class SearchtoModel:
 
     def confirm_plan(self) -> None:
         """Confirm the restart or the retract. It is then proved and prepared for Cycle Start."""
-        if self.stage in {SearchtoStage.PROVING, SearchtoStage.READY}:
+        if self.stage in {RestartStage.PROVING, RestartStage.READY}:
             return  # It is already confirmed.
         self.clear_message()
         snapshot, plan, whole = (
@@ -292,10 +292,10 @@ class SearchtoModel:
             self.restart_plan,
             self.program_loader.loaded_program.job,
         )
-        if self.stage is SearchtoStage.PLAN_SHOWN and self._cut is not None and whole is not None:
+        if self.stage is RestartStage.PLAN_SHOWN and self._cut is not None and whole is not None:
             self._confirm_out(snapshot, self._cut, whole)
             return
-        if self.stage is not SearchtoStage.PLAN_SHOWN or plan is None or whole is None:
+        if self.stage is not RestartStage.PLAN_SHOWN or plan is None or whole is None:
             self.show_message(tr("CHOOSE A VALID RESTART LINE FIRST"))
             return
         if snapshot.state is not MachineState.IDLE:
@@ -308,7 +308,7 @@ class SearchtoModel:
             self.show_message(plan.error_text)
             return
         setup = replace(whole.setup, start=snapshot.demand, begin=plan.start_state)
-        self.stage = SearchtoStage.PROVING
+        self.stage = RestartStage.PROVING
         self.restart_finder.prove_restart(make_job(whole.source, setup, whole))
 
     def _confirm_out(self, snapshot: Snapshot, cut: CutRecord, whole: Job) -> None:
@@ -320,7 +320,7 @@ class SearchtoModel:
             self.show_message(out.error_text)
             return
         setup = replace(whole.setup, start=snapshot.demand, begin=out.start_state)
-        self.stage = SearchtoStage.PROVING
+        self.stage = RestartStage.PROVING
         self.restart_finder.prove_restart(make_job(ProgramSource("RETRACT", RETRACT_TEXT), setup))
 
     def handle_escape(self) -> bool:
@@ -331,7 +331,7 @@ class SearchtoModel:
         if self.line_cursor.entry_text:
             self.line_cursor.entry_text = ""
             return True
-        if self.stage is SearchtoStage.CHOOSING:
+        if self.stage is RestartStage.CHOOSING:
             return False
         self._discard_results()
         return True
@@ -356,7 +356,7 @@ class SearchtoModel:
         if self._going_out and snapshot.state not in CYCLE_STATES:
             self._going_out = False
             self._discard_results()
-        if self.stage is SearchtoStage.READY:
+        if self.stage is RestartStage.READY:
             self._see_start(snapshot)
         self.restart_finder.worker.deliver_results()
 
@@ -370,30 +370,32 @@ class SearchtoModel:
         return "" if snapshot.state in CYCLE_STATES else self._prompt(snapshot, error_text, start_instruction)
 
     def _prompt(self, snapshot: Snapshot, error_text: str, start: str) -> str:
-        return make_searchto_prompt(
+        return make_restart_prompt(
             self.stage, snapshot, error_text, start, is_retract=self.retract_plan is not None
         )
 
     def barred(self) -> str:
         """Return why the start buttons cannot start the restart now, or an empty string if they can."""
-        if self.stage is SearchtoStage.READY or self.read_snapshot().state in CYCLE_STATES:
+        if self.stage is RestartStage.READY or self.read_snapshot().state in CYCLE_STATES:
             return ""
         return tr("CANNOT START: SEARCH FOR A LINE AND CONFIRM IT FIRST (F10)")
 
     def _see_start(self, snapshot: Snapshot) -> None:
-        waits = self._job is not None and snapshot.prepared_digest == self._job.digest
+        waits = self._job is not None and snapshot.prepared_job_digest == self._job.digest
         if self._accepted and not waits and self.retract_plan is not None:
             self._going_out = snapshot.state in CYCLE_STATES
             self._withdraw()
             return
         if self._accepted and not waits:
-            self.is_started = snapshot.starts is StartAction.PROGRAM  # A started restart counts once.
-            self.is_open = not self.is_started
+            self.has_restart_started = (
+                snapshot.starts is StartAction.PROGRAM
+            )  # A started restart counts once.
+            self.is_open = not self.has_restart_started
             self._withdraw()
         self._accepted = waits
 
     def _not_searched(self, why: str) -> None:
-        self.stage = SearchtoStage.CHOOSING
+        self.stage = RestartStage.CHOOSING
         self.show_message(tr(Message("SEARCH FAILED: {why}", why=why)))
 
     def _found(self, answer: RestartSearchResult) -> None:
@@ -402,34 +404,34 @@ class SearchtoModel:
             self._show(answer)
         elif isinstance(answer, CutRecord):
             self._show_out(answer)
-        elif isinstance(answer, RestartRefusal):
-            self.stage, self.search_refusal = SearchtoStage.REFUSED, answer
+        elif isinstance(answer, RestartRejection):
+            self.stage, self.restart_refusal = RestartStage.REFUSED, answer
         else:
             self._made_ready(*answer)
 
     def _show(self, found: RestartPoint) -> None:
         if self._of is not None:
-            self.stage = SearchtoStage.PLAN_SHOWN
+            self.stage = RestartStage.PLAN_SHOWN
             self.restart_plan = make_restart_plan(found, self.read_snapshot(), self._of, self.restart_choices)
 
     def _show_out(self, cut: CutRecord) -> None:
         if self._of is not None:
-            self.stage, self._cut = SearchtoStage.PLAN_SHOWN, cut
+            self.stage, self._cut = RestartStage.PLAN_SHOWN, cut
             self.retract_plan = plan_retract(cut, self.read_snapshot(), self._of, self.restart_choices)
 
     def _made_ready(self, job: Job, proved: ProvedJob) -> None:
         self.proved_job = proved
         if proved.proof.errors:
-            self.stage = SearchtoStage.PLAN_SHOWN
+            self.stage = RestartStage.PLAN_SHOWN
             self.show_message(tr(Message("WILL NOT START: {why}", why=proved.proof.errors[0])))
             return
-        self.stage, self._job, self._accepted = SearchtoStage.READY, job, False
+        self.stage, self._job, self._accepted = RestartStage.READY, job, False
         starts = StartAction.RESTART if self.retract_plan is None else StartAction.RETRACT
-        self.post_command(PrepareStart(starts, job, proved.proof, proved.first_move_clearance))
+        self.post_command(PrepareCycleStart(starts, job, proved.proof, proved.first_move_clearance))
 
 
-def make_searchto_prompt(
-    stage: SearchtoStage,
+def make_restart_prompt(
+    stage: RestartStage,
     snapshot: Snapshot,
     error_text: str,
     start_instruction: str,
@@ -441,18 +443,16 @@ def make_searchto_prompt(
     ``start_instruction`` is the instruction for starting a cycle. ``error_text`` is the reason why the plan
     cannot be started, or an empty string. ``is_retract`` is True for a retract without a restart.
     """
-    if is_retract and stage is SearchtoStage.PLAN_SHOWN and not error_text:
+    if is_retract and stage is RestartStage.PLAN_SHOWN and not error_text:
         return tr("CHECK THE RETRACT PATH. F10: CONFIRM")
-    if is_retract and stage is SearchtoStage.READY:
+    if is_retract and stage is RestartStage.READY:
         return tr(Message("RETRACT THE TOOL FROM THE PART: {start}. ESC: CANCEL", start=start_instruction))
     words = {
-        SearchtoStage.SEARCHING: tr("SEARCHING THE PROGRAM. ESC: CANCEL"),
-        SearchtoStage.PROVING: tr("PROVING THE RESTART. ESC: CANCEL"),
-        SearchtoStage.PLAN_SHOWN: error_text or tr("CHECK STATE, PATH AND WHAT WILL START. F10: CONFIRM"),
-        SearchtoStage.REFUSED: tr("CANNOT START FROM THIS LINE. F8, F9: NEAREST VALID LINE"),
-        SearchtoStage.READY: tr(
-            Message("RESUME AT THIS LINE: {start}. ESC: CANCEL", start=start_instruction)
-        ),
+        RestartStage.SEARCHING: tr("SEARCHING THE PROGRAM. ESC: CANCEL"),
+        RestartStage.PROVING: tr("PROVING THE RESTART. ESC: CANCEL"),
+        RestartStage.PLAN_SHOWN: error_text or tr("CHECK STATE, PATH AND WHAT WILL START. F10: CONFIRM"),
+        RestartStage.REFUSED: tr("CANNOT START FROM THIS LINE. F8, F9: NEAREST VALID LINE"),
+        RestartStage.READY: tr(Message("RESUME AT THIS LINE: {start}. ESC: CANCEL", start=start_instruction)),
     }
     return words.get(stage) or _choose(snapshot)
 

@@ -41,7 +41,7 @@ class NearestValidLine:
 
 
 @dataclass(frozen=True, slots=True)
-class StateContent:
+class StatePanelContent:
     """Content of the panel: the state rows of a valid line, or the reason why a line is rejected.
 
     For a rejected line, it also contains the nearest valid lines.
@@ -50,7 +50,7 @@ class StateContent:
     title: str = ""
     state_rows: tuple[StateRow, ...] = ()
     refusal_reason: str = ""
-    nearest_lines: tuple[NearestValidLine, ...] = ()
+    nearest_valid_lines: tuple[NearestValidLine, ...] = ()
     pass_text: str = ""  # The pass and the number of passes, for a line that runs more than once.
     shows_all_rows: bool = False  # Equal rows are shown, too.
 
@@ -58,7 +58,7 @@ class StateContent:
 class RestartStatePanel(Panel):
     """The panel that shows the state rows, or why a line is rejected."""
 
-    content = RedrawingAttribute(StateContent())
+    content = RedrawingAttribute(StatePanelContent())
 
     def __init__(self, theme: ScreenTheme, press: Callable[[str], None], parent: QWidget) -> None:
         super().__init__(theme, parent)
@@ -157,7 +157,7 @@ class RestartStatePanel(Panel):
             wanted, row.required_value, size, "accent" if head else "mark" if differs else "text"
         )
         ink = "accent" if head else "text" if differs else "soft"
-        painter.draw_text_line(now, row.present_value, size, ink, bold=head or differs)
+        painter.draw_text_line(now, row.current_value, size, ink, bold=head or differs)
         if differs:
             between = QRectF(box.x() + sign, box.y(), 2 * u, box.height())
             painter.draw_text_line(between, DIFFERENCE_SYMBOL, size + 0.3, "mark", at=ALIGN_CENTER)
@@ -170,7 +170,7 @@ class RestartStatePanel(Panel):
         painter.draw_wrapped_text(
             QRectF(room.x(), room.y(), room.width(), 9 * u), flags, tr(self.content.refusal_reason)
         )
-        for number, near in enumerate(self.content.nearest_lines):
+        for number, near in enumerate(self.content.nearest_valid_lines):
             box = QRectF(room.x(), room.y() + (11 + 9.4 * number) * u, room.width(), 8.4 * u)
             self._near(painter, box, near)
 

@@ -29,16 +29,16 @@ from app.screen.program_listing import ProgramListing
 from app.screen.screen_theme import ScreenTheme, ThemedPainter
 from app.screen.window_layout import FINGERTIP_PX
 from app.searchto.restart_plan import RestartPlan, RetractPlan
-from app.searchto.searchto_model import SearchtoModel, SearchtoStage
+from app.searchto.searchto_model import RestartModel, RestartStage
 from app.searchto.searchto_state_view import (
     FOLD_KEY,
     PASS_AFTER,
     PASS_BEFORE,
     NearestValidLine,
     RestartStatePanel,
-    StateContent,
+    StatePanelContent,
 )
-from app.working_plane.plane_instant import describe_plane, make_line_instant
+from app.working_plane.plane_instant import describe_plane, make_instant_after_line
 from app.working_plane.working_plane_view import WorkingPlaneView
 from core.executor.snapshot import Snapshot
 from core.interpreter.dialects import get_code_book
@@ -84,14 +84,14 @@ ROW_HEIGHT = 2.7  # Units.
 WARNING_LINE_CHARS = 40  # Characters of one line of a warning.
 
 
-class StartedFunctionsPanel(Panel):
+class FunctionsToStartPanel(Panel):
     """Panel that lists the functions that a restart will turn on.
 
     ``option_texts`` are the options with their keys. ``error_text`` is a warning, or the reason why the
     restart cannot start.
     """
 
-    started_functions: RedrawingAttribute[tuple[str, ...]] = RedrawingAttribute(())
+    functions_to_start: RedrawingAttribute[tuple[str, ...]] = RedrawingAttribute(())
     option_texts: RedrawingAttribute[tuple[str, ...]] = RedrawingAttribute(())
     error_text = RedrawingAttribute("")
     is_confirmed = RedrawingAttribute(False)
@@ -100,7 +100,7 @@ class StartedFunctionsPanel(Panel):
         self, functions: Sequence[str], options: Sequence[str], error_text: str, is_confirmed: bool
     ) -> None:
         """Show these functions and options, and the warning or error."""
-        self.started_functions, self.option_texts = tuple(functions), tuple(options)
+        self.functions_to_start, self.option_texts = tuple(functions), tuple(options)
         self.error_text, self.is_confirmed = error_text, is_confirmed
 
     def draw(self, painter: ThemedPainter) -> None:
@@ -113,7 +113,7 @@ class StartedFunctionsPanel(Panel):
             painter, title, "lit" if self.is_confirmed else "frame", 0.3 if self.is_confirmed else 0.16
         )
         u, room = self.theme.unit_px, self.inside()
-        lines = [(text, "text", True) for text in self.started_functions]
+        lines = [(text, "text", True) for text in self.functions_to_start]
         lines += [
             (text, "soft", False) for choice in self.option_texts for text in wrap(choice, WARNING_LINE_CHARS)
         ]
@@ -127,7 +127,7 @@ class StartedFunctionsPanel(Panel):
 LIST, STATE, ASKED, STARTS = 0.26, 0.46, 4.6, 19.0  # Fractions of the width; units of height.
 
 
-class SearchtoPage(ModelPage):
+class RestartPage(ModelPage):
     """The SEARCHTO page, on which lines are chosen by arrow keys, numbers or texts."""
 
     NAME = page_table.SEARCHTO_PAGE
@@ -143,10 +143,10 @@ class SearchtoPage(ModelPage):
         "AFTER",
         "CONFIRM",
     )
-    STARTS = True
-    model: SearchtoModel
+    CAN_START_CYCLES = True
+    model: RestartModel
 
-    def __init__(self, host: PageHost, model: SearchtoModel, parent: QWidget) -> None:
+    def __init__(self, host: PageHost, model: RestartModel, parent: QWidget) -> None:
         super().__init__(host, parent)
         self.model = model
         self.entry_panel = SearchEntryPanel(self.theme, self._turn_pad, self)
@@ -155,7 +155,7 @@ class SearchtoPage(ModelPage):
         self.state_panel = RestartStatePanel(self.theme, host.press_key, self)
         self.path_view = PathView(self.theme, self, part_player=make_part_player(host.desk))
         self.path_view.shows_whole_approach = True
-        self.functions_panel = StartedFunctionsPanel(self.theme, self)
+        self.functions_panel = FunctionsToStartPanel(self.theme, self)
         self.plane_view = WorkingPlaneView(self.theme, self)  # Replaces the path view on a mill.
         self.number_pad = NumberPad(self.theme, self.handle_touched_key, page_key=None, parent=self)
         self.number_pad.hide()
@@ -180,8 +180,8 @@ class SearchtoPage(ModelPage):
             "F9": partial(model.select_nearest_valid_line, 1),
             "F10": model.confirm_plan,
             FOLD_KEY: self._turn_fold,
-            PASS_BEFORE: partial(model.step_pass, -1),
-            PASS_AFTER: partial(model.step_pass, 1),
+            PASS_BEFORE: partial(model.change_pass_number, -1),
+            PASS_AFTER: partial(model.change_pass_number, 1),
             "Zoom in": partial(self._visible_view.zoom_view, 1),
             "Zoom out": partial(self._visible_view.zoom_view, -1),
         }
@@ -202,7 +202,7 @@ class SearchtoPage(ModelPage):
             self._turn_fold()
             return True
         if key in {"Left", "Right"}:
-            self.model.step_pass(-1 if key == "Left" else 1)
+            self.model.change_pass_number(-1 if key == "Left" else 1)
             return True
         if key == "Enter":
             self.model.handle_enter()
@@ -258,7 +258,7 @@ class SearchtoPage(ModelPage):
         """
         return self.model.can_open()
 
-    def try_leave(self) -> bool:
+    def try_leave_page(self) -> bool:
         """Let Cycle Start run programs again, and allow the page to close."""
         self.number_pad.hide()
         self.model.on_close()
@@ -281,27 +281,27 @@ class SearchtoPage(ModelPage):
         """
         model = self.model
         model.update(snapshot, loaded)
-        if model.is_started:
+        if model.has_restart_started:
             self.host.open_page(page_table.AUTOMATIC)
             return
         if loaded is not self._loaded:
             self._loaded = loaded
-            self.program_listing.show_source(model.line_cursor.lines, {})
+            self.program_listing.show_source(model.line_cursor.program_lines, {})
             self._show_program(loaded)
         self.entry_panel.entry_text = model.line_cursor.entry_text
-        self.program_listing.show_run(model.line_cursor.selected_line, "", "")
+        self.program_listing.show_run_position(model.line_cursor.selected_line, "", "")
         self.state_panel.content = self._shown()
         self._show_plan()
         if self.plane_view.scene is not None and loaded.picture is not None:
             self._show_plane(self.plane_view.scene, loaded.picture)
             return
         self._show_stock(loaded)
-        self.path_view.show_tip(self._find_tip(snapshot))
-        self.path_view.draw_slice()
+        self.path_view.show_tool_tip(self._find_tip(snapshot))
+        self.path_view.continue_drawing()
 
     def _show_program(self, loaded: LoadedProgram) -> None:
         """Show the path of the program or, on a mill, the machine table and workpiece."""
-        scene = loaded.picture.scene if loaded.picture is not None else None
+        scene = loaded.picture.mill_scene if loaded.picture is not None else None
         self.plane_view.show_scene(scene)
         self.plane_view.setVisible(scene is not None)
         self.path_view.show_picture(loaded.picture if scene is None else None)
@@ -309,12 +309,12 @@ class SearchtoPage(ModelPage):
     def _show_plane(self, scene: MillScene, picture: ProgramPicture) -> None:
         """Show the axes and the working plane before the line, with earlier blocks as finished."""
         plan, line = self.model.restart_plan, self.model.line_cursor.selected_line
-        here = make_line_instant(scene, line - 1)
-        axes, done = here.axis_positions, picture.count_blocks_before(line)
+        here = make_instant_after_line(scene, line - 1)
+        axes, done = here.axis_positions, picture.count_blocks_before_line(line)
         if plan is not None:
             axes, done = {**axes, **plan.axis_positions}, plan.restart_point.checkpoint.blocks
         self.plane_view.show_instant(
-            replace(here, axis_positions=axes, active_block=done), describe_plane(here.plane_position)
+            replace(here, axis_positions=axes, active_block_number=done), describe_plane(here.plane_position)
         )
 
     @property
@@ -332,47 +332,49 @@ class SearchtoPage(ModelPage):
         return (
             TipPosition(0, legs[0].z, legs[0].x)
             if legs
-            else find_tip_position(snapshot)._replace(active_block=0)
+            else find_tip_position(snapshot)._replace(active_block_number=0)
         )
 
-    def _shown(self) -> StateContent:
+    def _shown(self) -> StatePanelContent:
         model, line = self.model, self.model.line_cursor.selected_line
-        answer, plan = model.search_refusal, model.restart_plan
+        answer, plan = model.restart_refusal, model.restart_plan
         if answer is not None:
             title = tr(Message("CANNOT START FROM LINE {line}", line=answer.line_number))
             near = (
                 ("F8", tr("PREVIOUS VALID"), answer.nearest_line_before),
                 ("F9", tr("NEXT VALID"), answer.nearest_line_after),
             )
-            return StateContent(title, (), answer.why, tuple(self._near(*each) for each in near))
+            return StatePanelContent(title, (), answer.why, tuple(self._near(*each) for each in near))
         if plan is not None:
             return self._state(plan)
         if model.retract_plan is not None:
-            return StateContent(tr("RETRACT PATH"), (), model.retract_plan.error_text)
-        if model.stage is SearchtoStage.SEARCHING:
+            return StatePanelContent(tr("RETRACT PATH"), (), model.retract_plan.error_text)
+        if model.stage is RestartStage.SEARCHING:
             words = tr(Message("SEARCHING UP TO LINE {line}", line=line))
-            return StateContent(
+            return StatePanelContent(
                 join_messages("  ·  ", (words, str(model.restart_finder.worker.progress_count)))
             )
-        return StateContent(tr(Message("ENTER OR TAP: REBUILD STATE AT LINE {line}", line=line)))
+        return StatePanelContent(tr(Message("ENTER OR TAP: REBUILD STATE AT LINE {line}", line=line)))
 
-    def _state(self, plan: RestartPlan) -> StateContent:
+    def _state(self, plan: RestartPlan) -> StatePanelContent:
         title, visit = (
             tr(Message("STATE AT LINE {line}", line=plan.restart_point.line_number)),
             plan.restart_point.visit,
         )
         if visit.visit_count < 2:
-            return StateContent(title, plan.state_rows, shows_all_rows=self._whole)
+            return StatePanelContent(title, plan.state_rows, shows_all_rows=self._whole)
         words = tr(
             Message("REPETITION {number} OF {count}", number=visit.visit_number, count=visit.visit_count)
         )
-        return StateContent(f"{title}, {words}", plan.state_rows, pass_text=words, shows_all_rows=self._whole)
+        return StatePanelContent(
+            f"{title}, {words}", plan.state_rows, pass_text=words, shows_all_rows=self._whole
+        )
 
     def _near(self, key: str, label: str, line: int) -> NearestValidLine:
         if not line:
             return NearestValidLine(key, tr(Message("{which}: NONE", which=label)), 0, "")
         words = tr(Message("{which}: LINE {line}", which=label, line=line))
-        return NearestValidLine(key, words, line, self.model.line_cursor.lines[line - 1].strip())
+        return NearestValidLine(key, words, line, self.model.line_cursor.program_lines[line - 1].strip())
 
     def _show_plan(self) -> None:
         model, plan = self.model, self.model.restart_plan
@@ -394,9 +396,9 @@ class SearchtoPage(ModelPage):
         if plan.approach_texts:
             choices.append(tr(Message("PATH: {legs}", legs=", ".join(plan.approach_texts))))
         problem_text = plan.error_text or plan.warning_text
-        starts = plan.started_functions or (tr("AXES ONLY"),)
+        starts = plan.functions_to_start or (tr("AXES ONLY"),)
         self.functions_panel.show_functions(
-            starts, choices, problem_text, is_confirmed=model.stage is SearchtoStage.READY
+            starts, choices, problem_text, is_confirmed=model.stage is RestartStage.READY
         )
 
     def _show_stock(self, loaded: LoadedProgram) -> None:
@@ -405,7 +407,11 @@ class SearchtoPage(ModelPage):
         if picture is None or player is None:
             return
         line = self.model.line_cursor.selected_line
-        done = plan.restart_point.checkpoint.blocks if plan is not None else picture.count_blocks_before(line)
+        done = (
+            plan.restart_point.checkpoint.blocks
+            if plan is not None
+            else picture.count_blocks_before_line(line)
+        )
         if (picture, done) != self._stood:
             self._stood = picture, done
             player.seek_block(done)
@@ -414,7 +420,7 @@ class SearchtoPage(ModelPage):
         self.path_view.show_approach(leaving.drawn_legs)
         retract_text = tr(Message("RETRACT FROM PART AT {feed}", feed=leaving.feed_text))
         choices = () if leaving.error_text else (retract_text, tr("H: FEED HOLD DURING RETRACT"))
-        ready = self.model.stage is SearchtoStage.READY
+        ready = self.model.stage is RestartStage.READY
         only = () if leaving.error_text else (tr("AXES ONLY"),)
         self.functions_panel.show_functions(only, choices, leaving.error_text, is_confirmed=ready)
 

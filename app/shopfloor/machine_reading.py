@@ -10,8 +10,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from app.desk.status.machine_status import SilenceWatch
-from core.alarms import CATALOG, AlarmCode, Reaction
+from app.desk.status.machine_status import ControlSilenceDetector
+from core.alarms import CATALOG, AlarmCode, AlarmReaction
 from core.executor.snapshot import MDI_ACTIONS, Alarm, InterruptedJob, MachineState, Snapshot
 from core.machine.machine_model import Machine
 from core.message import Message
@@ -64,7 +64,7 @@ def find_conditions(snapshot: Snapshot, keys: frozenset[str]) -> Mapping[str, tu
     if (
         snapshot.state is MachineState.HOLD
         and stop is not None
-        and CATALOG[stop.code].reaction is Reaction.HOLD
+        and CATALOG[stop.code].reaction is AlarmReaction.HOLD
     ):
         active[SYSTEM].append((WARNING, str(stop.number), stop.text))
     return {key: tuple(found) for key, found in active.items()}
@@ -213,14 +213,14 @@ UNKNOWN_READING = MachineReading({"avail": _UNAVAILABLE})
 class MachineReader:
     """Converter of the snapshots of one machine to readings.
 
-    ``read_time_s`` returns the time in seconds. It is used to detect that no new snapshots arrive.
+    ``get_time_s`` returns the time in seconds. It is used to detect that no new snapshots arrive.
     """
 
     machine: Machine
-    read_time_s: Callable[[], float]
+    get_time_s: Callable[[], float]
     _keys: frozenset[str] = field(init=False)  # names of the conditions of this machine
     _execution: ExecutionTracker = field(init=False)
-    _pulse: SilenceWatch = field(default_factory=SilenceWatch)
+    _pulse: ControlSilenceDetector = field(default_factory=ControlSilenceDetector)
 
     def __post_init__(self) -> None:
         wired = self.machine.inputs
@@ -228,12 +228,12 @@ class MachineReader:
         self._execution = ExecutionTracker(frozenset((*wired, *terminals)))
         self._keys = list_condition_keys(self.machine)
 
-    def read_snapshot(self, snapshot: Snapshot) -> MachineReading:
+    def make_reading(self, snapshot: Snapshot) -> MachineReading:
         """Return the current values and conditions.
 
         The result is ``UNKNOWN_READING`` if the control no longer responds.
         """
-        if self._pulse.check_silence(snapshot.t, self.read_time_s()):
+        if self._pulse.check_silence(snapshot.t, self.get_time_s()):
             return UNKNOWN_READING
         values: dict[str, ReadingValue] = {
             "avail": _AVAILABLE,

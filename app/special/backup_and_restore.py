@@ -13,17 +13,17 @@ from app.desk.daily_backup import BACKUP_SUFFIX
 from app.desk.desk import Desk
 from app.desk.pages.table_content import FunctionKey, TableContent, TableRow
 from app.desk.persistence import Persistence
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
 from app.programs.atomic_files import FileOperationError
-from app.programs.removable_media import UsbStick, list_sticks
+from app.programs.removable_media import UsbStick, list_usb_sticks
 from app.special.special_functions import SpecialFunction
 from core.access.access_table import ProtectedChange
 from core.executor.snapshot import Snapshot
 from core.file_replacement import sync_all_files
 from core.message import Message
-from core.store.backup import BackupVerdict
+from core.store.backup import BackupCheckResult
 
 _TERMINAL_HINT = "Close TurnDesk, then run in a terminal: turndesk store restore FILE"
 RESTORE_REFUSAL = "PROGRAM RUNNING. WAIT UNTIL IT ENDS, THEN RESTORE"
@@ -37,7 +37,7 @@ class BackupLocation:
     path: Path
     is_backup: bool = False
     size_bytes: int = 0
-    time_text: str = ""
+    backup_time_text: str = ""
 
 
 class BackupFunction(SpecialFunction):
@@ -55,7 +55,7 @@ class BackupFunction(SpecialFunction):
         persistence: Persistence,
         worker: LatestRequestWorker,
         csv_folder: Path,
-        list_media: Callable[[], Sequence[UsbStick]] = list_sticks,
+        list_media: Callable[[], Sequence[UsbStick]] = list_usb_sticks,
         daily_folder: Path | None = None,
     ) -> None:
         """Create the special function.
@@ -71,7 +71,7 @@ class BackupFunction(SpecialFunction):
         )
         self.daily_folder = daily_folder
         self.listed_locations: tuple[BackupLocation, ...] = ()
-        self.check_results: dict[BackupLocation, BackupVerdict] = {}
+        self.check_results: dict[BackupLocation, BackupCheckResult] = {}
         self.check_error = ""  # reason why backups cannot be checked: the present data is unreadable
         self.task_text = ""
         self.on_restored: Callable[[], None] = lambda: None
@@ -104,14 +104,14 @@ class BackupFunction(SpecialFunction):
             if place.is_backup:
                 self.worker.enqueue_work(partial(self._check_place, place), self._judge, self._not_judged)
 
-    def _check_place(self, place: BackupLocation) -> tuple[BackupLocation, BackupVerdict]:
+    def _check_place(self, place: BackupLocation) -> tuple[BackupLocation, BackupCheckResult]:
         """Check a backup on the worker.
 
         Raise StoreError on failure.
         """
         return place, self.persistence.check_backup(place.path)
 
-    def _judge(self, found: tuple[BackupLocation, BackupVerdict]) -> None:
+    def _judge(self, found: tuple[BackupLocation, BackupCheckResult]) -> None:
         place, verdict = found
         if place in self.listed_locations:
             self.check_results[place] = verdict
@@ -127,10 +127,10 @@ class BackupFunction(SpecialFunction):
                     place.label if not place.is_backup else f"     {place.label}",
                     self._does(place),
                     Message("{size} KB", size=f"{place.size_bytes / 1024:.0f}") if place.is_backup else "",
-                    place.time_text,
+                    place.backup_time_text,
                 ),
                 None if place.is_backup else True,
-                Tone.WAIT,
+                StatusTone.WAIT,
             )
             for place in self.listed_locations
         )
@@ -141,7 +141,7 @@ class BackupFunction(SpecialFunction):
             rows,
             self.marked,
             notes=(self.task_text,) if self.task_text else self._make_notes(),
-            raw_columns=frozenset({0, 2, 3}),
+            untranslated_columns=frozenset({0, 2, 3}),
         )
 
     def _does(self, place: BackupLocation) -> str:
@@ -175,7 +175,7 @@ class BackupFunction(SpecialFunction):
         """Return the function key F4, which searches for media again."""
         return {"F4": FunctionKey("REFRESH", self.reload_locations)}
 
-    def execute_row(self) -> bool:
+    def activate_selected_row(self) -> bool:
         """Make a backup in the selected folder, or restore the selected backup."""
         if self.task_text:
             self.desk.say("STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE")
@@ -192,7 +192,7 @@ class BackupFunction(SpecialFunction):
         self.task_text = "Backing up …"
         self.desk.clear_prompt_line()
 
-        def work() -> str:
+        def make_backup() -> str:
             try:
                 place.path.mkdir(parents=True, exist_ok=True)
             except OSError as error:
@@ -203,7 +203,7 @@ class BackupFunction(SpecialFunction):
             sync_all_files()
             return name
 
-        self.worker.enqueue_work(work, partial(self._backed_up, place), self._failed)
+        self.worker.enqueue_work(make_backup, partial(self._backed_up, place), self._failed)
 
     def _backed_up(self, place: BackupLocation, name: str) -> None:
         self.task_text = ""
@@ -268,13 +268,13 @@ class BackupFunction(SpecialFunction):
         return "ENTER OR TAP: BACK UP OR RESTORE   F4: LOOK FOR USB STICKS"
 
 
-def _describe_differences(verdict: BackupVerdict) -> str:
+def _describe_differences(verdict: BackupCheckResult) -> str:
     """Return, as text, how many rows of each table a restore would change.
 
     The text is empty if a restore would not change anything.
     """
     difference_texts = [f"{tr(name)} {count}" for name, count in verdict.difference_counts]
-    if verdict.is_older:
+    if verdict.has_older_version:
         difference_texts.append(tr("other data was not compared because the backup is from an older version"))
     return ", ".join(difference_texts)
 

@@ -6,16 +6,16 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
-from app.desk.arithmetic import EntryError, evaluate_expression
+from app.desk.arithmetic import InvalidEntryError, evaluate_expression
 from app.desk.desk import Desk
 from app.desk.pages.table_content import FunctionKey, TableContent, TableRow, following, refused
 from app.desk.status import formats
 from app.desk.status.formats import NO_VALUE
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.desk.translation import tr
-from app.production.parts_watch import PartsWatch
+from app.production.parts_watch import ProductionMonitor
 from app.programs.run_history import MAX_COUNT, PartCounter
-from app.special.special_functions import NumericFunction
+from app.special.special_functions import NumericEntryFunction
 from core.access.access_table import ProtectedChange
 from core.executor.snapshot import Snapshot
 from core.message import Message
@@ -27,14 +27,14 @@ from core.store.store_rows import OFFSET_NUMBERS
 LIMIT_FIELDS = ("PARTS", "MINUTES", "WARN AT %")
 _LABELS = {"PARTS": "PARTS", "MINUTES": "MINUTES", "WARN AT %": "WARN"}
 LIFE_TONES = {
-    ToolLifeState.NO_LIMIT: Tone.OFF,
-    ToolLifeState.OK: Tone.RUN,
-    ToolLifeState.WARNING: Tone.PAUSE,
-    ToolLifeState.USED_UP: Tone.ALARM,
+    ToolLifeState.NO_LIMIT: StatusTone.OFF,
+    ToolLifeState.OK: StatusTone.RUN,
+    ToolLifeState.WARNING: StatusTone.PAUSE,
+    ToolLifeState.USED_UP: StatusTone.ALARM,
 }
 
 
-class ToolLifeFunction(NumericFunction):
+class ToolLifeFunction(NumericEntryFunction):
     """Special function (F10) for tool life, with one row per tool.
 
     A typed limit applies to the selected tool.
@@ -43,14 +43,14 @@ class ToolLifeFunction(NumericFunction):
     name = "TOOL LIFE"
     use = "insert life in parts and minutes"
 
-    def __init__(self, desk: Desk, parts_watch: PartsWatch) -> None:
+    def __init__(self, desk: Desk, parts_watch: ProductionMonitor) -> None:
         super().__init__(desk)
         self.parts_watch = parts_watch
         self.limit_kind = LIMIT_FIELDS[0]
 
     def list_tools(self) -> tuple[ToolLife, ...]:
         """Return the displayed tools in the order of their T numbers."""
-        lives = self.parts_watch.tool_life_watch.read_lives()
+        lives = self.parts_watch.tool_life_monitor.find_tool_lives()
         numbers = sorted({*lives, *self.desk.offset_book.tool_offsets} & set(OFFSET_NUMBERS))
         return tuple(lives.get(number, ToolLife(number)) for number in numbers)
 
@@ -113,7 +113,7 @@ class ToolLifeFunction(NumericFunction):
         """Return the function keys for the type of limit, the stop setting and a new insert."""
         return {
             "F2": FunctionKey(_LABELS[following(LIMIT_FIELDS, self.limit_kind)], self._next_limit),
-            "F3": FunctionKey("STOP", self.toggle_stop),
+            "F3": FunctionKey("STOP", self.toggle_tool_life_stop),
             "F4": FunctionKey("INSERT", self.confirm_new_insert),
         }
 
@@ -124,7 +124,7 @@ class ToolLifeFunction(NumericFunction):
     def accept_entry(self, text: str) -> bool:
         """Set a limit of the selected tool.
 
-        Raise EntryError for an invalid value.
+        Raise InvalidEntryError for an invalid value.
         """
         tool = self.selected_tool
         if tool is None:
@@ -132,7 +132,7 @@ class ToolLifeFunction(NumericFunction):
             return False
         value = evaluate_expression(text)
         if self.limit_kind == "PARTS" and value != int(value):
-            raise EntryError(
+            raise InvalidEntryError(
                 Message("{value} is not a valid number of parts; type a whole number", value=f"{value:g}")
             )
         wanted = {
@@ -146,7 +146,7 @@ class ToolLifeFunction(NumericFunction):
         try:
             check_tool_life(wanted)
         except ToolLifeError as error:
-            raise EntryError(str(error)) from error
+            raise InvalidEntryError(str(error)) from error
         row = ToolLifeRow(wanted.number, wanted.limit_parts, wanted.limit_seconds, wanted.warn, wanted.stops)
         done = partial(self.desk.say, tr(Message("T{number} SAVED", number=wanted.number)))
         minutes = Message("{limit_seconds} min", limit_seconds=f"{row.limit_seconds / 60.0:g}")
@@ -157,16 +157,16 @@ class ToolLifeFunction(NumericFunction):
             minutes=minutes,
             warn=f"{row.warn:.0%}",
         )
-        self.parts_watch.parts_book.write_change(
+        self.parts_watch.production_records.write_change(
             ProtectedChange.LIVES,
-            lambda c: tool_lives.save_limits(c, row),
+            lambda c: tool_lives.save_tool_life_limits(c, row),
             done,
             self.parts_watch.report_refusal,
             f"{change_text}, {'stops' if row.stops else 'no stop at end of tool life'}",
         )
         return True
 
-    def toggle_stop(self) -> None:
+    def toggle_tool_life_stop(self) -> None:
         """Handle F3: turn the stop at the end of tool life on or off."""
         tool = self.selected_tool
         if tool is not None:
@@ -181,12 +181,14 @@ class ToolLifeFunction(NumericFunction):
         asked = tr("NEW INSERT IN T{number}? OLD INSERT USED: {words}. Y: YES   N: NO")
         self.desk.ask_operator(
             tr(Message(asked, number=tool.number, words=tool.words)),
-            lambda: self.parts_watch.tool_life_watch.change_insert(tool.number, tool.words, self.desk.say),
+            lambda: self.parts_watch.tool_life_monitor.record_insert_change(
+                tool.number, tool.words, self.desk.say
+            ),
         )
 
     def prompt_text(self) -> str:
         """Return the prompt, or why tool life cannot be changed now."""
-        return self.parts_watch.parts_book.lock_reason or (
+        return self.parts_watch.production_records.lock_reason or (
             "TYPE THE LIFE LIMIT. F2: NEXT LIMIT   F4: NEW INSERT"
         )
 
@@ -195,7 +197,7 @@ RESET = "PRESS Y TO SET THE COUNT TO ZERO, N TO KEEP IT"
 NO_PROGRAM_LOADED = "CHOOSE A PROGRAM FIRST: EVERY PROGRAM HAS ITS OWN COUNT"
 
 
-class PartsCounterFunction(NumericFunction):
+class PartsCounterFunction(NumericEntryFunction):
     """Special function for the parts counter of the loaded program."""
 
     name = "PARTS COUNTER"
@@ -209,7 +211,7 @@ class PartsCounterFunction(NumericFunction):
     def make_table(self, snapshot: Snapshot) -> TableContent:
         """Return the table with count, target, remaining parts and times."""
         counter, last = self.part_counter, snapshot.last_cycle
-        aim = counter.final_count
+        aim = counter.effective_target_count
         left = max(0, aim - counter.part_count)
         to_come = formats.format_duration(left * last) if aim and last else formats.NO_VALUE
         stop = (
@@ -229,7 +231,7 @@ class PartsCounterFunction(NumericFunction):
             ("PROGRAM", counter.program_name or "NO PROGRAM"),
             (0.55, 0.45),
             rows,
-            question="STOP AT HOW MANY PARTS?",
+            entry_prompt="STOP AT HOW MANY PARTS?",
             text=self.entry.text,
             notes=(
                 (
@@ -241,19 +243,19 @@ class PartsCounterFunction(NumericFunction):
                     "that skips lines is not counted either."
                 ),
             ),
-            number_columns=frozenset({1}),
+            numeric_columns=frozenset({1}),
         )
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys that correct or reset the count, or turn counting off or on."""
         return {
-            "F2": FunctionKey("COUNT +1", partial(self.correct_count, 1)),
-            "F3": FunctionKey("COUNT -1", partial(self.correct_count, -1)),
-            "F4": FunctionKey("RESET", self.confirm_reset),
+            "F2": FunctionKey("COUNT +1", partial(self.correct_part_count, 1)),
+            "F3": FunctionKey("COUNT -1", partial(self.correct_part_count, -1)),
+            "F4": FunctionKey("RESET", self.confirm_count_reset),
             "F5": FunctionKey("NO COUNT", partial(self.desk.toggle_switch, "no_count")),
         }
 
-    def correct_count(self, change: int) -> None:
+    def correct_part_count(self, change: int) -> None:
         """Correct the count for a part that was not counted or is scrap."""
         if not self.part_counter.program_name:
             self.desk.say(NO_PROGRAM_LOADED)
@@ -265,7 +267,7 @@ class PartsCounterFunction(NumericFunction):
             self.desk.clear_prompt_line()
             self.desk.try_save(lambda: self.part_counter.correct_count(change))
 
-    def confirm_reset(self) -> None:
+    def confirm_count_reset(self) -> None:
         """Reset the count to zero after the operator confirms."""
         if not self.part_counter.program_name:
             self.desk.say(NO_PROGRAM_LOADED)
@@ -279,7 +281,7 @@ class PartsCounterFunction(NumericFunction):
     def accept_entry(self, text: str) -> bool:
         """Set the target number of parts.
 
-        A value of 0 removes the target. Raise EntryError for an invalid value.
+        A value of 0 removes the target. Raise InvalidEntryError for an invalid value.
         """
         if not self.part_counter.program_name:
             self.desk.say(NO_PROGRAM_LOADED)
@@ -308,11 +310,11 @@ class PartsCounterFunction(NumericFunction):
 def parse_part_count(text: str) -> int:
     """Return a typed number of parts as an integer.
 
-    Raise EntryError for an invalid number.
+    Raise InvalidEntryError for an invalid number.
     """
     value = evaluate_expression(text)
     if value != int(value) or not 0 <= value <= MAX_COUNT:
-        raise EntryError(
+        raise InvalidEntryError(
             Message(
                 "{value} is not a valid number of parts; enter a whole number from 0 to {maximum}",
                 value=f"{value:g}",

@@ -9,10 +9,10 @@ from collections.abc import Mapping
 from enum import StrEnum
 
 from app.desk.desk import Desk
-from app.desk.late_presses import StartingAction
+from app.desk.late_presses import BlockedLateAction
 from app.desk.pages.table_content import FunctionKey, TableContent, TableRow, following
 from app.desk.status import formats
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.desk.status.readouts import UNKNOWN_VALUE, Lamp, make_drives_lamp, make_lamps
 from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
@@ -91,7 +91,7 @@ class SignalsFunction(SpecialFunction):
                     self._used(name, outputs),
                 ),
                 name in on and known,
-                Tone.RUN if name in on else Tone.OFF,
+                StatusTone.RUN if name in on else StatusTone.OFF,
             )
             for name, model in models.items()
         )
@@ -102,7 +102,7 @@ class SignalsFunction(SpecialFunction):
             (0.34, 0.2, 0.16, 0.3),
             rows,
             self.marked,
-            raw_columns=frozenset({0, 1}),
+            untranslated_columns=frozenset({0, 1}),
         )
 
     def _lamps(self, snapshot: Snapshot) -> TableContent:
@@ -115,7 +115,9 @@ class SignalsFunction(SpecialFunction):
         )
         rows = tuple(
             TableRow(
-                (lamp.label, _state(lamp.is_lit)), lamp.is_lit, Tone.PAUSE if lamp.is_warning else Tone.RUN
+                (lamp.label, _state(lamp.is_lit)),
+                lamp.is_lit,
+                StatusTone.PAUSE if lamp.is_warning else StatusTone.RUN,
             )
             for lamp in lamps
         )
@@ -146,7 +148,7 @@ class SignalsFunction(SpecialFunction):
         self.desk.clear_prompt_line()
         self.list_kind, self.marked = following(SignalListKind, self.list_kind), 0
 
-    def execute_row(self) -> bool:
+    def activate_selected_row(self) -> bool:
         """Switch the selected output, or the selected input of a simulated machine."""
         if self.list_kind is SignalListKind.INPUTS and self._is_simulated:
             self._toggle_input()
@@ -171,7 +173,7 @@ class SignalsFunction(SpecialFunction):
             return
         on = name not in self.desk.read_snapshot().inputs
         assert self.desk.desk_control.set_input is not None
-        if self.desk.window_state.late_presses.refuse_late_press(StartingAction.INPUT):
+        if self.desk.window_state.late_presses.refuse_late_press(BlockedLateAction.INPUT):
             return
         self.desk.desk_control.set_input(name, on)
         self.desk.user_access.persistence.log_change(
@@ -239,7 +241,9 @@ def _map_codes(machine: Machine) -> dict[str, str]:
     own = _OWN_CODES_OF_OMNITURN if omniturn else _OWN_CODES
     form = "M{:02d}" if omniturn else "M{}"
     found = {name: list(codes) for name, codes in own.items()}
-    for code, (output, _on) in sorted(machine.m_codes.items(), key=lambda entry: (not entry[1][1], entry[0])):
+    for code, (output, _on) in sorted(
+        machine.m_code_outputs.items(), key=lambda entry: (not entry[1][1], entry[0])
+    ):
         found.setdefault(output, []).append(form.format(code))
     return {name: " ".join(codes) for name, codes in found.items()}
 
@@ -281,7 +285,7 @@ class DriveStatusFunction(SpecialFunction):
                 Message("Largest following error since startup: {largest}", largest=largest),
                 Message("The setpoint queue ran low {underruns} times", underruns=snapshot.underruns),
             ),
-            number_columns=frozenset({3, 4, 5, 6}),
+            numeric_columns=frozenset({3, 4, 5, 6}),
         )
 
     def _axis(self, snapshot: Snapshot, number: int, metric: bool, on: bool) -> TableRow:
@@ -290,7 +294,7 @@ class DriveStatusFunction(SpecialFunction):
             snapshot.demand[number],
             snapshot.actual[number],
             snapshot.following_error[number],
-            axis.following_window,
+            axis.following_error_window,
         )
         write = formats.format_angle if axis.is_rotary else lambda value: formats.format_length(value, metric)
         fault = _find_fault(snapshot.alarms, DRIVE_ALARMS, axis)
@@ -299,11 +303,11 @@ class DriveStatusFunction(SpecialFunction):
         known = UnknownPart.AXES not in snapshot.unknown
         value_texts = [write(value) if known else f"{write(value)} {UNKNOWN_VALUE}" for value in values[:3]]
         cells = (axis.name, power if known else UNKNOWN_VALUE, home, *value_texts, write(values[3]), fault)
-        return TableRow(cells, on and known and fault == formats.NO_VALUE, Tone.RUN)
+        return TableRow(cells, on and known and fault == formats.NO_VALUE, StatusTone.RUN)
 
     def _spindle(self, snapshot: Snapshot) -> TableRow:
         fault = _find_fault(snapshot.alarms, SPINDLE_ALARMS, None)
-        band = abs(snapshot.rpm_command) * self.machine.spindle.at_speed
+        band = abs(snapshot.rpm_command) * self.machine.spindle.at_speed_tolerance
         off = snapshot.rpm_actual - snapshot.rpm_command
         known = UnknownPart.SPINDLE not in snapshot.unknown
         cells = (
@@ -316,7 +320,7 @@ class DriveStatusFunction(SpecialFunction):
             formats.format_fixed(band, 0),
             fault,
         )
-        return TableRow(cells, snapshot.spindle_auto and known and fault == formats.NO_VALUE, Tone.RUN)
+        return TableRow(cells, snapshot.spindle_auto and known and fault == formats.NO_VALUE, StatusTone.RUN)
 
     def prompt_text(self) -> str:
         """Return the prompt, which names the key for the alarms."""

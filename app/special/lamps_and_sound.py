@@ -30,7 +30,7 @@ EVENT_KINDS = tuple(MACHINE_SIGNALS)
 
 
 @dataclass(slots=True)
-class EventSounds:
+class EventSoundPlayer:
     """Player of the sounds that announce new machine events.
 
     ``volume_percent`` is 0 by default. The event kinds in ``muted_kinds`` have no sound.
@@ -40,7 +40,7 @@ class EventSounds:
     persistence: Persistence
     sound_player: SoundPlayer = field(default_factory=SoundPlayer)
     volume_percent: int = 0
-    muted_kinds: frozenset[str] = frozenset()
+    muted_event_kinds: frozenset[str] = frozenset()
     _signals: SignalSelector = field(default_factory=SignalSelector)
     _before: tuple[str, ...] | None = None
     _told: str = ""
@@ -64,7 +64,7 @@ class EventSounds:
         self._report()
 
     def _heard(self, kind: str) -> bool:
-        return kind not in self.muted_kinds and bool(MACHINE_SIGNALS[kind].tones_hz)
+        return kind not in self.muted_event_kinds and bool(MACHINE_SIGNALS[kind].tones_hz)
 
     def _report(self) -> None:
         """Report each error of sound output once."""
@@ -89,7 +89,10 @@ class EventSounds:
             return
         match kept:
             case {"volume": int(volume), "silent": list(silent)}:
-                self.volume_percent, self.muted_kinds = max(0, min(100, volume)), frozenset(map(str, silent))
+                self.volume_percent, self.muted_event_kinds = (
+                    max(0, min(100, volume)),
+                    frozenset(map(str, silent)),
+                )
 
     def save_settings(self, volume_percent: int, muted_kinds: frozenset[str]) -> None:
         """Store the volume and the muted event kinds, and use them immediately.
@@ -97,7 +100,7 @@ class EventSounds:
         The volume is limited to 0 to 100 %. The disk is written later, and a write error is not raised. If
         no store is open, nothing is stored. Raise StoreError if the store is closed or read-only.
         """
-        before, self.volume_percent, self.muted_kinds = (
+        before, self.volume_percent, self.muted_event_kinds = (
             self.volume_percent,
             max(0, min(100, volume_percent)),
             muted_kinds,
@@ -124,7 +127,7 @@ class LampsAndSoundFunction(SpecialFunction):
     name = "LAMPS AND SOUND"
     use = "lamps, sounds, volume, lamp test"
 
-    def __init__(self, desk: Desk, machine_name: Machine, sounds: EventSounds) -> None:
+    def __init__(self, desk: Desk, machine_name: Machine, sounds: EventSoundPlayer) -> None:
         super().__init__(desk)
         self.machine, self.event_sounds = machine_name, sounds
 
@@ -148,7 +151,7 @@ class LampsAndSoundFunction(SpecialFunction):
         notes = (tr(Message("VOLUME: {volume}", volume=volume)), tr(Message("LAMPS: {names}", names=lamps)))
         heads = ("DESCRIPTION", "LAMP", "SOUND")
         return TableContent("LAMPS AND SOUND", heads, (0.5, 0.32, 0.18), rows, self.marked, notes=notes,
-                     raw_columns=frozenset({0, 1, 2}))  # fmt: skip
+                     untranslated_columns=frozenset({0, 1, 2}))  # fmt: skip
 
     def _lamp(self, signal: MachineSignal) -> str:
         words = tr(_LAMP_NAMES[signal.lamp]) + (f" {tr('BLINKING')}" if signal.is_blinking else "")
@@ -158,36 +161,36 @@ class LampsAndSoundFunction(SpecialFunction):
     def _sound(self, kind: str, signal: MachineSignal) -> str:
         if not signal.tones_hz:
             return ""
-        return tr("OFF") if kind in self.event_sounds.muted_kinds else tr("ON")
+        return tr("OFF") if kind in self.event_sounds.muted_event_kinds else tr("ON")
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys for volume, sound test and lamp test."""
         return {
             "F2": FunctionKey("SOFTER", lambda: self._louder(-_VOLUME_STEP)),
             "F3": FunctionKey("LOUDER", lambda: self._louder(_VOLUME_STEP)),
-            "F4": FunctionKey("TRY", self.play_part_sound),
+            "F4": FunctionKey("TRY", self.play_part_finished_sound),
             "F5": FunctionKey("LAMP TEST", self.test_lamps),
         }
 
-    def execute_row(self) -> bool:
+    def activate_selected_row(self) -> bool:
         """Turn the sound of the selected event on or off."""
         kind = EVENT_KINDS[self.marked]
         if MACHINE_SIGNALS[kind].tones_hz:
-            silent = self.event_sounds.muted_kinds ^ {kind}
+            silent = self.event_sounds.muted_event_kinds ^ {kind}
             self._choose(self.event_sounds.volume_percent, silent)
         else:
             self.desk.say("NO SOUND FOR A RUNNING CYCLE: ONLY THE LAMP SHOWS IT")
         return True
 
     def _louder(self, by: int) -> None:
-        self._choose(self.event_sounds.volume_percent + by, self.event_sounds.muted_kinds)
+        self._choose(self.event_sounds.volume_percent + by, self.event_sounds.muted_event_kinds)
 
     def _choose(self, volume: int, silent: frozenset[str]) -> None:
         self.desk.clear_prompt_line()
         if not self.desk.is_refused(ProtectedChange.SCREEN):
             self.desk.try_save(lambda: self.event_sounds.save_settings(volume, silent))
 
-    def play_part_sound(self) -> None:
+    def play_part_finished_sound(self) -> None:
         """Play the sound of a finished part at the current volume."""
         if not self.event_sounds.volume_percent:
             self.desk.say("VOLUME IS ZERO. F3: LOUDER")

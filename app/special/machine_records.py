@@ -11,7 +11,7 @@ from app.desk.persistence import Persistence
 from app.desk.status.alarm_log import parse_alarm
 from app.desk.status.formats import format_local_time
 from app.desk.status.machine_file_changes import MachineFileChanges
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.desk.status.prompt_line import translate_cause
 from app.desk.translation import tr
 from app.special.special_functions import SpecialFunction
@@ -65,7 +65,7 @@ class EventLogFunction(SpecialFunction):
         now = self.desk.clock.read_seconds()
         if now >= self._next and not self.worker.is_busy:
             self._next = now + RELOAD_INTERVAL_S
-            self.query_store()
+            self.query_events()
         found = (
             Message("{count} EVENTS", count=self.row_count)
             if self.row_count < MAX_EVENTS
@@ -77,14 +77,14 @@ class EventLogFunction(SpecialFunction):
             (0.25, 0.13, 0.54, 0.08),
             self._rows,
             self.marked,
-            question="SEARCH FOR?" if self.is_searching or self.search_field.text else "",
+            entry_prompt="SEARCH FOR?" if self.is_searching or self.search_field.text else "",
             text=self.search_field.text,
             notes=(self.error_text,) if self.error_text else (),
-            raw_columns=frozenset({0}),
-            number_columns=frozenset({3}),
+            untranslated_columns=frozenset({0}),
+            numeric_columns=frozenset({3}),
         )
 
-    def query_store(self) -> None:
+    def query_events(self) -> None:
         """Query the store for the events that match the search text and the filter.
 
         The result arrives in a later frame. Only the result of the latest query is used.
@@ -115,7 +115,7 @@ class EventLogFunction(SpecialFunction):
     def _filter(self) -> None:
         self.filter_name = following(EVENT_FILTERS, self.filter_name)
         self.marked = 0
-        self.query_store()
+        self.query_events()
 
     def accepts_key(self, key: str) -> bool:
         """Return whether a character can be entered in the search field."""
@@ -136,7 +136,7 @@ class EventLogFunction(SpecialFunction):
             self.marked = 0
         else:
             return False
-        self.query_store()
+        self.query_events()
         return True
 
     def prompt_text(self) -> str:
@@ -150,7 +150,7 @@ class EventLogFunction(SpecialFunction):
         open_before = self.is_searching or bool(self.search_field.text)
         if open_before:
             self.is_searching, self.search_field.text, self.marked = False, "", 0
-            self.query_store()
+            self.query_events()
         return open_before
 
     def on_close(self) -> None:
@@ -166,7 +166,7 @@ def make_event_row(event: EventRow) -> TableRow:
     stop = parse_alarm(event)
     said = tr(event.text) if stop is None else f"{stop.number} {tr(stop.text)}: {tr(translate_cause(stop))}"
     text = Message("{text} ({who})", text=said, who=event.who) if event.who else said
-    return TableRow((at, event.kind, text, line), True if alarm else None, Tone.ALARM)
+    return TableRow((at, event.kind, text, line), True if alarm else None, StatusTone.ALARM)
 
 
 _OFF_STATES = frozenset({MachineState.DISABLED, MachineState.ESTOP, MachineState.FAULT})
@@ -192,7 +192,7 @@ class MachineFileFunction(SpecialFunction):
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the table of changed machine file entries, with name, old value and new value."""
-        rows = tuple(TableRow(tuple(change), None, Tone.WAIT) for change in self.changes.changes)
+        rows = tuple(TableRow(tuple(change), None, StatusTone.WAIT) for change in self.changes.changes)
         note = (
             tr("Press F2 to accept; the drives stay off until then.")
             if rows
@@ -205,7 +205,7 @@ class MachineFileFunction(SpecialFunction):
             rows,
             self.marked if rows else -1,
             notes=(note,),
-            raw_columns=frozenset({0, 1, 2}),
+            untranslated_columns=frozenset({0, 1, 2}),
         )
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:

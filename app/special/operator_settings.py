@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import partial
 
-from app.desk.arithmetic import EntryError, evaluate_expression
+from app.desk.arithmetic import InvalidEntryError, evaluate_expression
 from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
 from app.desk.pages.table_content import FunctionKey, TableContent, TableRow
@@ -16,7 +16,7 @@ from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.status.readouts import UNKNOWN_VALUE
 from app.desk.translation import tr
 from app.offsets.active_offsets import R_PARAMETERS_SETTING, parse_r_parameters
-from app.special.special_functions import NumericFunction, SpecialFunction
+from app.special.special_functions import NumericEntryFunction, SpecialFunction
 from core.access.access_table import ProtectedChange
 from core.executor.commands import SetSpindleLimit
 from core.executor.snapshot import Snapshot
@@ -28,7 +28,7 @@ from core.ports import UnknownPart
 from core.store.store_errors import StoreError
 
 
-class RParametersFunction(NumericFunction):
+class RParametersFunction(NumericEntryFunction):
     """Special function for R parameters.
 
     A typed value applies to the selected row. The loaded program is then proved again.
@@ -73,7 +73,7 @@ class RParametersFunction(NumericFunction):
             (0.4, 0.6),
             rows,
             self.marked,
-            question=f"R{self.marked}?",
+            entry_prompt=f"R{self.marked}?",
             text=self.entry.text,
             notes=(
                 (
@@ -82,12 +82,12 @@ class RParametersFunction(NumericFunction):
                 ),
                 "A parameter without a value is treated as 0, and a warning is shown.",
             ),
-            number_columns=frozenset({1}),
+            numeric_columns=frozenset({1}),
         )
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function key F4, which clears the selected parameter."""
-        return {"F4": FunctionKey("CLEAR", self.clear_selected)}
+        return {"F4": FunctionKey("CLEAR", self.clear_selected_parameter)}
 
     def handle_key(self, key: str) -> bool:
         """Handle a key.
@@ -96,19 +96,19 @@ class RParametersFunction(NumericFunction):
         """
         return super().handle_key(key) or self.move_selection(key)
 
-    def clear_selected(self) -> None:
+    def clear_selected_parameter(self) -> None:
         """Clear the selected parameter."""
         self._save_value(self.marked, None)
 
     def accept_entry(self, text: str) -> bool:
         """Set the selected parameter to the typed value.
 
-        Raise EntryError if the value is outside the permitted range.
+        Raise InvalidEntryError if the value is outside the permitted range.
         """
         value = evaluate_expression(text)
         low, high = VALUE_RANGES["R"]
         if not low <= value <= high:
-            raise EntryError(
+            raise InvalidEntryError(
                 tr(Message("R PARAMETERS RANGE FROM {low} TO {high}", low=f"{low:g}", high=f"{high:g}"))
             )
         return self._save_value(self.marked, value)
@@ -144,7 +144,7 @@ class RParametersFunction(NumericFunction):
         if self.desk.read_snapshot().state in ACTIVE_STATES:  # A cycle was started in the meantime.
             self.desk.renewal.is_requested = True
         else:
-            self.desk.program_loader.start_loading(now.path, now.has_block_delete)
+            self.desk.program_loader.start_loading(now.path, now.is_block_delete_on)
 
 
 def _told(value: float | None) -> str:
@@ -210,7 +210,7 @@ class ScreenSettingsFunction(SpecialFunction):
             ),
         )
 
-    def execute_row(self) -> bool:
+    def activate_selected_row(self) -> bool:
         """Change the selected setting to its next value."""
         self._go_on()
         return True
@@ -229,12 +229,12 @@ class ScreenSettingsFunction(SpecialFunction):
         if name == "dock" and settings.current_settings.dock and self.desk.station_controls.is_estop_pressed:
             self.desk.say("RELEASE THE E-STOP (U) BEFORE HIDING THE OPERATOR STATION")
             return
-        if name == "latched" and not self.desk.machine.allows_one_hand:
+        if name == "latched" and not self.desk.machine.allows_one_hand_start:
             self.desk.say(tr("SIMULATION ONLY: LATCHED PALM BUTTONS COULD START A REAL SPINDLE"))
             return
         if name == "first_job":
             self.desk.program_runs.restart_first_job()
-        self.desk.station_controls.release_all()
+        self.desk.station_controls.release_all_buttons()
         self.desk.clear_prompt_line()
         self.desk.apply_setting(name, settings.find_next_choice(name))
 
@@ -252,7 +252,7 @@ def _in_words(name: str, value: object) -> str:
 CONFIRM_REMOVE_LIMIT = "PRESS Y TO REMOVE THE LIMIT, N TO KEEP IT"
 
 
-class SpindleLimitFunction(NumericFunction):
+class SpindleLimitFunction(NumericEntryFunction):
     """Special function for a spindle speed limit that applies until TurnDesk is restarted."""
 
     name = "MAXIMUM SPINDLE SPEED"
@@ -279,20 +279,20 @@ class SpindleLimitFunction(NumericFunction):
             ("", "", ""),
             (0.55, 0.3, 0.15),
             rows,
-            question="MAXIMUM SPINDLE SPEED?",
+            entry_prompt="MAXIMUM SPINDLE SPEED?",
             text=self.entry.text,
             notes=(
                 "If a program commands a higher speed, the spindle runs at the limit.",
                 "The limit takes effect at once, even while a program runs.",
             ),
-            number_columns=frozenset({1}),
+            numeric_columns=frozenset({1}),
         )
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function key F4, which removes the limit."""
-        return {"F4": FunctionKey("NO LIMIT", self.confirm_remove_limit)}
+        return {"F4": FunctionKey("NO LIMIT", self.confirm_limit_removal)}
 
-    def confirm_remove_limit(self) -> None:
+    def confirm_limit_removal(self) -> None:
         """Remove the spindle speed limit after the operator confirms."""
         if not self.desk.read_snapshot().spindle_limit_rpm:
             self.desk.say("NO SPINDLE SPEED LIMIT IS ACTIVE")
@@ -316,12 +316,12 @@ class SpindleLimitFunction(NumericFunction):
     def accept_entry(self, text: str) -> bool:
         """Set the spindle speed limit in rpm.
 
-        Raise EntryError if the limit is outside the range of the spindle.
+        Raise InvalidEntryError if the limit is outside the range of the spindle.
         """
         rpm = evaluate_expression(text)
         low, high = self.spindle.min_rpm, self.spindle.max_rpm
         if not low <= rpm <= high:
-            raise EntryError(
+            raise InvalidEntryError(
                 Message(
                     "{rpm} rpm is outside the range of this spindle, {low} to {high} rpm",
                     rpm=f"{rpm:g}",

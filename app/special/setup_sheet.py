@@ -10,10 +10,16 @@ from dataclasses import dataclass
 
 from app.desk.status.readouts import format_rotary_angle
 from app.desk.translation import tr
-from app.report.run_record import PlannedStop, RunRecorder, ToolTimes
+from app.report.run_record import PlannedStop, ReportRecorder, ToolTimes
 from core.geometry.rotary_axes import DatumPreset
 from core.interpreter.dialects import SharedProgram
-from core.interpreter.shared.job_setup import MillTool, SecondaryOffset, Setup, ToolOffset, ZeroOffset
+from core.interpreter.shared.job_setup import (
+    InterpreterSetup,
+    MillTool,
+    SecondaryOffset,
+    ToolOffset,
+    ZeroOffset,
+)
 from core.interpreter.shared.working_plane import BlankCorners
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect
@@ -22,7 +28,7 @@ from core.message import Message
 from core.part.stock import Clamping, Stock
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import PartedPiece
-from core.proving.part_proof import prove_with_part
+from core.proving.part_proof import prove_program_and_part
 from core.proving.program_tools import PartSettings
 from core.proving.prove_program import ReportProgress
 
@@ -78,7 +84,7 @@ class MillSetup:
         return ", ".join(filter(None, words)) or tr("no tool name in the tool table")
 
 
-def make_mill_setup(setup: Setup, blank_corners: BlankCorners | None) -> MillSetup | None:
+def make_mill_setup(setup: InterpreterSetup, blank_corners: BlankCorners | None) -> MillSetup | None:
     """Return the mill setup of a job, or None on a lathe."""
     if setup.kinematics is None:
         return None
@@ -96,18 +102,18 @@ _MM_PER_INCH = 25.4
 
 
 @dataclass(frozen=True, slots=True)
-class SetupTool:
+class SetupSheetTool:
     """Tool of the setup sheet.
 
-    ``is_assumed`` is True if the tool shape is incomplete and TurnDesk assumes the missing values.
+    ``is_shape_incomplete`` is True if the tool shape is incomplete and TurnDesk assumes the missing values.
     ``tool_offset`` is None if the tool is not measured.
     """
 
     tool_number: int
     tool_shape: ToolShape | None
-    is_assumed: bool
+    is_shape_incomplete: bool
     tool_offset: ToolOffset | None
-    tool_time: ToolTimes
+    tool_times: ToolTimes
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +127,7 @@ class SetupSheet:
     finished_part: PartedPiece | None
     is_milled: bool
     clamping: Clamping | None
-    setup_tools: tuple[SetupTool, ...]
+    setup_tools: tuple[SetupSheetTool, ...]
     secondary_offsets: tuple[tuple[int, SecondaryOffset], ...]
     zero_offsets: tuple[tuple[int, ZeroOffset], ...]
     program_stops: tuple[PlannedStop, ...]
@@ -185,9 +191,9 @@ class SetupSheet:
         if self.mill_setup is not None:
             return ((tr("PRESET"), self.mill_setup.format_preset(self.format_length)),)
         held = self.clamping
-        if held is None or not held.diameter:
+        if held is None or not held.chuck_diameter:
             return ((tr("STICK-OUT"), tr("unknown because the machine file has no values under [clamping]")),)
-        chuck = f"Ø {self.format_length(held.diameter)}"
+        chuck = f"Ø {self.format_length(held.chuck_diameter)}"
         if held.jaw_length:
             size = f"Ø {self.format_length(held.jaw_diameter)} × {self.format_length(held.jaw_length)}"
             chuck += ", " + tr(Message("jaws {size}", size=size))
@@ -202,7 +208,7 @@ class SetupSheet:
             rows.append((tr("TAILSTOCK"), quill))
         return tuple(rows)
 
-    def describe_shape(self, tool: SetupTool) -> str:
+    def describe_tool_shape(self, tool: SetupSheetTool) -> str:
         """Return the shape of a tool as text."""
         if self.mill_setup is not None:
             return self.mill_setup.describe_tool(tool.tool_number)
@@ -210,7 +216,7 @@ class SetupSheet:
         if shape is None:
             return tr("unknown")
         words = ", ".join(filter(None, self._of_shape(shape)))
-        return tr(Message("{tool} (assumed)", tool=words)) if tool.is_assumed else words
+        return tr(Message("{tool} (assumed)", tool=words)) if tool.is_shape_incomplete else words
 
     def _of_shape(self, shape: ToolShape) -> Iterator[str]:
         yield translate_tool_kind(shape.kind)
@@ -225,7 +231,7 @@ class SetupSheet:
         yield f"{tr('POINT ANGLE')} {shape.point:g}°" if shape.point else ""
         yield f"{tr('TIP')} {shape.tip}" if shape.tip else ""
 
-    def format_offset(self, tool: SetupTool) -> str:
+    def format_offset(self, tool: SetupSheetTool) -> str:
         """Return the offset of a tool as text.
 
         On a lathe, the text contains Z, and X as a radius. On a mill, it contains length and radius.
@@ -240,14 +246,14 @@ class SetupSheet:
         )
         return tr(Message("X (radius) {x}   Z {z}   R {radius}", x=x, z=z, radius=r))
 
-    def format_stop(self, stop: PlannedStop) -> str:
+    def format_stop_code(self, stop: PlannedStop) -> str:
         """Return the code of a program stop (such as M0 or M01) in the program's language."""
         return f"M{'0' if self.is_omniturn else ''}{int(stop.is_optional)}"
 
 
 def make_setup_sheet(
     program: SharedProgram,
-    setup: Setup,
+    setup: InterpreterSetup,
     machine: Machine,
     part_settings: PartSettings,
     report_progress: ReportProgress | None = None,
@@ -256,24 +262,24 @@ def make_setup_sheet(
 
     ``report_progress`` is called during the proof. It can raise an exception to cancel the proof.
     """
-    record = RunRecorder(part_settings)
-    report, part = prove_with_part(
-        program, setup, machine, part_settings, report_progress, on_span=record.add_span
+    record = ReportRecorder(part_settings)
+    report, part = prove_program_and_part(
+        program, setup, machine, part_settings, report_progress, on_span=record.add_time_span
     )
     shapes = part.tool_shapes if part is not None else {}
     numbers = sorted(
-        {*report.tool_numbers, *(n for n, time in record.tool_times.items() if n and time.total_s)}
+        {*report.tool_numbers, *(n for n, time in record.tool_times.items() if n and time.total_time_s)}
     )
     return SetupSheet(
         is_metric=report.is_metric or report.dialect is not Dialect.OMNITURN,
-        cycle_time_s=report.times.cycle_s,
+        cycle_time_s=report.program_times.cycle_time_s,
         diagnostics=report.diagnostics,
         stock=part.stock if part is not None else None,
         finished_part=part.last_piece if part is not None else None,
         is_milled=part is not None and part.is_milled,
         clamping=part_settings.clamping,
         setup_tools=tuple(
-            SetupTool(
+            SetupSheetTool(
                 n,
                 shapes.get(n),
                 part_settings.shapes.get(n) != shapes.get(n),
@@ -283,7 +289,7 @@ def make_setup_sheet(
             for n in numbers
         ),
         secondary_offsets=tuple(
-            (n, setup.secondary.get(n, SecondaryOffset())) for n in sorted(record.used_secondary)
+            (n, setup.secondary.get(n, SecondaryOffset())) for n in sorted(record.used_secondary_offsets)
         ),
         zero_offsets=tuple((n, setup.zero.get(n, ZeroOffset())) for n in sorted(record.used_zero_offsets)),
         program_stops=tuple(record.program_stops),

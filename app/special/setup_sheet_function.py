@@ -12,7 +12,7 @@ from app.desk.desk import Desk
 from app.desk.pages.table_content import FunctionKey, InputField, TableContent, TableRow
 from app.desk.persistence import Persistence
 from app.desk.translation import tr
-from app.programs.removable_media import UsbStick, list_sticks
+from app.programs.removable_media import UsbStick, list_usb_sticks
 from app.report.pdf_file import PaperSize
 from app.special.backup_and_restore import BackupLocation
 from app.special.special_functions import SpecialFunction
@@ -49,7 +49,7 @@ class SetupSheetFunction(SpecialFunction):
         persistence: Persistence,
         worker: LatestRequestWorker,
         csv_folder: Path,
-        list_media: Callable[[], Sequence[UsbStick]] = list_sticks,
+        list_media: Callable[[], Sequence[UsbStick]] = list_usb_sticks,
     ) -> None:
         super().__init__(desk)
         self.machine, self.persistence, self.worker = machine_name, persistence, worker
@@ -119,10 +119,10 @@ class SetupSheetFunction(SpecialFunction):
             _COLUMN_SHARES,
             rows,
             self.marked,
-            question="NOTE" if self.note_field is not None else "",
+            entry_prompt="NOTE" if self.note_field is not None else "",
             text=self.note_field.text if self.note_field is not None else "",
             notes=self._foot(),
-            raw_columns=frozenset({1}),
+            untranslated_columns=frozenset({1}),
             has_tall_rows=True,
         )
 
@@ -164,7 +164,7 @@ class SetupSheetFunction(SpecialFunction):
                 self.task_text
                 or ("Press Enter to save the setup sheet to the selected location as PDF and HTML."),
             ),
-            raw_columns=frozenset({0, 1}),
+            untranslated_columns=frozenset({0, 1}),
         )
 
     # --- keys ----------------------------------------------------------------------------------------
@@ -175,7 +175,7 @@ class SetupSheetFunction(SpecialFunction):
             return {"F4": FunctionKey("LOOK", self.reload_save_locations)}
         return {
             "F2": FunctionKey("NOTE", self.add_note),
-            "F3": FunctionKey("DEL NOTE", self.confirm_delete_note),
+            "F3": FunctionKey("DEL NOTE", self.confirm_note_deletion),
             "F5": FunctionKey(
                 "A4" if self.paper_size is PaperSize.A4 else "LETTER", self.select_next_paper_size
             ),
@@ -210,7 +210,7 @@ class SetupSheetFunction(SpecialFunction):
         """Cancel the note entry and close the list of save locations."""
         self.note_field, self.save_locations = None, ()
 
-    def execute_row(self) -> bool:
+    def activate_selected_row(self) -> bool:
         """Edit the selected note, or save the sheet in the selected location."""
         if self.save_locations:
             self._write(self.save_locations[min(self.marked, len(self.save_locations) - 1)])
@@ -238,7 +238,7 @@ class SetupSheetFunction(SpecialFunction):
         else:
             self._changing, self.note_field = None, InputField(words=True)
 
-    def confirm_delete_note(self) -> None:
+    def confirm_note_deletion(self) -> None:
         """Delete the selected note after the operator confirms."""
         at = self._selected_note_index
         if at is None:
@@ -264,7 +264,7 @@ class SetupSheetFunction(SpecialFunction):
     def _keep(self, notes: list[str]) -> None:
         program = self.program_name
 
-        def save() -> None:
+        def save_notes() -> None:
             change_text = _describe_change(
                 self.notes, notes
             )  # compared before saving, because later readers see the new notes
@@ -276,7 +276,7 @@ class SetupSheetFunction(SpecialFunction):
 
         self.desk.clear_prompt_line()
         if not self.desk.is_refused(ProtectedChange.SCREEN):
-            self.desk.try_save(save)
+            self.desk.try_save(save_notes)
 
     def select_next_paper_size(self) -> None:
         """Switch the paper size between A4 and Letter."""
@@ -285,13 +285,13 @@ class SetupSheetFunction(SpecialFunction):
         before, other = self.paper_size, PaperSize.LETTER if self.paper_size is PaperSize.A4 else PaperSize.A4
         self._paper = other
 
-        def save() -> None:
+        def save_paper_size() -> None:
             self.persistence.save_setting(_PAPER_SETTING, other.value)
             self.persistence.log_change(
                 Message("paper size: {before} → {other}", before=before.value, other=other.value)
             )
 
-        self.desk.try_save(save)
+        self.desk.try_save(save_paper_size)
 
     def prompt_text(self) -> str:
         """Return the prompt for the keys that are available now."""

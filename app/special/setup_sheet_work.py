@@ -18,12 +18,12 @@ from app.programs.atomic_files import FileOperationError, copy_to_medium, flush_
 from app.report import part_drawings
 from app.report.html_tables import (
     HTML_END,
-    format_minutes,
-    hash_text,
+    format_duration,
+    hash_program_text,
     make_drawing_block,
     make_headline,
+    make_name_value_table,
     make_page_head,
-    make_pair_table,
     make_result_line,
     make_table,
 )
@@ -33,7 +33,7 @@ from core.executor.job import Job
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.part.insert_codes import InsertCodeError
-from core.part.tool_outline import ToolOutline, make_outline
+from core.part.tool_outline import ToolOutline, make_tool_outline
 from core.part.tool_shape import ToolShape
 from core.proving.program_tools import PartSettings
 
@@ -47,7 +47,7 @@ def make_sheet_html(
     """
     rows = [
         *fact_rows,
-        (tr("TIME PER PART"), format_minutes(sheet.cycle_time_s)),
+        (tr("TIME PER PART"), format_duration(sheet.cycle_time_s)),
         (tr("STOCK"), sheet.stock_text),
         *sheet.clamping_texts,
     ]
@@ -56,7 +56,7 @@ def make_sheet_html(
     return "".join(
         (
             _verdict(sheet),
-            make_pair_table(rows),
+            make_name_value_table(rows),
             _notes(notes),
             _tools(sheet, remarks),
             _offsets(sheet),
@@ -94,9 +94,9 @@ def _tools(sheet: SetupSheet, remarks: Mapping[int, str]) -> str:
         (
             f"T{tool.tool_number}" if tool.tool_number else tr("no T word"),
             part_drawings.draw_tool(tool.tool_shape),
-            _said(sheet.describe_shape(tool), remarks.get(tool.tool_number, "")),
+            _said(sheet.describe_tool_shape(tool), remarks.get(tool.tool_number, "")),
             escape(sheet.format_offset(tool)),
-            f"{tool.tool_time.total_s:.1f}",
+            f"{tool.tool_times.total_time_s:.1f}",
         )
         for tool in sheet.setup_tools
     ]
@@ -122,7 +122,12 @@ def _offsets(sheet: SetupSheet) -> str:
 
 def _stops(sheet: SetupSheet) -> str:
     rows = [
-        (sheet.format_stop(stop), str(stop.line_number), format_minutes(stop.time_s), escape(stop.message))
+        (
+            sheet.format_stop_code(stop),
+            str(stop.line_number),
+            format_duration(stop.time_s),
+            escape(stop.message),
+        )
         for stop in sheet.program_stops
     ]
     head = (tr("STOP"), tr("LINE"), tr("AFTER"), tr("MESSAGE TO THE OPERATOR"))
@@ -146,16 +151,18 @@ def make_sheet_rows(prepared: PreparedSheet, remarks: Mapping[int, str]) -> Iter
         yield TableRow((tr("ERRORS") if sheet.error_count else tr("WARNINGS"), sheet.findings_summary, ""))
     part = format_finished_size(sheet)
     stock = sheet.stock_text + (f"\n{tr('PART')} {part}" if part else "")
-    yield TableRow((tr("TIME PER PART"), format_minutes(sheet.cycle_time_s), ""))
+    yield TableRow((tr("TIME PER PART"), format_duration(sheet.cycle_time_s), ""))
     yield TableRow((tr("STOCK"), stock, ""))
     for name, words in sheet.clamping_texts:
         yield TableRow((name, words, ""))
     for tool in sheet.setup_tools:
         remark = remarks.get(tool.tool_number, "")
-        words = f"{remark}: {sheet.describe_shape(tool)}" if remark else sheet.describe_shape(tool)
-        offset = f"{sheet.format_offset(tool)}   {tool.tool_time.total_s:.1f} s"
+        words = f"{remark}: {sheet.describe_tool_shape(tool)}" if remark else sheet.describe_tool_shape(tool)
+        offset = f"{sheet.format_offset(tool)}   {tool.tool_times.total_time_s:.1f} s"
         name = f"T{tool.tool_number}" if tool.tool_number else tr("no T word")
-        yield TableRow((name, f"{words}\n{offset}", ""), outline=prepared.tool_outlines.get(tool.tool_number))
+        yield TableRow(
+            (name, f"{words}\n{offset}", ""), tool_outline=prepared.tool_outlines.get(tool.tool_number)
+        )
     length = sheet.format_length
     for n, d in sheet.secondary_offsets:
         yield TableRow((f"D{n}", f"X {length(d.x)}   Z {length(d.z)}   R {length(d.nose_radius)}", ""))
@@ -163,7 +170,9 @@ def make_sheet_rows(prepared: PreparedSheet, remarks: Mapping[int, str]) -> Iter
         yield TableRow((f"G{n}", f"X {length(zero.x)}   Z {length(zero.z)}   C {zero.c:g}°", ""))
     for stop in sheet.program_stops:
         at = tr(Message("LINE {line}", line=stop.line_number))
-        yield TableRow((sheet.format_stop(stop), f"{stop.message}\n{at}, {format_minutes(stop.time_s)}", ""))
+        yield TableRow(
+            (sheet.format_stop_code(stop), f"{stop.message}\n{at}, {format_duration(stop.time_s)}", "")
+        )
 
 
 def prepare_sheet(
@@ -181,7 +190,7 @@ def prepare_sheet(
 
 def _outline(shape: ToolShape | None) -> ToolOutline | None:
     try:
-        return make_outline(shape) if shape is not None else None
+        return make_tool_outline(shape) if shape is not None else None
     except InsertCodeError:
         return None
 
@@ -196,7 +205,7 @@ def make_sheet_page(
     """Return the title, date and HTML body of the setup sheet."""
     facts = [
         (tr("MACHINE"), machine.name),
-        (tr("PROGRAM CHECKSUM (SHA-256)"), hash_text(prepared.job.source)),
+        (tr("PROGRAM CHECKSUM (SHA-256)"), hash_program_text(prepared.job.source)),
     ]
     body = make_sheet_html(prepared.setup_sheet, facts, remarks, notes)
     title = tr(Message("Setup sheet: {program}", program=program_name))

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from app.desk.arithmetic import EntryError
+from app.desk.arithmetic import InvalidEntryError
 from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
 from app.desk.pages.table_content import ROW_STEPS, FunctionKey, InputField, TableContent, TableRow, refused
@@ -43,9 +43,9 @@ class SpecialFunction(ABC):
 
         Return False to let the window handle the key.
         """
-        return (key == "Enter" and self.execute_row()) or self.move_selection(key)
+        return (key == "Enter" and self.activate_selected_row()) or self.move_selection(key)
 
-    def execute_row(self) -> bool:
+    def activate_selected_row(self) -> bool:
         """Execute the action of the selected row. Return False if the row has no action."""
         return False
 
@@ -70,7 +70,7 @@ class SpecialFunction(ABC):
     def on_close(self) -> None:
         """Cancel entries and questions when the function closes."""
 
-    def process_wire_input(self, *, is_displayed: bool) -> None:
+    def process_device_input(self, *, is_displayed: bool) -> None:
         """Process data from a connected device, such as a gauge.
 
         This method is called once per frame. ``is_displayed`` is True while the function is displayed.
@@ -85,7 +85,7 @@ class SpecialFunction(ABC):
             self.desk.clear_prompt_line()
             self.marked = row
         else:
-            self.execute_row()
+            self.activate_selected_row()
 
     @property
     def row_count(self) -> int:
@@ -101,7 +101,7 @@ class SpecialFunction(ABC):
         return True
 
 
-class PageFunction(SpecialFunction):
+class SeparatePageFunction(SpecialFunction):
     """Special function that has its own screen page.
 
     In the list, its table shows a few facts. Enter or a tap opens the page.
@@ -110,17 +110,17 @@ class PageFunction(SpecialFunction):
     key_hint: ClassVar[str]  # description of other keys that open the page
 
     @abstractmethod
-    def make_fact_rows(self) -> tuple[TableRow, ...]:
+    def make_information_rows(self) -> tuple[TableRow, ...]:
         """Return the rows with the facts that the table shows."""
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the table of facts."""
         return TableContent(
-            tr(self.name), ("", ""), (0.4, 0.6), self.make_fact_rows(), notes=(self.key_hint,)
+            tr(self.name), ("", ""), (0.4, 0.6), self.make_information_rows(), notes=(self.key_hint,)
         )
 
 
-class NumericFunction(SpecialFunction):
+class NumericEntryFunction(SpecialFunction):
     """Special function with a numeric entry that accepts arithmetic.
 
     Enter passes the text to ``accept_entry``.
@@ -134,7 +134,7 @@ class NumericFunction(SpecialFunction):
     def accept_entry(self, text: str) -> bool:
         """Accept the typed text.
 
-        Return False if it was rejected with a message. Raise EntryError for an invalid entry.
+        Return False if it was rejected with a message. Raise InvalidEntryError for an invalid entry.
         """
 
     def submit_entry(self) -> None:
@@ -142,7 +142,7 @@ class NumericFunction(SpecialFunction):
         try:
             if self.accept_entry(self.entry.text):
                 self.entry.text = ""
-        except EntryError as error:
+        except InvalidEntryError as error:
             self.entry.text = refused(self.entry.text)
             self.desk.show_refusal(str(error))
 
@@ -171,7 +171,7 @@ class NumericFunction(SpecialFunction):
 
 
 @dataclass(slots=True)
-class SpecialFunctionList:
+class SpecialFunctionsModel:
     """List of special functions, and the function that is displayed.
 
     ``at`` is the index of the displayed function. While ``inside`` is True, this function is open and
@@ -269,7 +269,7 @@ class SpecialFunctionList:
         self.shown_function.on_close()
         self.inside = False
 
-    def process_results(self) -> None:
+    def process_worker_results(self) -> None:
         """Process the results of the worker.
 
         This is called once a frame.

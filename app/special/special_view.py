@@ -21,7 +21,7 @@ from app.screen.panel import RedrawingAttribute
 from app.screen.screen_theme import ALIGN_CENTER, ScreenTheme, ThemedPainter
 from app.screen.table_panel import ListPage, RowPanel, TablePanel
 from app.screen.window_layout import FINGERTIP_PX
-from app.special.special_functions import SpecialFunctionList
+from app.special.special_functions import SpecialFunctionsModel
 from core.executor.snapshot import Snapshot
 
 # --- list of functions -------------------------------------------------------------------------------------
@@ -30,7 +30,7 @@ from core.executor.snapshot import Snapshot
 ROW, GAP = 7.0, 0.4  # units: height of a row and the gap below it
 
 
-class FunctionList(RowPanel):
+class FunctionListPanel(RowPanel):
     """Panel that lists the special functions.
 
     The displayed function is highlighted, with a wide bar while it receives the keys. Rows are at least as
@@ -42,7 +42,11 @@ class FunctionList(RowPanel):
     mark: RedrawingAttribute[object] = RedrawingAttribute(None)  # present position; a change redraws the list
 
     def __init__(
-        self, theme: ScreenTheme, model: SpecialFunctionList, on_open: Callable[[int], None], parent: QWidget
+        self,
+        theme: ScreenTheme,
+        model: SpecialFunctionsModel,
+        on_open: Callable[[int], None],
+        parent: QWidget,
     ) -> None:
         super().__init__(theme, parent)
         self.model, self._enter = model, on_open
@@ -83,15 +87,15 @@ LIST, PAD = 34.0, 28.4  # units: widths of the list and the number pad
 LETTER_PAD_HEIGHT = 24.0  # units: height of the letter pad
 
 
-class SpecialPage(ListPage):
+class SpecialFunctionsPage(ListPage):
     """Page that displays the special functions and passes keys to them."""
 
     NAME = page_table.SPECIAL
-    model: SpecialFunctionList
+    model: SpecialFunctionsModel
 
-    def __init__(self, host: PageHost, model: SpecialFunctionList, parent: QWidget) -> None:
+    def __init__(self, host: PageHost, model: SpecialFunctionsModel, parent: QWidget) -> None:
         super().__init__(host, model, parent)
-        self.function_list = FunctionList(self.theme, model, self._enter, self)
+        self.function_list = FunctionListPanel(self.theme, model, self._enter, self)
         self.table_panel = TablePanel(self.theme, self._chosen, self)
         self.number_pad = NumberPad(self.theme, self.handle_touched_key, page_key=None, parent=self)
         self.letter_pad = LetterPad(self.theme, self.handle_touched_key, self)
@@ -161,13 +165,13 @@ class SpecialPage(ListPage):
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
         """Show the tables for a snapshot."""
-        self.model.process_results()
+        self.model.process_worker_results()
         shown = self.model.shown_function
         sheet = shown.make_table(snapshot)
         self.function_list.mark = (self.model.at, self.model.inside)
         self.table_panel.show_table(sheet)
-        letters = bool(sheet.question) and shown.accepts_key("a")
-        has_number_pad = bool(sheet.question) and shown.accepts_key("1") and not letters
+        letters = bool(sheet.entry_prompt) and shown.accepts_key("a")
+        has_number_pad = bool(sheet.entry_prompt) and shown.accepts_key("1") and not letters
         if (has_number_pad, letters) != (not self.number_pad.isHidden(), not self.letter_pad.isHidden()):
             self.number_pad.setVisible(has_number_pad)
             self.letter_pad.setVisible(letters)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Protocol, TypeVar
 
 from app.programs.atomic_files import FileOperationError, write_new_file
-from app.programs.program_commands import complete_name, find_same_name
+from app.programs.program_commands import add_missing_extension, find_matching_file_name
 from core.machine.serial_and_backup_tables import SerialLineModel
 from core.message import Message
 
@@ -25,7 +25,7 @@ class TransferProgress(Protocol):
     """
 
     @property
-    def done_byte_count(self) -> int:
+    def transferred_byte_count(self) -> int:
         """Return the number of bytes that have been transferred."""
         ...
 
@@ -35,7 +35,7 @@ class TransferProgress(Protocol):
         ...
 
     @property
-    def line_count(self) -> int:
+    def transferred_line_count(self) -> int:
         """Return the number of lines that have been transferred."""
         ...
 
@@ -48,7 +48,7 @@ class TransferProgress(Protocol):
         ...
 
     @property
-    def received_text(self) -> str:
+    def leading_text(self) -> str:
         """Return the data that was received before the first % character of a program."""
         ...
 
@@ -63,11 +63,11 @@ class ReceivedProgram:
     """
 
     program_bytes: bytes
-    name: str
+    file_name: str
     line_count: int
     sha256: str
     is_seven_bit: bool
-    skipped_bytes: int
+    skipped_byte_count: int
     finding_texts: tuple[str, ...]
     cycle_time_s: float
 
@@ -132,8 +132,8 @@ def store_received_program(received: ReceivedProgram, folder: Path, name: str) -
     If ``name`` lacks an extension for programs, the extension of the received program is added. Raise
     FileOperationError if the name is invalid or already exists, or if the file cannot be written.
     """
-    name = complete_name(name, Path(received.name))
-    if other := find_same_name(folder, name):
+    name = add_missing_extension(name, Path(received.file_name))
+    if other := find_matching_file_name(folder, name):
         raise FileOperationError(Message("{other} ALREADY EXISTS. USE ANOTHER NAME", other=other))
     write_new_file(folder / name, received.program_bytes)
     return folder / name
@@ -143,7 +143,7 @@ def find_unused_name(folder: Path, name: str) -> str:
     """Return ``name``, or the first unused name in the series ``name-2``, ``name-3`` and so on."""
     base = Path(name)
     tried, number = name, 1
-    while find_same_name(folder, tried):
+    while find_matching_file_name(folder, tried):
         number += 1
         tried = f"{base.stem}-{number}{base.suffix}"
     return tried

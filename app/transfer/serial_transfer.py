@@ -13,7 +13,7 @@ from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
 from app.desk.pages.table_content import FunctionKey, InputField, TableContent, TableRow, following
 from app.desk.persistence import Persistence
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.desk.translation import tr
 from app.programs.atomic_files import FileOperationError
 from app.special.special_functions import SpecialFunction
@@ -94,7 +94,7 @@ SETTING_ROWS: tuple[SettingRow, ...] = (
 )
 
 
-def make_stored_settings(model: SerialLineModel) -> dict[str, object]:
+def convert_settings_to_json(model: SerialLineModel) -> dict[str, object]:
     """Return the serial line settings as a dictionary for the settings store."""
     return asdict(model)
 
@@ -139,7 +139,7 @@ def make_settings_table(
         rows,
         selected_index,
         notes=notes,
-        raw_columns=frozenset({0, 1}),
+        untranslated_columns=frozenset({0, 1}),
     )
 
 
@@ -148,27 +148,33 @@ def make_progress_table(
 ) -> TableContent:
     """Return the table with the progress of a transfer."""
     share = (
-        f"{progress.done_byte_count / progress.total_byte_count:.0%}" if progress.total_byte_count else "—"
+        f"{progress.transferred_byte_count / progress.total_byte_count:.0%}"
+        if progress.total_byte_count
+        else "—"
     )
     rows = (
         TableRow(
-            (tr("SENDING") if sent_name else tr("RECEIVING"), sent_name or settings.port), True, Tone.RUN
+            (tr("SENDING") if sent_name else tr("RECEIVING"), sent_name or settings.port),
+            True,
+            StatusTone.RUN,
         ),
         TableRow(
             (
                 tr("BYTES"),
-                f"{progress.done_byte_count}"
+                f"{progress.transferred_byte_count}"
                 + (f" / {progress.total_byte_count}" if progress.total_byte_count else ""),
             )
         ),
-        TableRow((tr("LINES"), f"{progress.line_count}")),
+        TableRow((tr("LINES"), f"{progress.transferred_line_count}")),
         TableRow((tr("DONE"), share)),
-        TableRow((tr("STATUS"), _describe_wait(progress.wait_reason)), bool(progress.wait_reason), Tone.WAIT),
-        *([TableRow((tr("INCOMING DATA"), progress.received_text))] if progress.received_text else ()),
+        TableRow(
+            (tr("STATUS"), _describe_wait(progress.wait_reason)), bool(progress.wait_reason), StatusTone.WAIT
+        ),
+        *([TableRow((tr("INCOMING DATA"), progress.leading_text))] if progress.leading_text else ()),
     )
     words = f"{settings.port}  {settings.baud} {settings.bits}{settings.parity}{settings.stop}"
     return TableContent(
-        TABLE_TITLE, ("", ""), (0.35, 0.65), rows, notes=(words,), raw_columns=frozenset({0, 1})
+        TABLE_TITLE, ("", ""), (0.35, 0.65), rows, notes=(words,), untranslated_columns=frozenset({0, 1})
     )
 
 
@@ -194,12 +200,12 @@ def make_received_table(received: ReceivedProgram, name: str) -> TableContent:
         tr("1 LINE") if received.line_count == 1 else tr(Message("{count} LINES", count=received.line_count))
     )
     rows = (
-        TableRow((tr("WHOLE"), lines), True, Tone.RUN),
-        TableRow((tr("PROVED"), result), True, Tone.ALARM if errors else Tone.RUN),
-        TableRow((tr("NAME IN THE PROGRAM"), received.name or "—")),
+        TableRow((tr("WHOLE"), lines), True, StatusTone.RUN),
+        TableRow((tr("PROVED"), result), True, StatusTone.ALARM if errors else StatusTone.RUN),
+        TableRow((tr("NAME IN THE PROGRAM"), received.file_name or "—")),
         TableRow((tr("SHA-256"), received.sha256[:32] + " …")),
         TableRow((tr("CHARACTERS"), code)),
-        TableRow((tr("CHARACTERS SKIPPED AT START"), f"{received.skipped_bytes}")),
+        TableRow((tr("CHARACTERS SKIPPED AT START"), f"{received.skipped_byte_count}")),
         *(TableRow(("", text)) for text in received.finding_texts[:MAX_FINDINGS]),
     )
     return TableContent(
@@ -207,13 +213,13 @@ def make_received_table(received: ReceivedProgram, name: str) -> TableContent:
         ("", ""),
         (0.25, 0.75),
         rows,
-        question="NAME FOR THE NEW PROGRAM?",
+        entry_prompt="NAME FOR THE NEW PROGRAM?",
         text=name,
         notes=(
             *received.finding_texts[:1],
             ("The received program does not replace any program and is not started."),
         ),
-        raw_columns=frozenset({0, 1}),
+        untranslated_columns=frozenset({0, 1}),
     )
 
 
@@ -279,7 +285,7 @@ class SerialTransferFunction(SpecialFunction):
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys that are available now."""
         if self.received_program is not None:
-            return {"F6": FunctionKey("DISCARD", self.confirm_discard)}
+            return {"F6": FunctionKey("DISCARD", self.confirm_program_discard)}
         if self.running_transfer is not None:
             return {"F6": FunctionKey("CANCEL", self.cancel_transfer)}
         return {
@@ -300,7 +306,7 @@ class SerialTransferFunction(SpecialFunction):
             return self._named(key)
         return super().handle_key(key)
 
-    def execute_row(self) -> bool:
+    def activate_selected_row(self) -> bool:
         """Change the selected setting if no transfer is active."""
         if self.row_count:
             self._step()
@@ -374,7 +380,7 @@ class SerialTransferFunction(SpecialFunction):
 
     def _came(self, received: ReceivedProgram) -> None:
         self.running_transfer, self.received_program = None, received
-        self.name_field.text = find_unused_name(self.own_folder, received.name)
+        self.name_field.text = find_unused_name(self.own_folder, received.file_name)
         self._done(tr(Message("COMPLETE PROGRAM RECEIVED: {lines} LINES", lines=received.line_count)))
 
     def _failed(self, why: str) -> None:
@@ -410,7 +416,7 @@ class SerialTransferFunction(SpecialFunction):
         self.persistence.log_change(Message("program {path} received", path=path.name))
         self._done(tr(Message("SAVED AS A NEW PROGRAM: {name}. NOTHING WAS STARTED", name=path.name)))
 
-    def confirm_discard(self) -> None:
+    def confirm_program_discard(self) -> None:
         """Discard the received program after the operator confirms."""
         self.desk.ask_operator(CONFIRM_DISCARD, self._discarded)
 
@@ -432,9 +438,9 @@ class SerialTransferFunction(SpecialFunction):
         self.line_settings = replace(SETTING_ROWS[self.marked][2](self.line_settings, ports))
         self.desk.clear_prompt_line()
         try:
-            self.persistence.save_setting(SETTING_KEY, make_stored_settings(self.line_settings))
+            self.persistence.save_setting(SETTING_KEY, convert_settings_to_json(self.line_settings))
             self.persistence.log_change(
-                Message("serial port: {settings}", settings=make_stored_settings(self.line_settings))
+                Message("serial port: {settings}", settings=convert_settings_to_json(self.line_settings))
             )
         except StoreError as error:
             self.desk.show_refusal(str(error))

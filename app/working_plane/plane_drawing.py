@@ -26,7 +26,7 @@ _PAN_STEP = 0.15  # ratio of the picture's smaller side
 
 
 @dataclass(frozen=True, slots=True)
-class ViewAspect:
+class ViewDirection:
     """View direction in degrees.
 
     ``azimuth_deg`` is the rotation about Z from the front (negative Y) to the right. ``elevation_deg`` is
@@ -39,10 +39,10 @@ class ViewAspect:
 
 
 VIEW_ASPECTS = (
-    ViewAspect("3-D", 46.0, 36.0),
-    ViewAspect("FRONT", 0.0, 0.0),
-    ViewAspect("RIGHT", 90.0, 0.0),
-    ViewAspect("TOP", 0.0, 90.0),
+    ViewDirection("3-D", 46.0, 36.0),
+    ViewDirection("FRONT", 0.0, 0.0),
+    ViewDirection("RIGHT", 90.0, 0.0),
+    ViewDirection("TOP", 0.0, 90.0),
 )
 
 
@@ -50,34 +50,34 @@ VIEW_ASPECTS = (
 class Camera:
     """Camera that looks at ``center_mm``, in mm and in machine coordinates.
 
-    At ``zoom_factor`` 1, a sphere with the radius ``radius_mm`` around the center fills the picture.
+    At ``zoom_factor`` 1, a sphere with the radius ``view_radius_mm`` around the center fills the picture.
     """
 
     center_mm: tuple[float, float, float]
-    radius_mm: float
-    aspect_index: int = 0
+    view_radius_mm: float
+    view_direction_index: int = 0
     zoom_factor: float = 1.0
-    offset_right: float = 0.0  # offset as a ratio of the picture's smaller side
-    offset_down: float = 0.0
+    offset_right_fraction: float = 0.0  # offset as a ratio of the picture's smaller side
+    offset_down_fraction: float = 0.0
 
     @property
-    def view_aspect(self) -> ViewAspect:
+    def view_direction(self) -> ViewDirection:
         """Return the selected view direction."""
-        return VIEW_ASPECTS[self.aspect_index % len(VIEW_ASPECTS)]
+        return VIEW_ASPECTS[self.view_direction_index % len(VIEW_ASPECTS)]
 
-    def with_next_aspect(self) -> Camera:
+    def with_next_view_direction(self) -> Camera:
         """Return a camera with the next view direction, zoomed so that everything is visible."""
         return replace(
             self,
-            aspect_index=(self.aspect_index + 1) % len(VIEW_ASPECTS),
+            view_direction_index=(self.view_direction_index + 1) % len(VIEW_ASPECTS),
             zoom_factor=1.0,
-            offset_right=0.0,
-            offset_down=0.0,
+            offset_right_fraction=0.0,
+            offset_down_fraction=0.0,
         )
 
     def with_full_view(self) -> Camera:
         """Return the camera zoomed and panned so that everything is visible."""
-        return replace(self, zoom_factor=1.0, offset_right=0.0, offset_down=0.0)
+        return replace(self, zoom_factor=1.0, offset_right_fraction=0.0, offset_down_fraction=0.0)
 
     def with_zoom(self, step_count: int) -> Camera:
         """Return the camera zoomed in by ``step_count`` steps, or zoomed out if it is negative."""
@@ -87,8 +87,8 @@ class Camera:
         """Return the camera moved to the right and down by a number of steps."""
         return replace(
             self,
-            offset_right=self.offset_right - _PAN_STEP * steps_right,
-            offset_down=self.offset_down - _PAN_STEP * steps_down,
+            offset_right_fraction=self.offset_right_fraction - _PAN_STEP * steps_right,
+            offset_down_fraction=self.offset_down_fraction - _PAN_STEP * steps_down,
         )
 
     @property
@@ -98,8 +98,8 @@ class Camera:
         They are the rows of a matrix.
         """
         around, above = (
-            math.radians(self.view_aspect.azimuth_deg),
-            math.radians(self.view_aspect.elevation_deg),
+            math.radians(self.view_direction.azimuth_deg),
+            math.radians(self.view_direction.elevation_deg),
         )
         ca, sa, ce, se = math.cos(around), math.sin(around), math.cos(above), math.sin(above)
         right, eye = (ca, sa, 0.0), (sa * ce, -ca * ce, se)
@@ -112,10 +112,10 @@ class Camera:
         The points and the result have the shape (n, 3). Depth increases towards the viewer.
         """
         size = min(width, height)
-        scale = self.zoom_factor * size / (2.0 * self.radius_mm)
+        scale = self.zoom_factor * size / (2.0 * self.view_radius_mm)
         found = (points - np.array(self.center_mm)) @ self.view_axes.T * scale
-        found[:, 0] += width / 2.0 + self.offset_right * size
-        found[:, 1] += height / 2.0 + self.offset_down * size
+        found[:, 0] += width / 2.0 + self.offset_right_fraction * size
+        found[:, 1] += height / 2.0 + self.offset_down_fraction * size
         return np.asarray(found)
 
 
@@ -175,7 +175,7 @@ def find_blank_diagonal_mm(scene: MillScene) -> float:
     return max(1.0, math.dist(low, high))
 
 
-def make_table_rim(scene: MillScene) -> FloatArray:
+def make_rotary_table_rim(scene: MillScene) -> FloatArray:
     """Return the rim of the table (n, 3) in machine coordinates with all axes at 0.
 
     The rim is a circle below the blank. It is centered on the axis of the first rotary table, and wide
@@ -250,7 +250,7 @@ class SceneDrawing:
 
 def make_camera(scene: MillScene) -> Camera:
     """Return a camera that shows the whole table, with the blank and the tool, at any tilt."""
-    table = make_table_rim(scene)
+    table = make_rotary_table_rim(scene)
     at = scene.kinematics.make_transform({}).convert_to_machine_position(find_blank_center(scene))
     reach = float(np.linalg.norm(table - np.array(at), axis=1).max())
     return Camera((at[0], at[1], at[2] + 0.1 * reach), 1.1 * reach)
@@ -275,7 +275,7 @@ def draw_scene(
         strokes=(
             *picture.make_path_strokes(),
             *picture.make_axis_strokes(),
-            *picture.make_rotation_strokes(),
+            *picture.make_rotary_axis_strokes(),
         ),
     )
 
@@ -310,7 +310,7 @@ class _ScenePicture:
             np.array(
                 [
                     zero.convert_to_frame_point(convert_row_to_tuple(row))
-                    for row in make_table_rim(self._scene)
+                    for row in make_rotary_table_rim(self._scene)
                 ]
             ),
         )
@@ -373,11 +373,11 @@ class _ScenePicture:
         Completed and remaining moves are separate strokes.
         """
         scene = self._scene
-        if not len(scene.points):
+        if not len(scene.tip_points):
             return []
-        done = scene.count_finished_points(self._instant.active_block)
-        keep = np.arange(0, len(scene.points), max(1, len(scene.points) // _MAX_POINTS))
-        seen = self._seen(transform_points(self._part, scene.points[keep]))
+        done = scene.count_finished_points(self._instant.active_block_number)
+        keep = np.arange(0, len(scene.tip_points), max(1, len(scene.tip_points) // _MAX_POINTS))
+        seen = self._seen(transform_points(self._part, scene.tip_points[keep]))
         ink, is_finished = scene.move_styles[keep], keep < done
         return [*_make_strokes(seen, ink, is_finished)]
 
@@ -401,7 +401,7 @@ class _ScenePicture:
             )
         return found
 
-    def make_rotation_strokes(self) -> list[DrawnStroke]:
+    def make_rotary_axis_strokes(self) -> list[DrawnStroke]:
         """Return the rotation axes of the tables in their current position."""
         scene, found = self._scene, []
         reach = 0.75 * find_blank_diagonal_mm(scene)

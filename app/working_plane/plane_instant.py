@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from app.desk.status.readouts import format_rotary_angle, name_system
+from app.desk.status.readouts import format_rotary_angle, get_coordinate_system_name
 
 if TYPE_CHECKING:
     from app.working_plane.plane_scene import MillScene
@@ -23,24 +23,24 @@ class SceneInstant:
 
     axis_positions: Mapping[str, float]
     plane_position: PlanePosition | None
-    active_block: int = 0
+    active_block_number: int = 0
 
 
-def make_run_instant(scene: MillScene, snapshot: Snapshot) -> SceneInstant:
+def make_instant_from_snapshot(scene: MillScene, snapshot: Snapshot) -> SceneInstant:
     """Return the instant that a snapshot shows."""
     axes = dict(zip(snapshot.axes, snapshot.actual, strict=True))
     axes |= {name: 0.0 for name in scene.kinematics.axis_names if name not in axes}
     return SceneInstant(axes, snapshot.swivel, snapshot.block)
 
 
-def make_line_instant(scene: MillScene, line_number: int) -> SceneInstant:
+def make_instant_after_line(scene: MillScene, line_number: int) -> SceneInstant:
     """Return the instant after a program line, with the rotary tables at the angles of its plane."""
     swivel = scene.find_plane(line_number)
     if swivel is None:
         return SceneInstant(dict.fromkeys(scene.kinematics.axis_names, 0.0), None)
     axes = dict(zip("XYZ", swivel.machine_position, strict=True))
     shown = zip(_AXES, swivel.rotary_angles, swivel.system.target_angles, strict=True)
-    tilted = line_number in scene.plane_lines and swivel.system.is_tilted
+    tilted = line_number in scene.plane_line_numbers and swivel.system.is_tilted
     zero = scene.kinematics.zero_angles
     axes |= {name: zero[name] + (target if tilted else at) for name, at, target in shown if at is not None}
     return SceneInstant(axes, swivel)
@@ -59,7 +59,7 @@ def describe_plane(swivel: PlanePosition | None) -> str:
     """Return one line with the name, angles and Z' direction of the plane, or an empty string."""
     if swivel is None:
         return ""
-    words = name_system(swivel)
+    words = get_coordinate_system_name(swivel)
     if not swivel.system.is_tilted:
         return words
     asked = "  ".join(

@@ -43,25 +43,26 @@ class MoveStyle(IntEnum):
 class MillScene:
     """Tool path and working planes of a mill program.
 
-    - ``points`` (n, 3): points of the tool tip
+    - ``tip_points`` (n, 3): points of the tool tip
     - ``move_styles`` and ``block_numbers`` (n,): style and block number of the move to each point
-    - ``planes_by_line``: plane after the first execution of a source line; ``sorted_lines`` are its keys
+    - ``planes_by_line``: plane after the first execution of a source line; ``sorted_line_numbers`` are its
+      keys
     - ``blank_corners``: corners of the blank, or default corners if the program does not define a blank
     """
 
     kinematics: Kinematics
-    points: FloatArray
+    tip_points: FloatArray
     move_styles: npt.NDArray[np.int8]
     block_numbers: npt.NDArray[np.int64]
     blank_corners: BlankCorners
     planes_by_line: dict[int, PlanePosition] = field(default_factory=dict)
-    sorted_lines: tuple[int, ...] = ()
-    plane_lines: frozenset[int] = frozenset()  # lines of PLANE blocks
+    sorted_line_numbers: tuple[int, ...] = ()
+    plane_line_numbers: frozenset[int] = frozenset()  # lines of PLANE blocks
 
     def find_plane(self, line_number: int) -> PlanePosition | None:
         """Return the plane after a source line, or after the nearest earlier line that generates a block."""
-        at = bisect_right(self.sorted_lines, line_number)
-        return self.planes_by_line[self.sorted_lines[at - 1]] if at else None
+        at = bisect_right(self.sorted_line_numbers, line_number)
+        return self.planes_by_line[self.sorted_line_numbers[at - 1]] if at else None
 
     def count_finished_points(self, block_number: int) -> int:
         """Return the number of path points that have been reached at the end of a block.
@@ -102,13 +103,13 @@ class SceneBuilder:
             return None
         return MillScene(
             kinematics=self._last.system.kinematics,
-            points=np.array(self._points).reshape(-1, 3),
+            tip_points=np.array(self._points).reshape(-1, 3),
             move_styles=np.array(self._ink, dtype=np.int8),
             block_numbers=np.array(self._block, dtype=np.int64),
             blank_corners=self._last.system.blank_corners or _EMPTY,
             planes_by_line=self._by_line,
-            sorted_lines=tuple(sorted(self._by_line)),
-            plane_lines=frozenset(self._planes),
+            sorted_line_numbers=tuple(sorted(self._by_line)),
+            plane_line_numbers=frozenset(self._planes),
         )
 
     def _to(self, point: Vector, ink: MoveStyle, block: int) -> None:

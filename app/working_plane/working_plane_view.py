@@ -83,14 +83,14 @@ class WorkingPlaneView(Panel):
         """
         if scene is self._scene:
             return
-        aspect = self._camera.aspect_index if self._camera is not None else 0
+        aspect = self._camera.view_direction_index if self._camera is not None else 0
         self._scene, self._instant = scene, None
         if scene is not None:
             from app.working_plane.plane_drawing import make_camera
             from app.working_plane.plane_instant import make_view_title
 
             self.title = make_view_title(scene.kinematics)
-            self._camera = replace(make_camera(scene), aspect_index=aspect)
+            self._camera = replace(make_camera(scene), view_direction_index=aspect)
         self.update()
 
     def show_instant(self, instant: SceneInstant, plane_text: str) -> None:
@@ -101,7 +101,7 @@ class WorkingPlaneView(Panel):
 
     def select_next_view(self) -> None:
         """Select the next view direction."""
-        self._look(self._camera.with_next_aspect() if self._camera else None)
+        self._look(self._camera.with_next_view_direction() if self._camera else None)
 
     def fit_all_panes(self) -> None:
         """Zoom and pan so that the whole table is visible."""
@@ -130,7 +130,7 @@ class WorkingPlaneView(Panel):
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Press a button of the view, or start a drag."""
-        if not self.press_at(event.position()):
+        if not self.press_target_at(event.position()):
             self._held = event.position()
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
@@ -204,7 +204,7 @@ class WorkingPlaneView(Panel):
         painter.draw_text_line(foot, self.words, 1.7, "text", raw=True)
         assert self._camera is not None
         button = QRectF(room.right() - 8 * u, room.top(), 8 * u, 3.4 * u)
-        self.key(painter, button, tr(self._camera.view_aspect.name), 1.6, self.select_next_view)
+        self.key(painter, button, tr(self._camera.view_direction.name), 1.6, self.select_next_view)
 
 
 def _polygon(points: FloatArray) -> QPolygonF:

@@ -31,7 +31,7 @@ This page is generated from `core/access/access_table.py` by
 """
 
 
-def make_page() -> str:
+def make_access_page() -> str:
     """Return the access-level page as text."""
     return _HEAD.format(never="\n".join(f"- {each}" for each in NEVER_PERMITTED)) + "".join(_lines())
 
@@ -40,18 +40,18 @@ def _lines() -> Iterator[str]:
     for level in AccessLevel:
         yield f"\n## {level.name}\n\n| what may be changed | page | command |\n|---|---|---|\n"
         for rule in ACCESS_RULES.values():
-            if rule.level is level:
+            if rule.minimum_level is level:
                 commands = (
-                    ", ".join(f"`{each.strip()}`" for each in rule.commands.split(","))
-                    if rule.commands
+                    ", ".join(f"`{each.strip()}`" for each in rule.commands_text.split(","))
+                    if rule.commands_text
                     else ""
                 )
-                yield f"| {rule.description} | {rule.page_names} | {commands} |\n"
+                yield f"| {rule.description} | {rule.pages_text} | {commands} |\n"
 
 
 def write_page(argv: list[str]) -> int:
     """Write the page to the file named in ``argv[0]``."""
-    Path(argv[0]).write_text(make_page(), encoding="utf-8")
+    Path(argv[0]).write_text(make_access_page(), encoding="utf-8")
     return 0
 
 

@@ -52,10 +52,10 @@ class ProtectedChange(Enum):
 class AccessRule:
     """Rule for a protected change: its minimum level, its description, and its pages and commands."""
 
-    level: AccessLevel
+    minimum_level: AccessLevel
     description: str
-    page_names: str
-    commands: str = ""
+    pages_text: str
+    commands_text: str = ""
 
 
 ACCESS_RULES: dict[ProtectedChange, AccessRule] = {
@@ -179,4 +179,4 @@ NEVER_PERMITTED = (
 
 def get_required_level(change: ProtectedChange) -> AccessLevel:
     """Return the minimum access level that a change requires."""
-    return ACCESS_RULES[change].level
+    return ACCESS_RULES[change].minimum_level

@@ -9,7 +9,7 @@ from __future__ import annotations
 from core.alarms.alarm_entry import AlarmCode as AlarmCode
 from core.alarms.alarm_entry import AlarmEntries
 from core.alarms.alarm_entry import AlarmEntry as AlarmEntry
-from core.alarms.alarm_entry import Reaction as Reaction
+from core.alarms.alarm_entry import AlarmReaction as AlarmReaction
 from core.alarms.axis_alarms import AXIS_ALARMS
 from core.alarms.bus_alarms import CONNECTION_ALARMS
 from core.alarms.control_alarms import CONTROL_ALARMS, PROGRAM_ALARMS, STOP_AND_HOLD_ALARMS

@@ -62,7 +62,7 @@ ControlAlarmCode = Literal[
 AlarmCode = Literal[FaultCode, ControlAlarmCode]
 
 
-class Reaction(Enum):
+class AlarmReaction(Enum):
     """The reaction of the machine to an alarm. One supervisor performs the reaction for all drivers."""
 
     DRIVES_OFF = (
@@ -89,11 +89,17 @@ class AlarmEntry(NamedTuple):
     text: str
     causes: tuple[str, ...]
     remedy: str
-    reaction: Reaction
+    reaction: AlarmReaction
     shows_detail: bool = False
 
 
 AlarmEntries = Mapping[AlarmCode, AlarmEntry]
 # Constructors of catalog entries, one for each reaction.
-off, stop = partial(AlarmEntry, reaction=Reaction.DRIVES_OFF), partial(AlarmEntry, reaction=Reaction.STOP)
-hold, asked = partial(AlarmEntry, reaction=Reaction.HOLD), partial(AlarmEntry, reaction=Reaction.REQUESTED)
+off, stop = (
+    partial(AlarmEntry, reaction=AlarmReaction.DRIVES_OFF),
+    partial(AlarmEntry, reaction=AlarmReaction.STOP),
+)
+hold, asked = (
+    partial(AlarmEntry, reaction=AlarmReaction.HOLD),
+    partial(AlarmEntry, reaction=AlarmReaction.REQUESTED),
+)

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from core.alarms import ALARM_SUBJECTS
-from core.alarms.alarm_entry import AlarmEntry, Reaction
+from core.alarms.alarm_entry import AlarmEntry, AlarmReaction
 from core.message import Message
-from core.page_contents import make_contents
+from core.page_contents import make_table_of_contents
 
 _HEAD = """\
 # Alarms, holds and stops
@@ -28,21 +28,21 @@ the program line and the drive's own text if they are known. Technical details a
 The kind in parentheses is what the alarm does:
 """
 _KINDS = {
-    Reaction.DRIVES_OFF: "alarm that switches the drives off",
-    Reaction.STOP: "alarm",
-    Reaction.HOLD: "hold",
-    Reaction.REQUESTED: "stop",
+    AlarmReaction.DRIVES_OFF: "alarm that switches the drives off",
+    AlarmReaction.STOP: "alarm",
+    AlarmReaction.HOLD: "hold",
+    AlarmReaction.REQUESTED: "stop",
 }
 
 
-def get_alarm_kind(reaction: Reaction) -> str:
+def get_alarm_kind(reaction: AlarmReaction) -> str:
     """Return the kind of alarm that causes a reaction."""
     return _KINDS[reaction]
 
 
 def render_page() -> str:
     """Return the alarm catalog page as text."""
-    head = _HEAD.format(contents=make_contents(title for title, _ in ALARM_SUBJECTS))
+    head = _HEAD.format(contents=make_table_of_contents(title for title, _ in ALARM_SUBJECTS))
     return "\n".join([head, *_legend(), *_subjects()]) + "\n"
 
 

@@ -15,7 +15,7 @@ from core.executor.hand_motion.jogging import make_travel_end_message
 from core.executor.machine_context import MachineContext
 from core.executor.machine_control import MachineControl
 from core.executor.snapshot import CYCLE_STATES, MDI_ACTIONS, MachineState, StartAction
-from core.executor.station_signals import StationWatch
+from core.executor.station_signals import StationSignalConverter
 from core.message import Message
 
 LAMP_TEST_S = 2.0  # s
@@ -30,7 +30,9 @@ _PROGRAM_RUNNING_REASON = (
 class CommandHandler:
     """A handler that executes commands on the executor's thread and logs the reason for each refusal."""
 
-    def __init__(self, context: MachineContext, control: MachineControl, station: StationWatch) -> None:
+    def __init__(
+        self, context: MachineContext, control: MachineControl, station: StationSignalConverter
+    ) -> None:
         self._context = context
         self._control = control
         self._station = station
@@ -46,14 +48,14 @@ class CommandHandler:
             commands.SetFeedOverride: self._override,
             commands.SetSpindleLimit: self._limit,
             commands.LoadJob: self._load_job,
-            commands.SupplyProof: self._prove,
-            commands.ReplaceClearances: self._store_clearances,
+            commands.SupplyJobProof: self._prove,
+            commands.ReplaceStartClearances: self._store_clearances,
             commands.ChangeOffsets: self._change_offsets,
             commands.ReportInterruptedJob: self._left,
-            commands.PrepareStart: self._prepare,
+            commands.PrepareCycleStart: self._prepare,
             commands.ConfirmStart: self._confirm,
             commands.SetPartCount: self._count,
-            commands.BlockNextPart: self._bar,
+            commands.PreventNextPart: self._bar,
             commands.Jog: self._jog,
             commands.JogByStep: self._step,
             commands.RunDriveTest: self._test,
@@ -63,12 +65,12 @@ class CommandHandler:
             commands.SelectHandwheel: lambda command: control.handwheel.select_axis(command, control.state),
             commands.DeselectHandwheel: lambda _: control.handwheel.deselect_axis(control.state),
             commands.HomeAxes: self._home,
-            commands.UseOffsets: self._offsets,
+            commands.UseOffsetTables: self._offsets,
             commands.StopSpindle: self._stop_spindle,
             commands.ForceOutput: self._force,
         }
 
-    def execute(self, command: commands.Command) -> None:
+    def execute_command(self, command: commands.Command) -> None:
         """Execute a command, or log why the command is refused. Raises DriverError if a driver fails."""
         self._methods[type(command)](command)
 
@@ -165,21 +167,21 @@ class CommandHandler:
                 comment=""
             )  # the comment belongs to the previous program
         self._control.program_run.interruption_watch.handle_loaded_job(command.job)
-        status.job, status.proof, status.start_refusal = command.job, command.proof, ""
+        status.job, status.proof, status.start_refusal_reason = command.job, command.proof, ""
         self._control.program_run.changed_offsets.discard_request()
         if status.start_action is StartAction.RESTART:
-            self._prepare(commands.PrepareStart(StartAction.RESTART))
+            self._prepare(commands.PrepareCycleStart(StartAction.RESTART))
         self._context.log_text("load", command.job.source.name)
 
-    def _prove(self, command: commands.SupplyProof) -> None:
+    def _prove(self, command: commands.SupplyJobProof) -> None:
         self._control.status.proof = command.proof
 
-    def _store_clearances(self, command: commands.ReplaceClearances) -> None:
+    def _store_clearances(self, command: commands.ReplaceStartClearances) -> None:
         """Store new clearances for the first move, and clear a start refusal caused by the old ones."""
         status = self._control.status
         if status.start_refusal_code:
-            status.start_refusal = status.start_refusal_code = ""
-        status.clearances = command.clearances
+            status.start_refusal_reason = status.start_refusal_code = ""
+        status.start_clearances = command.clearances
 
     def _change_offsets(self, command: commands.ChangeOffsets) -> None:
         """Accept changed offsets immediately between programs, otherwise at the end of the current part."""
@@ -190,21 +192,21 @@ class CommandHandler:
         elif self._control.state not in CYCLE_STATES:
             changed_offsets.apply_changes(status)
 
-    def _prepare(self, command: commands.PrepareStart) -> None:
+    def _prepare(self, command: commands.PrepareCycleStart) -> None:
         if self._control.state in CYCLE_STATES:
             self._refuse(_PROGRAM_RUNNING_REASON)
             return
         status = self._control.status
         self._control.program_run.interruption_watch.withdraw_confirmation()
-        status.start_action, status.start_refusal, status.start_refusal_code = command.starts, "", ""
+        status.start_action, status.start_refusal_reason, status.start_refusal_code = command.starts, "", ""
         status.prepared_job, status.prepared_proof = command.job, command.proof
-        status.prepared_clearance = command.clearance
+        status.prepared_start_clearance = command.clearance
         if command.job is not None and command.starts is StartAction.RESTART:
             self._control.confirmed_at = self._context.now
 
     def _confirm(self, command: commands.ConfirmStart) -> None:
         why = self._control.program_run.interruption_watch.confirm_start(command.at)
-        self._control.status.start_refusal = ""
+        self._control.status.start_refusal_reason = ""
         if why:
             self._refuse(why)
         elif command.at:
@@ -219,10 +221,10 @@ class CommandHandler:
             command.left, is_logged=command.logged
         )
 
-    def _bar(self, command: commands.BlockNextPart) -> None:
+    def _bar(self, command: commands.PreventNextPart) -> None:
         status = self._control.status
-        if command.why != status.next_part_block_reason:
-            status.next_part_block_reason, status.start_refusal = command.why, ""
+        if command.why != status.next_part_inhibit_reason:
+            status.next_part_inhibit_reason, status.start_refusal_reason = command.why, ""
             self._context.log_text(
                 "switch",
                 Message("no more parts may be run: {why}", why=command.why)
@@ -241,8 +243,10 @@ class CommandHandler:
                 "the jog button was released"
             )  # The screen has not yet seen that the button was released.
             return
-        why = control.jog_end_reason or control.handwheel.find_jog_refusal(control.state)
-        why = why or jogger.find_jog_refusal(command.axis, command.velocity, command.lease, command.along)
+        why = control.jog_end_reason or control.handwheel.find_jog_refusal_reason(control.state)
+        why = why or jogger.find_jog_refusal_reason(
+            command.axis, command.velocity, command.lease, command.along
+        )
         if why:
             jogger.stop()
             self._refuse(Message("jog: {why}", why=why))
@@ -256,8 +260,10 @@ class CommandHandler:
         control, jogger = self._control, self._control.jogger
         if self._may_not_jog():
             return
-        why = control.handwheel.find_jog_refusal(control.state)
-        why = why or jogger.find_step_refusal(command.axis, command.distance, command.speed, command.along)
+        why = control.handwheel.find_jog_refusal_reason(control.state)
+        why = why or jogger.find_step_refusal_reason(
+            command.axis, command.distance, command.speed, command.along
+        )
         if not why:
             jogger.start_step(command.axis, command.distance, command.speed, command.along)
             control.change_state(MachineState.JOG)
@@ -270,8 +276,8 @@ class CommandHandler:
         control, jogger = self._control, self._control.jogger
         if self._may_not_jog():
             return
-        why = control.handwheel.find_jog_refusal(control.state)
-        why = why or control.drive_tester.find_refusal(command.path, command.lease)
+        why = control.handwheel.find_jog_refusal_reason(control.state)
+        why = why or control.drive_tester.find_refusal_reason(command.path, command.lease)
         if why:
             jogger.stop()  # A drive test and another motion at the same time are contradictory.
             self._refuse(Message("drive test: {why}", why=why))
@@ -313,7 +319,7 @@ class CommandHandler:
 
     # --- manual functions between programs ----------------------------------------------------------------
 
-    def _offsets(self, command: commands.UseOffsets) -> None:
+    def _offsets(self, command: commands.UseOffsetTables) -> None:
         if self._control.state in CYCLE_STATES:
             self._refuse("the running program uses the offsets with which it was proved")
             return

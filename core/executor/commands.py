@@ -16,7 +16,7 @@ from core.executor.hand_motion.jog_line import Direction
 from core.executor.job import Job, Proof
 from core.executor.snapshot import InterruptedJob, StartAction
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
-from core.plain_value import PlainValue
+from core.plain_value import ValueObject
 
 POSITION_TOLERANCE_MM: Final = (
     0.01  # mm, largest distance between the checked position and the start position
@@ -28,7 +28,7 @@ FIRST_MOVE_CROSSES: Final = "first-move-crosses"
 
 
 @dataclass(frozen=True, slots=True)
-class Clearance:
+class StartClearance:
     """The result of checking the first move of a job from one position of the axes.
 
     - ``job``: digest of the job; ``at``: position in machine coordinates in mm
@@ -57,14 +57,14 @@ class Clearance:
         return all(abs(a - b) <= POSITION_TOLERANCE_MM for a, b in zip(self.at, position, strict=False))
 
 
-def find_clearance(
-    clearances: Iterable[Clearance],
+def find_start_clearance(
+    clearances: Iterable[StartClearance],
     job_digest: str,
     position: Sequence[float],
     run_count: int,
     *,
     for_repeat: bool = False,
-) -> Clearance | None:
+) -> StartClearance | None:
     """Return the clearance for starting this job from ``position``, or None if not yet computed.
 
     If ``for_repeat`` is True, only clearances for Cycle Repeat are searched.
@@ -77,7 +77,7 @@ def find_clearance(
     return next(found, None)
 
 
-class Command(PlainValue):
+class Command(ValueObject):
     """Base class of all commands that can be posted to the executor.
 
     Commands that have to be copied with another job are dataclasses.
@@ -97,7 +97,7 @@ class LoadJob(Command):
     proof: Proof | None = None
 
 
-class SupplyProof(Command):
+class SupplyJobProof(Command):
     """A command that supplies the proof of the loaded job if proving finished only after loading."""
 
     __slots__ = __match_args__ = ("proof",)
@@ -327,7 +327,7 @@ class HomeAxes(Command):
         self.axis: Final = axis
 
 
-class UseOffsets(Command):
+class UseOffsetTables(Command):
     """A command that applies changed offset tables to the position display and to MDI.
 
     The command is refused while a program runs, because the program uses the offsets with which it was
@@ -383,16 +383,16 @@ class SetPartCount(Command):
         self.parts: Final = parts
 
 
-class ReplaceClearances(Command):
+class ReplaceStartClearances(Command):
     """A command that replaces all clearances for the first move of the next start."""
 
     __slots__ = __match_args__ = ("clearances",)
 
-    def __init__(self, clearances: tuple[Clearance, ...]) -> None:
+    def __init__(self, clearances: tuple[StartClearance, ...]) -> None:
         self.clearances: Final = clearances
 
 
-class BlockNextPart(Command):
+class PreventNextPart(Command):
     """A command that prevents the start of the next part, for the reason ``why``.
 
     An empty ``why`` permits the start again. Restarts and MDI remain possible.
@@ -405,7 +405,7 @@ class BlockNextPart(Command):
 
 
 @dataclass(frozen=True, slots=True)
-class PrepareStart(Command):
+class PrepareCycleStart(Command):
     """A command that selects what the next Cycle Start runs: the program, a restart or an MDI line.
 
     An MDI line needs a job with its proof. ``StartAction.MDI_LINE`` without a job means that MDI is open
@@ -416,7 +416,7 @@ class PrepareStart(Command):
     starts: StartAction = StartAction.PROGRAM
     job: Job | None = None
     proof: Proof | None = None
-    clearance: Clearance | None = None
+    clearance: StartClearance | None = None
 
 
 MOTION_COMMAND_TYPES = (

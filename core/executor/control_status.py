@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from core.executor.commands import Clearance
+from core.executor.commands import StartClearance
 from core.executor.job import Job, Proof
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import Alarm, InterruptedJob, LogEvent, MachineState, StartAction
@@ -21,8 +21,8 @@ from core.message import Message
 class Counters:
     """Counts and times since the executor was started.
 
-    Times are in seconds and exclude stops. ``load_sum`` is a pair: the integral of the spindle load
-    (percent) over the cutting time, and this cutting time in seconds.
+    Times are in seconds and exclude stops. ``spindle_load_totals`` is a pair: the integral of the spindle
+    load (percent) over the cutting time, and this cutting time in seconds.
     """
 
     counted_part_count: int = 0
@@ -38,7 +38,10 @@ class Counters:
     # seconds at feed by tool number, without dry runs
     cutting_times_s: Mapping[int, float] = field(default_factory=dict)
 
-    load_sum: tuple[float, float] = (0.0, 0.0)  # spindle load at feed in this part: per cent · s, and s
+    spindle_load_totals: tuple[float, float] = (
+        0.0,
+        0.0,
+    )  # spindle load at feed in this part: per cent · s, and s
 
     def add_cutting_time(self, tool: int, seconds: float, load_percent: float | None = None) -> None:
         """Add cutting time at feed for a tool, and the spindle load in percent if it is known.
@@ -47,14 +50,17 @@ class Counters:
         """
         self.cutting_times_s = {**self.cutting_times_s, tool: self.cutting_times_s.get(tool, 0.0) + seconds}
         if load_percent is not None:
-            self.load_sum = self.load_sum[0] + load_percent * seconds, self.load_sum[1] + seconds
+            self.spindle_load_totals = (
+                self.spindle_load_totals[0] + load_percent * seconds,
+                self.spindle_load_totals[1] + seconds,
+            )
 
-    def pop_mean_load(self) -> float | None:
+    def pop_mean_spindle_load(self) -> float | None:
         """Return the mean spindle load at feed for the part that ends, in percent, or None if unknown.
 
         The call resets the sum for the next part.
         """
-        (borne, seconds), self.load_sum = self.load_sum, (0.0, 0.0)
+        (borne, seconds), self.spindle_load_totals = self.spindle_load_totals, (0.0, 0.0)
         return borne / seconds if seconds > 0.0 else None
 
 
@@ -67,15 +73,15 @@ class ControlStatus:
     proof: Proof | None = None
     alarms: tuple[Alarm, ...] = ()
     are_drives_switched_off: bool = False  # an alarm has switched the drives off
-    start_refusal: str = ""
+    start_refusal_reason: str = ""
     start_refusal_code: str = ""  # code of the refusal if the first move caused it
     start_action: StartAction = StartAction.PROGRAM
     prepared_job: Job | None = None  # the restart or the MDI line that Cycle Start begins
     prepared_proof: Proof | None = None
-    requires_clearance: bool = False  # a cycle starts only with a clearance for its first move
-    clearances: tuple[Clearance, ...] = ()  # clearances for the program
-    prepared_clearance: Clearance | None = None  # clearance for the prepared job
-    next_part_block_reason: str = ""  # why no other part may start, as posted with ``BarNextPart``
+    requires_start_clearance: bool = False  # a cycle starts only with a clearance for its first move
+    start_clearances: tuple[StartClearance, ...] = ()  # clearances for the program
+    prepared_start_clearance: StartClearance | None = None  # clearance for the prepared job
+    next_part_inhibit_reason: str = ""  # why no other part may start, as posted with ``BarNextPart``
     is_tool_move_pending: bool = False  # MDI has called a tool that has not moved yet
     saved_pass: SavedPass[Any] | None = None  # state that MDI lines in other languages have left in force
     interrupted_job: InterruptedJob | None = None  # a program that did not reach its end
@@ -125,7 +131,9 @@ def sync_modal_state_with_machine(modal: ModalState, context: MachineContext) ->
     compensation and coordinate transformation (plane switching) end with their program.
     """
     on = {name for name, lit in context.ports.io.get_outputs().items() if lit}
-    assigned = {name for name, _ in context.machine.m_codes.values()} | {context.machine.live_tool_output}
+    assigned = {name for name, _ in context.machine.m_code_outputs.values()} | {
+        context.machine.live_tool_output
+    }
     asked = context.spindle.is_requested
     return modal._replace(
         spindle=modal.spindle if asked else 0,
@@ -145,7 +153,9 @@ def apply_offsets_to_modal_state(
     """Return the modal state with the offsets of its tool and D number from the given tables."""
     tool = tools.get(modal.tool, ToolOffset()) if modal.tool else ToolOffset()
     pair = secondary.get(modal.secondary, SecondaryOffset()) if modal.secondary else SecondaryOffset()
-    return modal._replace(tool_x=tool.x, tool_z=tool.z, secondary_x=pair.x, secondary_z=pair.z)
+    return modal._replace(
+        tool_offset_x=tool.x, tool_offset_z=tool.z, secondary_offset_x=pair.x, secondary_offset_z=pair.z
+    )
 
 
 class Workpiece:
@@ -183,7 +193,7 @@ class Workpiece:
         self._begun, self._whole, self.is_restarted, self.disturbance = 0, True, False, ""
 
     @property
-    def uncounted_reason(self) -> str:
+    def not_counted_reason(self) -> str:
         """Return why the end of the program does not count as a part, or an empty string if it counts."""
         if self.disturbance:
             return Message(
@@ -203,17 +213,17 @@ class PartCounter:
         self.workpiece = Workpiece()
 
     @property
-    def uncounted_reason(self) -> str:
+    def not_counted_reason(self) -> str:
         """Return why the running program will not count as a part, or an empty string if it will."""
-        return "NO COUNT is on" if self._context.switches.no_count else self.workpiece.uncounted_reason
+        return "NO COUNT is on" if self._context.switches.no_count else self.workpiece.not_counted_reason
 
     def record_program_end(self) -> None:
         """Count the part, if it is valid, and log the end of the program.
 
         The duration of a restart is not stored as a cycle time.
         """
-        counters, seconds, why = self.counters, self.counters.cycle_time_s, self.uncounted_reason
-        counters.cycle_time_s, load = 0.0, counters.pop_mean_load()
+        counters, seconds, why = self.counters, self.counters.cycle_time_s, self.not_counted_reason
+        counters.cycle_time_s, load = 0.0, counters.pop_mean_spindle_load()
         counters.program_end_count += 1
         if not self.workpiece.is_restarted:
             counters.last_cycle_time_s, counters.timed_cycle_count = seconds, counters.timed_cycle_count + 1

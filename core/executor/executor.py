@@ -22,8 +22,8 @@ from core.executor.machine_context import MachineContext
 from core.executor.machine_control import MachineControl
 from core.executor.raised_alarm import (
     AlarmError,
-    CaughtAttempt,
-    ReportedAttempt,
+    ErrorCatcher,
+    ErrorReporter,
     format_log_line,
     log_alarm,
     make_alarm,
@@ -41,9 +41,9 @@ from core.executor.snapshot import (
 from core.executor.snapshot_publisher import SnapshotPublisher
 from core.executor.spindle_control import SpindleControl
 from core.executor.start_conditions import is_guard_open
-from core.executor.station_signals import CommandedOutputs, StationWatch
+from core.executor.station_signals import CommandedOutputs, StationSignalConverter
 from core.faults import TrippedError
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.machine.machine_model import Machine
 from core.message import Message
 from core.motion.axis_limits import MotionError
@@ -79,7 +79,7 @@ class RestDetector:
         """Restore the normal tick rate for at least 1 s because a command or a change arrived."""
         self._same = -1
 
-    def detect_change(self) -> bool:
+    def detect_machine_change(self) -> bool:
         """Compare the machine with the previous tick; return whether a new snapshot is needed.
 
         Most of the time of a tick is spent on making the snapshot, so that the comparison saves time.
@@ -87,7 +87,7 @@ class RestDetector:
         context, status = self._context, self._control.status
         seen: tuple[object, ...] = ()
         with (
-            CaughtAttempt() as look
+            ErrorCatcher() as look
         ):  # The code that needs the missing value reports a driver that fails here.
             seen = (
                 status.state,
@@ -118,20 +118,20 @@ class RestDetector:
         If the machine is not at rest or its drivers cannot wake the executor, return False at once.
         """
         wakeup = self._wakeup
-        if wakeup is None or not self._is_safe_at_rest() or not wakeup.is_settled():
+        if wakeup is None or not self._is_safe_at_rest() or not wakeup.can_rely_on_wakeups():
             return False
         if wakeup.wait_for_wakeup(REST_TICK_S):
             self.restore_tick_rate()
         return True
 
     @property
-    def is_settled(self) -> bool:
+    def is_at_rest(self) -> bool:
         """Return whether no value has changed for 1 s."""
         return self._same >= _SETTLED_TICKS
 
     def _is_safe_at_rest(self) -> bool:
         """Return whether the spindle is stopped and every output is in its E-stop state."""
-        if not self.is_settled or self._control.handwheel.axis:
+        if not self.is_at_rest or self._control.handwheel.axis:
             return False
         context = self._context
         outputs, models = context.ports.io.get_outputs(), context.machine.outputs
@@ -148,7 +148,7 @@ def _ignore_interruption(_what: InterruptedJob | None) -> None:
 
 def _css_function(ports: MachinePorts) -> Callable[[float], None]:
     """Return the function to call with the highest spindle speed before each speed command."""
-    return ports.blocks.prepare_css if ports.blocks is not None else lambda _: None
+    return ports.blocks.announce_css_max_rpm if ports.blocks is not None else lambda _: None
 
 
 class Executor:
@@ -167,7 +167,7 @@ class Executor:
         machine: Machine,
         ports: MachinePorts,
         on_event: Callable[[LogEvent], None],
-        start_pass: Callable[[Job, Setup], ProgramPass] = start_program_pass,
+        start_pass: Callable[[Job, InterpreterSetup], ProgramPass] = start_program_pass,
         store_interruption: StoreFunction = _ignore_interruption,
         interrupted_job: InterruptedJob | None = None,
         record_tick: Callable[[TickData], None] | None = None,
@@ -199,9 +199,9 @@ class Executor:
             dict(ports.io.inputs()),
             outputs,
         )
-        self._station = StationWatch()
+        self._station = StationSignalConverter()
         self._control = MachineControl(self._context, start_pass, store_interruption, interrupted_job)
-        self._control.status.requires_clearance = checks_starts
+        self._control.status.requires_start_clearance = checks_starts
         self._handler = CommandHandler(self._context, self._control, self._station)
         self._lamps = SignalLamps(self._context, ports.io)
         self._publisher = SnapshotPublisher()
@@ -245,7 +245,7 @@ class Executor:
         Return whether the executor waited; return False at once if the machine is not at rest. The function
         must be called on the executor's thread.
         """
-        with ReportedAttempt(self.handle_failure):
+        with ErrorReporter(self.handle_failure):
             if self._commands.empty() and self._rest.wait_for_wakeup():
                 self._due = self._context.now + REST_TICK_S
                 return True
@@ -256,7 +256,7 @@ class Executor:
 
         The function is called every 10 to 20 ms. It raises no exceptions; failures become alarms.
         """
-        with ReportedAttempt(self.handle_failure) as look:
+        with ErrorReporter(self.handle_failure) as look:
             self._look()
         if look.error is not None:
             self._handle_failed_read()
@@ -266,15 +266,15 @@ class Executor:
         self._lamps.update_lamps(
             self._control.state,
             self._control.counters.program_end_count,
-            is_next_part_blocked=bool(status.next_part_block_reason),
+            is_next_part_blocked=bool(status.next_part_inhibit_reason),
         )
         self._record_delay(self._context.now - self._due)
         self._due = self._context.now + TICK_PAUSE_S
-        if self._rest.detect_change():
+        if self._rest.detect_machine_change():
             self._publish_snapshot()
             self._pass_to_recorder()
         if self._rest.changed_at_rest:
-            with CaughtAttempt():
+            with ErrorCatcher():
                 self.on_change_at_rest()
         self.is_waiting_for_drive = False
         self.tick_count += 1
@@ -291,7 +291,7 @@ class Executor:
             words = "the computer is busy: a feed hold reacts up to {seconds} s later"
             self._context.log_text("late", Message(words, seconds=f"{lateness.hold_delay_s:.1f}"))
 
-    def report_unresponsive(self, reason: str) -> None:
+    def show_unresponsive_alarm(self, reason: str) -> None:
         """Show an alarm because the watchdog has halted the machine.
 
         The watchdog halts the machine if the executor does not respond, and calls this function on its own
@@ -321,13 +321,13 @@ class Executor:
 
         The function raises no exceptions.
         """
-        with ReportedAttempt(self.handle_failure):
+        with ErrorReporter(self.handle_failure):
             self._control.shut_down()
         self._publish_snapshot()
 
     def _publish_snapshot(self) -> None:
         """Publish a snapshot; if the machine cannot be read, update only the state and the alarms."""
-        with ReportedAttempt(self.handle_failure) as publishing:
+        with ErrorReporter(self.handle_failure) as publishing:
             self.snapshot = self._publish()
         if publishing.error is not None:
             status = self._control.status
@@ -342,13 +342,13 @@ class Executor:
         """
         if self._tell is None:
             return
-        with CaughtAttempt() as trial:
+        with ErrorCatcher() as trial:
             now, source = self._context.now, self._ports.samples
             late, self._late = self._late, 0.0
-            samples = source.take() if source is not None else None
-            self._context.record_load(samples)
+            samples = source.take_samples() if source is not None else None
+            self._context.record_spindle_load(samples)
             queued = math.nan if source is not None else max(self._ports.axes.horizon() - now, 0.0)
-            turns, rests = self._context.spindle.angle.latest_revolutions, self._rest.is_settled
+            turns, rests = self._context.spindle.angle.latest_revolutions, self._rest.is_at_rest
             self._tell(TickData(self.snapshot, late, queued, turns, samples, rests))
         if trial.error is not None and not self._missed:
             self._missed = True  # Logged once, because the error may occur in every tick.
@@ -358,7 +358,7 @@ class Executor:
         """Discard the start signal after a failed read, but obey the E-stop."""
         context = self._context
         context.station_signals = context.station_signals._replace(is_start_requested=False)
-        with CaughtAttempt():
+        with ErrorCatcher():
             context.station_signals = context.station_signals._replace(
                 is_estop_pressed=self._ports.station.read_state().estop
             )
@@ -420,7 +420,7 @@ class Executor:
         control.handle_estop(signals.is_estop_pressed)
         for command in self._posted():
             self.is_waiting_for_drive = self.is_waiting_for_drive or isinstance(command, BLOCKING_COMMANDS)
-            self._run_guarded(partial(self._handler.execute, command))
+            self._run_guarded(partial(self._handler.execute_command, command))
         if signals.is_hold_requested:
             control.start_feed_hold("", "the feed hold button on the operator station")
         elif signals.station_fault:
@@ -475,7 +475,7 @@ class Executor:
 
     def _run_guarded(self, part: Callable[[], None]) -> None:
         """Run one part of a tick and convert its errors to alarms, so that the other parts still run."""
-        with ReportedAttempt(self.handle_failure):
+        with ErrorReporter(self.handle_failure):
             try:
                 part()
             except AlarmError as alarm_error:

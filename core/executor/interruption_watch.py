@@ -36,7 +36,7 @@ _SETTLED_S = 0.2  # s at rest after which the tool position is final
 _CONFIRMATION_VALID_S = 60.0  # s for which a confirmation of the operator is valid
 
 
-class InterruptionWatch:
+class InterruptionRecorder:
     """Storage, in advance, of the job that a power loss would interrupt.
 
     A power loss leaves no time to write. The state is therefore stored before a cycle starts, at each part,
@@ -186,15 +186,15 @@ class InterruptionWatch:
         self._answered = None
 
     @property
-    def is_confirmed(self) -> bool:
+    def is_start_confirmed(self) -> bool:
         """Return whether the operator has confirmed a start at the first line within the last 60 s."""
         return self._answered is not None and self._context.now - self._answered <= _CONFIRMATION_VALID_S
 
     @property
-    def start_refusal(self) -> str:
+    def start_refusal_reason(self) -> str:
         """Return why a start at the first line needs a confirmation, or an empty string if it does not."""
         found = self._status.interrupted_job
-        if found is None or self._status.start_action is not StartAction.PROGRAM or self.is_confirmed:
+        if found is None or self._status.start_action is not StartAction.PROGRAM or self.is_start_confirmed:
             return ""
         job = self._status.job
         there = job is None or job.source.dialect is Dialect.OMNITURN

@@ -18,7 +18,7 @@ from core.interpreter.dialects import SharedProgram, interpret_mdi_line
 from core.interpreter.omniturn.setup.inherited_state import RAPID, UNITS, find_inherited_settings
 from core.interpreter.shared.checkpoint import Checkpoint
 from core.interpreter.shared.elementary_blocks import Block, BlockKind, SectionEndDetector
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.interpreter.shared.machine_requirements import MachineRequirement
 from core.interpreter.shared.modal_state import ModalState
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
@@ -42,7 +42,7 @@ class ProgramPass(NamedTuple):
     make_checkpoint: Callable[[], Checkpoint] | None = None
 
 
-class BlockReadAhead:
+class ReadAheadQueue:
     """Reader that reads the blocks of a program pass ahead of the motion.
 
     ``pending_blocks`` are the blocks of one path section. ``stop`` is the next block that needs a
@@ -79,13 +79,15 @@ class BlockReadAhead:
         A thread is always read to the end of its pull-out, even if the pending motion is then longer.
         """
         for _ in range(max_block_count):
-            if self.is_exhausted or (self.pending_motion_s >= max_motion_s and not self._ends.is_in_thread):
+            if self.is_exhausted or (
+                self.pending_motion_s >= max_motion_s and not self._ends.is_in_thread_pass
+            ):
                 return
             block = self._next()
             if block is not None:
                 self._sort(block)
 
-    def take_pending_blocks(self) -> list[Block]:
+    def pop_pending_blocks(self) -> list[Block]:
         """Remove the pending blocks from the reader and return them, so that they can be executed."""
         taken = list(self.pending_blocks)
         self.pending_blocks.clear()
@@ -199,10 +201,10 @@ class Job:
     """
 
     source: ProgramSource
-    setup: Setup
+    setup: InterpreterSetup
     digest: str
     shared_program: SharedProgram = field(compare=False, repr=False)
-    set_tool_numbers: frozenset[int] = frozenset()  # numbers of the tool offsets that have been entered
+    entered_tool_numbers: frozenset[int] = frozenset()  # numbers of the tool offsets that have been entered
     retained_settings: frozenset[str] = (
         frozenset()
     )  # settings that the program inherits from the previous job
@@ -231,10 +233,10 @@ class Proof:
 
     def unset(self, job: Job) -> list[int]:
         """Return the numbers of the tools that have no offset set and that the program does not measure."""
-        return sorted(set(self.tool_numbers) - job.set_tool_numbers - set(self.measured_tools))
+        return sorted(set(self.tool_numbers) - job.entered_tool_numbers - set(self.measured_tools))
 
 
-def make_job(source: ProgramSource, setup: Setup, whole_job: Job | None = None) -> Job:
+def make_job(source: ProgramSource, setup: InterpreterSetup, whole_job: Job | None = None) -> Job:
     """Return the job of a program with its setup.
 
     If the job starts in the middle of a program, ``whole_job`` is the job of the whole program. The digest
@@ -247,7 +249,7 @@ def make_job(source: ProgramSource, setup: Setup, whole_job: Job | None = None) 
         sorted(setup.zero.items()),
         sorted(setup.r.items()),
         (
-            sorted(setup.limits.m_outputs.items()),
+            sorted(setup.limits.m_code_outputs.items()),
             sorted(setup.limits.ignored_m_codes),
             setup.limits.control_model,
             setup.limits.third_axis_name,
@@ -295,7 +297,7 @@ def find_outdated_setting(job: Job, present_modal: ModalState) -> str:
 # --- interpretation of a job ----------------------------------------------------------------------------
 
 
-def start_program_pass(job: Job, setup: Setup) -> ProgramPass:
+def start_program_pass(job: Job, setup: InterpreterSetup) -> ProgramPass:
     """Start one pass through a job.
 
     The blocks end at the first error; ``get_diagnostics`` then returns this error.
@@ -311,6 +313,8 @@ def start_program_pass(job: Job, setup: Setup) -> ProgramPass:
     )
 
 
-def make_start_setup(setup: Setup, start: tuple[float, ...], is_input_on: Callable[[str], bool]) -> Setup:
+def make_start_setup(
+    setup: InterpreterSetup, start: tuple[float, ...], is_input_on: Callable[[str], bool]
+) -> InterpreterSetup:
     """Return the setup of a job with the start position of the axes and the live inputs."""
     return dataclasses.replace(setup, start=start, inputs=is_input_on)

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from core.alarms import AlarmCode
-from core.executor.raised_alarm import CaughtAttempt, format_log_line, make_alarm
+from core.executor.raised_alarm import ErrorCatcher, format_log_line, make_alarm
 from core.executor.snapshot import Alarm, LogEvent
 from core.executor.spindle_control import SpindleControl
 from core.executor.station_signals import CommandedOutputs, StationSignals
@@ -64,14 +64,14 @@ class MachineContext:
     _borne: float | None = None  # spindle load of the latest driver sample, per cent
 
     def __post_init__(self) -> None:
-        self.tick_lateness = TickLateness(self.machine.timing.lookahead)
+        self.tick_lateness = TickLateness(self.machine.timing.lookahead_time_s)
 
     @property
     def spindle_load(self) -> float | None:
         """Return the spindle load in percent from the machine's input or the driver, or None if unknown."""
         return self._borne if self.station_signals.spindle_load is None else self.station_signals.spindle_load
 
-    def record_load(self, samples: FloatArray | None) -> None:
+    def record_spindle_load(self, samples: FloatArray | None) -> None:
         """Store the spindle load of the newest driver sample.
 
         ``samples`` has the shape (n, 5 + 3 axes). ``core.ports.SampleSource`` describes the columns.
@@ -114,7 +114,7 @@ class MachineContext:
 
     def log_event(self, event: LogEvent) -> None:
         """Pass an event to the event log. A failure of the log is reported but has no other effect."""
-        with CaughtAttempt() as trial:
+        with ErrorCatcher() as trial:
             self.handle_event(event)
         if trial.error is not None:
             _log.error("an event was lost: %s", event, exc_info=trial.error)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from core.alarms import AlarmCode, Reaction
+from core.alarms import AlarmCode, AlarmReaction
 from core.alarms.bus_alarms import CONNECTION_LOSS_CODES
 from core.executor import start_conditions
 from core.executor.control_status import make_power_up_modal_state
@@ -19,13 +19,13 @@ from core.executor.program_motion.cycle import Cycle
 from core.executor.program_run import ProgramRun
 from core.executor.raised_alarm import (
     AlarmError,
-    CaughtAttempt,
+    ErrorCatcher,
     format_log_line,
     log_alarm,
     make_alarm_and_reaction,
 )
 from core.executor.safety.safe_stop import SafeStop
-from core.executor.safety.supervision import OutputWatch, Supervisor
+from core.executor.safety.supervision import OutputMonitor, Supervisor
 from core.executor.snapshot import (
     ACTIVE_STATES,
     CLOSED_REASON,
@@ -40,7 +40,7 @@ from core.executor.snapshot import (
 )
 from core.executor.start_conditions import SPINDLE_FUNCTION, StartAnnouncement
 from core.executor.start_warnings import StartWarnings
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.interpreter.shared.modal_state import ModalState
 from core.message import Message
 from core.ports import UnknownPart
@@ -67,7 +67,7 @@ class MachineControl:
     def __init__(
         self,
         context: MachineContext,
-        start_pass: Callable[[Job, Setup], ProgramPass],
+        start_pass: Callable[[Job, InterpreterSetup], ProgramPass],
         store_interruption: StoreFunction,
         interrupted_job: InterruptedJob | None,
     ) -> None:
@@ -86,11 +86,11 @@ class MachineControl:
         self.touch_off = TouchOff(context, self.jogger)
         self.homing = Homing(context)
         self.announcement = StartAnnouncement()
-        self.outputs_watch = OutputWatch(context, self.program_run)
+        self.outputs_watch = OutputMonitor(context, self.program_run)
         warnings = StartWarnings(context, self.status, self.counters)
         self.announcement.sources += [
             warnings.iter_spindle_starts,
-            self.outputs_watch.list_restart_outputs,
+            self.outputs_watch.iter_output_announcements,
             warnings.iter_proof_warnings,
             warnings.iter_first_move_warnings,
         ]
@@ -139,15 +139,15 @@ class MachineControl:
             return
         if state in STOPPED_STATES and cycle is not None:
             if not self.refuse_start(
-                start_conditions.find_station_refusal(self._context)
-                or cycle.find_resume_refusal()
+                start_conditions.find_station_inhibit_reason(self._context)
+                or cycle.find_resume_refusal_reason()
                 or self._unannounced()
             ):
                 waits = bool(self._context.spindle.waiting_reason)
                 self.announcement.start_functions()
                 cycle.resume(starts_spindle=waits)
         elif not self.refuse_start(
-            self.program_run.find_start_refusal(state)
+            self.program_run.find_start_refusal_reason(state)
             or self._unannounced()
             or self._find_confirmation_refusal()
         ):
@@ -156,17 +156,17 @@ class MachineControl:
 
     def refuse_start(self, reason: str) -> bool:
         """Store and log a start refusal; return True if ``reason`` is not empty."""
-        self.status.start_refusal = reason
+        self.status.start_refusal_reason = reason
         if reason:
             self._context.log_text("refused", reason)
         return bool(reason)
 
     def _clear_start_refusal(self) -> None:
         """Clear a displayed start refusal when its cause no longer exists."""
-        if self.status.start_refusal:
-            now = start_conditions.find_state_refusal(self._context, self.state)
-            if self._hindered == self.status.start_refusal != now:
-                self.status.start_refusal = ""
+        if self.status.start_refusal_reason:
+            now = start_conditions.find_state_inhibit_reason(self._context, self.state)
+            if self._hindered == self.status.start_refusal_reason != now:
+                self.status.start_refusal_reason = ""
             self._hindered = now
 
     def handle_spindle_switch(self) -> None:
@@ -177,9 +177,9 @@ class MachineControl:
         spindle = self._context.spindle
         if self.state not in MANUAL_STATES or not spindle.waiting_reason:
             return
-        why = start_conditions.find_collet_refusal(self._context) or self.announcement.find_refusal(
-            self._context.now, SPINDLE_FUNCTION
-        )
+        why = start_conditions.find_collet_inhibit_reason(
+            self._context
+        ) or self.announcement.find_refusal_reason(self._context.now, SPINDLE_FUNCTION)
         if why:
             self._context.log_text("refused", why)
         else:
@@ -199,8 +199,8 @@ class MachineControl:
 
     def _unannounced(self) -> str:
         waits = self._context.spindle.waiting_reason
-        unclamped = start_conditions.find_program_collet_refusal(self._context) if waits else ""
-        return unclamped or self.announcement.find_refusal(self._context.now)
+        unclamped = start_conditions.find_collet_resume_inhibit(self._context) if waits else ""
+        return unclamped or self.announcement.find_refusal_reason(self._context.now)
 
     def start_feed_hold(self, reason: str, source: str = "", code: AlarmCode | None = None) -> None:
         """Hold the cycle, end a jog, stop homing and disable the handwheel.
@@ -220,7 +220,7 @@ class MachineControl:
 
     def reset_machine(self) -> None:
         """Cancel the program, stop the spindle and acknowledge alarms."""
-        self.status.start_refusal = ""
+        self.status.start_refusal_reason = ""
         self.safe_stop.switch_functions_off()
         if self.status.alarms:
             self._acknowledge()
@@ -267,7 +267,8 @@ class MachineControl:
             return
         why = Message(
             "the spindle has stopped: {why_slow}",
-            why_slow=spindle.slow_reason or "the spindle speed is below half of the commanded speed",
+            why_slow=spindle.spindle_stopped_reason
+            or "the spindle speed is below half of the commanded speed",
         ).lower()
         self._end_jog(why)
         if self.handwheel.axis:
@@ -294,7 +295,7 @@ class MachineControl:
         Nothing starts when the E-stop is released.
         """
         if is_pressed and self.state is not MachineState.ESTOP:
-            self.safe_stop.run_steps(Reaction.DRIVES_OFF)
+            self.safe_stop.run_steps(AlarmReaction.DRIVES_OFF)
             self._context.show_stop("estop")
             self._cancel_active_function(ESTOP_REASON)
             self.change_state(MachineState.ESTOP)
@@ -328,8 +329,8 @@ class MachineControl:
         if self.touch_off.phase is not None:
             self.touch_off.advance_one_tick()
             return
-        self.drive_tester.check_guard()
-        self.jogger.check_button()
+        self.drive_tester.stop_if_guard_open()
+        self.jogger.stop_if_button_released()
         if self.jogger.finish_if_at_rest():
             self.change_state(MachineState.IDLE)
 
@@ -337,7 +338,7 @@ class MachineControl:
         """Hold the cycle if the setpoint queue is nearly empty because it was refilled too late."""
         motion = self.program_run.motion
         left = motion.starvation_time_s - self._context.now
-        if motion.has_section and left < self._context.machine.timing.low_water:
+        if motion.has_path_section and left < self._context.machine.timing.low_water_time_s:
             self.counters.underrun_count += 1
             self._context.log_text("starved", "feed hold: computer busy; the axes stop on the path")
             cycle.hold_for_underrun()
@@ -359,11 +360,11 @@ class MachineControl:
         if any(old.code == alarm.code for old in self.status.alarms):
             return
         log_alarm(alarm)
-        if reaction is Reaction.HOLD and self._handle_hold_alarm(error):
+        if reaction is AlarmReaction.HOLD and self._handle_hold_alarm(error):
             return
         self.status.alarms = (*self.status.alarms, alarm)
         self.status.are_drives_switched_off = (
-            self.status.are_drives_switched_off or reaction is Reaction.DRIVES_OFF
+            self.status.are_drives_switched_off or reaction is AlarmReaction.DRIVES_OFF
         )
         self.safe_stop.run_steps(reaction)
         self._cancel_active_function(
@@ -400,7 +401,7 @@ class MachineControl:
         """Cancel the active function, even if its driver no longer responds."""
         self._giving_up = False
         self.jogger.clear_jog()  # The stop has ended the jog, so a later release must not stop anything.
-        with CaughtAttempt() as trial:
+        with ErrorCatcher() as trial:
             self.program_run.cancel_run(reason)
         if trial.error is not None:
             self.program_run.discard_run()
@@ -427,8 +428,8 @@ class MachineControl:
 
     def shut_down(self) -> None:
         """Stop all motion and switch everything off."""
-        self.safe_stop.run_steps(Reaction.DRIVES_OFF)
-        self.safe_stop.retry_last_time()
+        self.safe_stop.run_steps(AlarmReaction.DRIVES_OFF)
+        self.safe_stop.make_final_retry()
         self._cancel_active_function(CLOSED_REASON)
         if self.state is not MachineState.ESTOP:
             self.status.state = MachineState.DISABLED
@@ -438,7 +439,7 @@ class MachineControl:
 
         A failure is ignored if the drives no longer communicate.
         """
-        with CaughtAttempt() as off:
+        with ErrorCatcher() as off:
             self._context.ports.axes.enable(False)
         if off.error is not None and UnknownPart.AXES not in self._context.unknown_parts:
             raise off.error
@@ -457,7 +458,7 @@ class MachineControl:
         context.ports.axes.clear_fault()
         status.are_drives_switched_off, status.alarms = False, ()
         self.safe_stop.discard_failed_steps()
-        self.supervisor.accept_positions()
+        self.supervisor.accept_current_positions()
         context.axis_sample = context.ports.axes.sample()
         if self.state is MachineState.FAULT:
             self.change_state(MachineState.IDLE if context.axis_sample.enabled else MachineState.DISABLED)

@@ -18,7 +18,7 @@ from core.executor.control_status import (
     make_modal_state_after_mdi_cancel,
     sync_modal_state_with_machine,
 )
-from core.executor.interruption_watch import InterruptionWatch, StoreFunction
+from core.executor.interruption_watch import InterruptionRecorder, StoreFunction
 from core.executor.job import Job, ProgramPass, find_outdated_setting, make_start_setup
 from core.executor.machine_context import MachineContext
 from core.executor.program_motion.controller_motion import ControllerMotion
@@ -26,14 +26,14 @@ from core.executor.program_motion.cycle import Cycle, PathMotion
 from core.executor.program_motion.setpoint_motion import SetpointMotion
 from core.executor.snapshot import MDI_ACTIONS, RESET_REASON, InterruptedJob, MachineState, StartAction
 from core.interpreter.shared.actions import ProgramEnd
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.interpreter.shared.modal_state import ModalState
 from core.language.source import Dialect
 from core.message import Message
 from core.tool_edges import get_tool_number
 
 
-class ChangedOffsets:
+class OffsetChangeRequest:
     """A request to continue the running program with changed offsets.
 
     The part in progress uses its current offsets. The job with the changed offsets must be proved before
@@ -66,16 +66,16 @@ class ChangedOffsets:
         self._asked = command
         return ""
 
-    def find_repeat_refusal(self, present_modal: ModalState) -> str:
+    def find_repeat_refusal_reason(self, present_modal: ModalState) -> str:
         """Return why the program cannot repeat with the changed offsets, or an empty string if it can."""
         asked = self._asked
         if asked is None:
             return ""
         if asked.failure_reason or asked.job is None:
             return asked.failure_reason
-        why = start_conditions.find_proof_refusal(
+        why = start_conditions.find_proof_refusal_reason(
             asked.job, asked.proof
-        ) or start_conditions.find_missing_function(self._context, asked.proof)
+        ) or start_conditions.describe_missing_function(self._context, asked.proof)
         return why or find_outdated_setting(asked.job, present_modal)
 
     def apply_changes(self, status: ControlStatus) -> None:
@@ -109,7 +109,7 @@ class ProgramRun:
     def __init__(
         self,
         context: MachineContext,
-        start_pass: Callable[[Job, Setup], ProgramPass],
+        start_pass: Callable[[Job, InterpreterSetup], ProgramPass],
         change_state: Callable[[MachineState], None],
         store_interruption: StoreFunction,
         interrupted_job: InterruptedJob | None,
@@ -121,19 +121,19 @@ class ProgramRun:
         self.status = ControlStatus()
         self.part_count = PartCounter(context)
         self.counters = self.part_count.counters
-        self.interruption_watch = InterruptionWatch(
+        self.interruption_watch = InterruptionRecorder(
             context, self.status, self.part_count, store_interruption, interrupted_job
         )
-        self.changed_offsets = ChangedOffsets(context)
+        self.changed_offsets = OffsetChangeRequest(context)
         self.cycle: Cycle | None = None
         self._source: ProgramPass | None = None
         self._line = False  # the run is an MDI line
         self._dialect = Dialect.OMNITURN  # language of the run
         self._between = False  # a part is finished, and the next one waits for the proof of changed offsets
 
-    def find_start_refusal(self, state: MachineState) -> str:
+    def find_start_refusal_reason(self, state: MachineState) -> str:
         """Return why Cycle Start may not start the selected job, or an empty string."""
-        why = start_conditions.find_start_refusal(self._context, state, self.status)
+        why = start_conditions.find_start_refusal_reason(self._context, state, self.status)
         self.status.start_refusal_code = ""
         if why:
             return why
@@ -142,8 +142,8 @@ class ProgramRun:
         )
         self.status.start_refusal_code = code
         if code == START_UNCHECKED:
-            return self.interruption_watch.start_refusal or why
-        return why or self.interruption_watch.start_refusal
+            return self.interruption_watch.start_refusal_reason or why
+        return why or self.interruption_watch.start_refusal_reason
 
     def start_run(self) -> None:
         """Start the selected program, restart or MDI line.
@@ -176,10 +176,10 @@ class ProgramRun:
     def will_count_part(self) -> bool:
         """Return whether a program is running that will count as a part when it ends."""
         return self.cycle is not None and not (
-            self._line or self._between or self.part_count.uncounted_reason
+            self._line or self._between or self.part_count.not_counted_reason
         )
 
-    def mark_part_disturbed(self, reason: str) -> None:
+    def exclude_part_from_count(self, reason: str) -> None:
         """Mark the part in progress as disturbed for the given reason, so that it is not counted."""
         if not (self._line or self._between):
             self.part_count.workpiece.disturbance = self.part_count.workpiece.disturbance or reason
@@ -213,7 +213,7 @@ class ProgramRun:
         """
         cycle = self.cycle
         if cycle is None:
-            self.motion.clear_section()
+            self.motion.clear_path_section()
             return
         if not (self._line or self._between):
             self.interruption_watch.record_interruption(cycle.current_block, reason)
@@ -235,7 +235,7 @@ class ProgramRun:
         self.cycle = self._source = None
         self._between = False
         self._context.line_number = 0
-        self.motion.clear_section()
+        self.motion.clear_path_section()
         self.changed_offsets.apply_changes(self.status)
 
     def _store_modal(self, modal: ModalState, *, tool_open: bool = False) -> None:
@@ -263,7 +263,7 @@ class ProgramRun:
         """Start a pass through ``job`` from the current position of the axes."""
         at, _ = self._context.ports.axes.demand_at(self._context.now)
         setup = make_start_setup(job.setup, at, self._context.is_input_on)
-        self.motion.clear_section()
+        self.motion.clear_path_section()
         diameter = job.source.dialect is Dialect.SINUMERIK
         begins = ModalState(metric=setup.metric, diameter=diameter, rapid_rate=setup.last_rapid)
         if setup.begin is not None:
@@ -289,7 +289,7 @@ class ProgramRun:
     def _repeat_program(self, cycle: Cycle) -> None:
         """Start the next part once the changed offsets are proved, or log why it does not start."""
         repeat = self._context.switches.cycle_repeat
-        if repeat and self.changed_offsets.is_proof_pending and not self.status.next_part_block_reason:
+        if repeat and self.changed_offsets.is_proof_pending and not self.status.next_part_inhibit_reason:
             cycle.wait_for_next_cycle("PROVING WITH THE CHANGED OFFSETS")
             return
         why = self._why_not_again(cycle.modal)
@@ -307,10 +307,10 @@ class ProgramRun:
         self._context.log_text("repeat", self.status.job.source.name)
 
     def _why_not_again(self, left: ModalState) -> str:
-        if self.status.next_part_block_reason:
-            return self.status.next_part_block_reason
+        if self.status.next_part_inhibit_reason:
+            return self.status.next_part_inhibit_reason
         if self.changed_offsets.is_requested:
-            return self.changed_offsets.find_repeat_refusal(left)
+            return self.changed_offsets.find_repeat_refusal_reason(left)
         again = start_conditions.find_first_move_clearance(
             self._context, self.status, self.counters.started_run_count, for_repeat=True
         )

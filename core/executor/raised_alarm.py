@@ -8,13 +8,13 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import ClassVar
 
-from core.alarms import CATALOG, AlarmCode, Reaction
+from core.alarms import CATALOG, AlarmCode, AlarmReaction
 from core.executor.snapshot import Alarm
 from core.message import Message
 
 _log = logging.getLogger(__name__)
 HOLD_CODES: dict[str, AlarmCode] = {
-    entry.text.upper(): code for code, entry in CATALOG.items() if entry.reaction is Reaction.HOLD
+    entry.text.upper(): code for code, entry in CATALOG.items() if entry.reaction is AlarmReaction.HOLD
 }
 
 
@@ -32,7 +32,7 @@ class AlarmError(Exception):
         self.line = line
 
 
-def make_alarm_and_reaction(error: AlarmError, line: int, now: float) -> tuple[Alarm, Reaction]:
+def make_alarm_and_reaction(error: AlarmError, line: int, now: float) -> tuple[Alarm, AlarmReaction]:
     """Return the alarm to show and the reaction of the machine.
 
     ``line`` is used if the error has no line.
@@ -81,7 +81,7 @@ def log_alarm(alarm: Alarm) -> None:
     _log.warning("alarm %d %s%s: %s", alarm.number, alarm.code, where, alarm.detail or alarm.cause)
 
 
-class CaughtAttempt:
+class ErrorCatcher:
     """A context manager that catches an error of its ``with`` block and stores it in ``error``.
 
     SystemExit is caught too. Only KeyboardInterrupt, which is meant for the main thread, is raised again.
@@ -90,7 +90,7 @@ class CaughtAttempt:
     def __init__(self) -> None:
         self.error: BaseException | None = None
 
-    def __enter__(self) -> CaughtAttempt:
+    def __enter__(self) -> ErrorCatcher:
         return self
 
     def __exit__(
@@ -100,7 +100,7 @@ class CaughtAttempt:
         return not isinstance(error, KeyboardInterrupt)
 
 
-class ReportedAttempt(CaughtAttempt):
+class ErrorReporter(ErrorCatcher):
     """A context manager that logs an error of its block and passes it to ``handle_failure``.
 
     An error in ``handle_failure`` is logged too. If an error repeats in every tick, only its first, tenth,
@@ -120,7 +120,7 @@ class ReportedAttempt(CaughtAttempt):
         if error is None or not swallowed:
             return swallowed
         self._write(error)
-        with CaughtAttempt() as telling:
+        with ErrorCatcher() as telling:
             self._failed(error)
         if telling.error is not None:
             _log.error("and could not say so", exc_info=telling.error)

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.executor.raised_alarm import CaughtAttempt
+from core.executor.raised_alarm import ErrorCatcher
 from core.executor.snapshot import LogEvent, MachineState, Snapshot, TickData
 from core.machine.machine_model import Machine
 from core.message import Message
@@ -49,7 +49,7 @@ class _OpenRecord(NamedTuple):
     """An alarm whose record is still to be written, with the name of the program that was running."""
 
     alarm_event: LogEvent
-    program: str
+    program_name: str
 
 
 def list_recorded_signals(machine: Machine, ports: MachinePorts) -> RingLayout:
@@ -68,7 +68,7 @@ def list_recorded_signals(machine: Machine, ports: MachinePorts) -> RingLayout:
 class ScopeRecorder(ScopeRecordings):
     """Recorder of ticks in a ring buffer, which saves a file for each alarm.
 
-    - The executor calls ``queue_tick`` and ``assign_record_name``. Any thread may call
+    - The executor calls ``queue_tick`` and ``add_record_name``. Any thread may call
       ``get_record_since`` and ``get_record_between``.
     - ``folder`` contains the ring file ``name`` and the alarm records, or is None if no file is written.
     - ``storage_error`` is the reason why the ring file cannot be written. The record is then in memory
@@ -116,7 +116,7 @@ class ScopeRecorder(ScopeRecordings):
         if not tick.is_at_rest:
             self._happens.set()
 
-    def assign_record_name(self, event: LogEvent) -> LogEvent:
+    def add_record_name(self, event: LogEvent) -> LogEvent:
         """Return an alarm or E-stop event with the name of its future record; leave others unchanged.
 
         The function does not wait.
@@ -132,7 +132,7 @@ class ScopeRecorder(ScopeRecordings):
             return named
         return replace(event, record_name=self._name)
 
-    def is_saving(self, name: str) -> bool:
+    def is_saving_record(self, name: str) -> bool:
         """Return whether the alarm record with this name is still pending or being written."""
         return name in {self._name, self._writing} - {""}
 
@@ -157,7 +157,7 @@ class ScopeRecorder(ScopeRecordings):
         while not self._closing.wait(_POLL_INTERVAL_S):
             self._happens.wait(_REST_PAUSE_S)
             self._happens.clear()
-            with CaughtAttempt() as trial:
+            with ErrorCatcher() as trial:
                 self.store_queued_ticks()
             if trial.error is not None:
                 _log.error("the recorder has failed", exc_info=trial.error)
@@ -209,8 +209,12 @@ class ScopeRecorder(ScopeRecordings):
                 float(s.line),
                 float(s.block),
                 _STATES[s.state],
-                *_values_or_nan(pack_bits(recorded.inputs, s.inputs), UnknownPart.INPUTS not in s.unknown),
-                *_values_or_nan(pack_bits(recorded.outputs, s.outputs), UnknownPart.OUTPUTS not in s.unknown),
+                *_values_or_nan(
+                    pack_bits(recorded.input_names, s.inputs), UnknownPart.INPUTS not in s.unknown
+                ),
+                *_values_or_nan(
+                    pack_bits(recorded.output_names, s.outputs), UnknownPart.OUTPUTS not in s.unknown
+                ),
             ]
             self._late = max(self._late, tick.delay_s)
             if row_values == self._figures and s.t < last + _REST_ROW_INTERVAL_S - _TIME_RESOLUTION_S:
@@ -295,7 +299,7 @@ class ScopeRecorder(ScopeRecordings):
         record = self.ring.get_record_between(event.time_s - BEFORE, end)
         about = {
             **record.about,
-            "program": frozen.program,
+            "program": frozen.program_name,
             "alarm": Message(
                 "{number} {alarm}: {cause}",
                 number=event.alarm.number,

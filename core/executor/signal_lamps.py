@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from core.executor.machine_context import MachineContext
-from core.executor.raised_alarm import CaughtAttempt
+from core.executor.raised_alarm import ErrorCatcher
 from core.executor.snapshot import ACTIVE_STATES, STOPPED_STATES, MachineState
 from core.machine.hardware_model import BLINK_HALF_PERIOD_S, BUZZER, MACHINE_SIGNALS
 from core.message import Message
@@ -91,7 +91,7 @@ class SignalLamps:
         """
         if not self._lamps:
             return
-        with CaughtAttempt():  # A driver error of a lamp must not stop the machine.
+        with ErrorCatcher():  # A driver error of a lamp must not stop the machine.
             self._see(
                 self._signals.update_signals(
                     state, program_end_count, is_next_part_blocked=is_next_part_blocked
@@ -138,7 +138,7 @@ class SignalLamps:
                 self._write(name, on, now)
 
     def _write(self, name: str, on: bool, now: float) -> None:
-        with CaughtAttempt() as trial:
+        with ErrorCatcher() as trial:
             self.io.write(name, on)
         if trial.error is None:
             self._sent[name], self._due[name] = on, now + _RETRY_INTERVAL_S

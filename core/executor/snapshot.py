@@ -211,7 +211,7 @@ class Snapshot:
     line: int = 0  # source line being executed; 0 without one
     block: int = 0  # elementary block being executed; 0 without one
     block_text: str = ""
-    next_text: str = ""
+    next_block_text: str = ""
     axes: tuple[str, ...] = ("X", "Z", "C")  # order of the following tuples: linear axes, then rotary axes
     demand: tuple[float, ...] = (0.0, 0.0, 0.0)
     actual: tuple[float, ...] = (0.0, 0.0, 0.0)
@@ -268,14 +268,14 @@ class Snapshot:
     max_following_error: float = 0.0
     needs_proof: bool = False  # the loaded job has no proof
     starts: StartAction = StartAction.PROGRAM  # the action of the next Cycle Start
-    prepared_digest: str = ""  # digest of the line or restart that Cycle Start would run
+    prepared_job_digest: str = ""  # digest of the line or restart that Cycle Start would run
     interrupted: InterruptedJob | None = None  # a program that did not reach its end
     confirmed: bool = False  # a start at the first line is confirmed
     lines: int = 0  # MDI lines started since the start of the executor
     is_tool_move_pending: bool = False  # MDI has called a tool that has not moved yet
     kept: SavedPass[Any] | None = None  # state that MDI lines in other languages have left in force
     announced: tuple[str, ...] = ()  # further actions that the next Cycle Start starts
-    start_refusal: str = ""  # why the last Cycle Start did nothing
+    start_refusal_reason: str = ""  # why the last Cycle Start did nothing
     start_code: str = ""  # code of the refusal if the first move caused it
     begun: int = 0  # runs since the start of the executor: programs, repeats, restarts and MDI lines
     wheel: str = ""  # axis that the handwheel moves; empty without one

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from core.executor.program_motion.spindle_angle import SpindleAnglePredictor
 from core.executor.raised_alarm import AlarmError
-from core.executor.spindle_orientation import OrientationControl, try_at_standstill
+from core.executor.spindle_orientation import OrientationControl, try_standstill_command
 from core.faults import get_fault_code
 from core.geometry.surface_speed import find_surface_rpm
 from core.interpreter.shared.elementary_blocks import Block
@@ -139,7 +139,7 @@ class SpindleControl:
         return self._ask is not None and self.is_speed_lost
 
     @property
-    def slow_reason(self) -> str:
+    def spindle_stopped_reason(self) -> str:
         """Return why the spindle is not requested, cannot start or is waiting, or an empty string."""
         if self._ask is None:
             return "SPINDLE STOPPED"
@@ -184,7 +184,7 @@ class SpindleControl:
         self._forget_waiting()
         self._in_band_since = None
 
-    def follow_block(self, block: Block) -> None:
+    def adopt_block_speed(self, block: Block) -> None:
         """Adopt the speed of the block being executed, such as after G96 or G97.
 
         This never starts the spindle.
@@ -235,7 +235,7 @@ class SpindleControl:
             return True
         if not self._lock.is_c_ready():
             command = partial(self._lock.set_c_mode, True, should_orient)
-            self.is_c_refused_by_turning = not try_at_standstill(command)
+            self.is_c_refused_by_turning = not try_standstill_command(command)
         return self._lock.is_c_ready()
 
     def orient_spindle(self, angle: float, direction: int) -> bool:
@@ -313,7 +313,7 @@ class SpindleControl:
             return True
         if self.commanded_rpm == 0.0 or self._in_band_since is None:
             return False
-        return now - self._in_band_since >= self._model.at_speed_time - 1e-9
+        return now - self._in_band_since >= self._model.at_speed_time_s - 1e-9
 
     def _wanted(self) -> float:
         return 0.0 if self._withdrawn or not self.is_auto else self._obeying()
@@ -346,7 +346,7 @@ class SpindleControl:
             return
         self._again = False
         self._record_fall(rpm, now)
-        if abs(rpm - self.commanded_rpm) > self._model.at_speed * abs(rpm):
+        if abs(rpm - self.commanded_rpm) > self._model.at_speed_tolerance * abs(rpm):
             self._in_band_since = None
         if rpm * self.commanded_rpm <= 0.0:
             self._turned, self._stands = False, None
@@ -396,7 +396,9 @@ class SpindleControl:
         self.waiting_reason, self._withdrawn, self._turned, self._stands = "", False, False, None
 
     def _watch_band(self, now: float) -> None:
-        if abs(self.measured_rpm - self.commanded_rpm) > self._model.at_speed * abs(self.commanded_rpm):
+        if abs(self.measured_rpm - self.commanded_rpm) > self._model.at_speed_tolerance * abs(
+            self.commanded_rpm
+        ):
             self._in_band_since = None
         elif self._in_band_since is None:
             self._in_band_since = now
@@ -404,12 +406,12 @@ class SpindleControl:
     def _min_expected_rpm(self, now: float) -> float:
         """Return the lowest speed in rpm that a working drive has after the commanded speed was raised."""
         since, speed = self._rose
-        return speed + self._model.accel * max(now - since - self._grace_s, 0.0)
+        return speed + self._model.acceleration_rpm_s * max(now - since - self._grace_s, 0.0)
 
     def _max_expected_rpm(self, now: float) -> float:
         """Return the highest speed in rpm that a working drive has after the commanded speed was lowered."""
         since, speed = self._fell
-        ramp = speed - self._model.decel * max(now - since - self._grace_s, 0.0)
+        ramp = speed - self._model.deceleration_rpm_s * max(now - since - self._grace_s, 0.0)
         return (
             max(abs(self.commanded_rpm), ramp, self.orientation.max_rpm) * (1.0 + _OVERSPEED_FRACTION)
             + _OVERSPEED_RPM

@@ -11,7 +11,7 @@ from core.message import Message
 from core.ports import DriverError, OrientingSpindle
 
 
-def try_at_standstill(command: Callable[[], None]) -> bool:
+def try_standstill_command(command: Callable[[], None]) -> bool:
     """Run a command that requires a stopped spindle, and return whether the drive has accepted it.
 
     The drive may reject it at a speed below ``stop_below`` of the machine file. Raises DriverError for any
@@ -67,7 +67,7 @@ class OrientationControl:
             raise AlarmError("spindle-orient", "this machine cannot orient the spindle to an angle")
         if self._asked != (angle, direction):
             self._reached = False
-            if not try_at_standstill(partial(self._port.orient_spindle, angle, direction)):
+            if not try_standstill_command(partial(self._port.orient_spindle, angle, direction)):
                 return False
             self._asked = angle, direction
         self._reached = self._reached or self._port.is_oriented()

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from core.executor.commands import START_UNCHECKED, Clearance, find_clearance
+from core.executor.commands import START_UNCHECKED, StartClearance, find_start_clearance
 from core.executor.control_status import ControlStatus, sync_modal_state_with_machine
 from core.executor.job import Job, Proof, find_outdated_setting
 from core.executor.machine_context import MachineContext
@@ -39,7 +39,7 @@ def is_guard_open(context: MachineContext) -> bool:
     return context.machine.interlocks.guard_stops and not context.inputs.get("guard", False)
 
 
-def find_station_refusal(context: MachineContext) -> str:
+def find_station_inhibit_reason(context: MachineContext) -> str:
     """Return why the operator station prevents a cycle, or an empty string."""
     if context.station_signals.is_hold_requested:
         return "feed hold is pressed"
@@ -50,19 +50,19 @@ def find_station_refusal(context: MachineContext) -> str:
     return context.station_signals.station_fault.lower() or context.station_signals.connection_lost_reason
 
 
-def find_collet_refusal(context: MachineContext) -> str:
+def find_collet_inhibit_reason(context: MachineContext) -> str:
     """Return why the collet prevents a spindle start, or an empty string."""
     if context.machine.interlocks.spindle_with_collet_open or context.inputs.get("collet_closed", True):
         return ""
     return "the spindle does not start with the collet open: close the collet first"
 
 
-def find_program_collet_refusal(context: MachineContext) -> str:
+def find_collet_resume_inhibit(context: MachineContext) -> str:
     """Return why the collet prevents a spindle start within a stopped cycle, or an empty string.
 
     If the program has opened the collet, the operator must press Reset before closing the collet.
     """
-    why = find_collet_refusal(context)
+    why = find_collet_inhibit_reason(context)
     if why and not context.commanded_outputs.get_outputs().get("collet", True):
         return (
             "the program has opened the collet, so the spindle does not start: press Reset, "
@@ -71,14 +71,14 @@ def find_program_collet_refusal(context: MachineContext) -> str:
     return why
 
 
-def find_state_refusal(context: MachineContext, state: MachineState) -> str:
+def find_state_inhibit_reason(context: MachineContext, state: MachineState) -> str:
     """Return a text that names the machine state that prevents a start, or an empty string."""
     if state in _BUSY_STATES:
         return _BUSY_STATES[state]
-    if find_station_refusal(context):
-        return find_station_refusal(context)
-    if context.ports.blocks is not None and context.ports.blocks.state().start_refusal:
-        return context.ports.blocks.state().start_refusal
+    if find_station_inhibit_reason(context):
+        return find_station_inhibit_reason(context)
+    if context.ports.blocks is not None and context.ports.blocks.state().start_refusal_reason:
+        return context.ports.blocks.state().start_refusal_reason
     name = context.machine.get_displayed_axis_name
     away = [
         name(a.name)
@@ -90,48 +90,60 @@ def find_state_refusal(context: MachineContext, state: MachineState) -> str:
     return ""
 
 
-def find_job_refusal(
+def find_job_refusal_reason(
     context: MachineContext, state: MachineState, job: Job | None, proof: Proof | None
 ) -> str:
     """Return why this job may not be started now, or an empty string if it may."""
     return (
-        find_state_refusal(context, state)
-        or find_proof_refusal(job, proof)
-        or find_missing_function(context, proof)
+        find_state_inhibit_reason(context, state)
+        or find_proof_refusal_reason(job, proof)
+        or describe_missing_function(context, proof)
     )
 
 
-def find_missing_function(context: MachineContext, proof: Proof | None) -> str:
+def describe_missing_function(context: MachineContext, proof: Proof | None) -> str:
     """Return a message if the machine lacks a function that the program needs, or an empty string."""
     blocks = context.ports.blocks
     absent = {Message("output {name}", name=name) for name in context.machine.missing_outputs}
     for need in proof.required_functions if proof is not None else ():
-        if need.builder_m_code:
+        if need.missing_m_code:
             return Message(
                 "line {line}: this machine does not define {need}",
-                line=need.line,
+                line=need.first_line,
                 need=need.description,
             )
-        if need.function in absent:
-            return Message("line {line}: this machine has no {need}", line=need.line, need=need.description)
-        if blocks is not None and need.function not in blocks.capabilities:
+        if need.required_function in absent:
             return Message(
-                "line {line}: this controller does not support {need}", line=need.line, need=need.description
+                "line {line}: this machine has no {need}", line=need.first_line, need=need.description
             )
-        if blocks is None and need.function == SPINDLE_ORIENTATION and context.ports.orientation is None:
+        if blocks is not None and need.required_function not in blocks.capabilities:
+            return Message(
+                "line {line}: this controller does not support {need}",
+                line=need.first_line,
+                need=need.description,
+            )
+        if (
+            blocks is None
+            and need.required_function == SPINDLE_ORIENTATION
+            and context.ports.orientation is None
+        ):
             return Message(
                 "line {line}: the spindle driver of this machine cannot orient the spindle to an angle",
-                line=need.line,
+                line=need.first_line,
             )
-        if blocks is None and need.function == THREADING and context.ports.spindle.read_angle() is None:
+        if (
+            blocks is None
+            and need.required_function == THREADING
+            and context.ports.spindle.read_angle() is None
+        ):
             return Message(
                 "line {line}: a thread needs a spindle encoder, but this machine does not have one",
-                line=need.line,
+                line=need.first_line,
             )
     return ""
 
 
-def find_proof_refusal(job: Job | None, proof: Proof | None) -> str:
+def find_proof_refusal_reason(job: Job | None, proof: Proof | None) -> str:
     """Return why the proof does not permit a start of this job, or an empty string."""
     if job is None:
         return "no program is loaded"
@@ -164,17 +176,17 @@ def get_selected_job(status: ControlStatus) -> Job | None:
     return status.job if status.start_action is StartAction.PROGRAM else status.prepared_job
 
 
-def find_start_refusal(context: MachineContext, state: MachineState, status: ControlStatus) -> str:
+def find_start_refusal_reason(context: MachineContext, state: MachineState, status: ControlStatus) -> str:
     """Return why Cycle Start is refused now, or an empty string if it may start."""
     job, proof = get_selected_job(status), status.proof
     if status.start_action is not StartAction.PROGRAM:
         proof = status.prepared_proof
     if job is None and status.start_action in _NOTHING:
-        return find_state_refusal(context, state) or _NOTHING[status.start_action]
-    why = find_job_refusal(context, state, job, proof) or (
+        return find_state_inhibit_reason(context, state) or _NOTHING[status.start_action]
+    why = find_job_refusal_reason(context, state, job, proof) or (
         _moved(context, job) or _find_change(context, status, job)
     )
-    return why or (status.next_part_block_reason if status.start_action is StartAction.PROGRAM else "")
+    return why or (status.next_part_inhibit_reason if status.start_action is StartAction.PROGRAM else "")
 
 
 def find_first_move_refusal(
@@ -182,7 +194,7 @@ def find_first_move_refusal(
 ) -> tuple[str, str]:
     """Return the code and the text of the refusal of the first move, or two empty strings."""
     job = get_selected_job(status)
-    if not status.requires_clearance or job is None:
+    if not status.requires_start_clearance or job is None:
         return "", ""
     found = find_first_move_clearance(context, status, run_count)
     if found is None:
@@ -192,20 +204,20 @@ def find_first_move_refusal(
 
 def find_first_move_clearance(
     context: MachineContext, status: ControlStatus, run_count: int, *, for_repeat: bool = False
-) -> Clearance | None:
+) -> StartClearance | None:
     """Return the clearance of the first move after Cycle Start, or None if it has not been computed yet.
 
     If ``for_repeat`` is True, the clearance is for the first move after Cycle Repeat.
     """
-    job, known = get_selected_job(status), status.clearances
+    job, known = get_selected_job(status), status.start_clearances
     if for_repeat:
         job = status.job
     elif status.start_action is not StartAction.PROGRAM:
-        known = tuple(filter(None, (status.prepared_clearance,)))
+        known = tuple(filter(None, (status.prepared_start_clearance,)))
     if job is None:
         return None
     at, _ = context.ports.axes.demand_at(context.now)
-    return find_clearance(known, job.digest, at, run_count, for_repeat=for_repeat)
+    return find_start_clearance(known, job.digest, at, run_count, for_repeat=for_repeat)
 
 
 def _moved(context: MachineContext, job: Job | None) -> str:
@@ -249,7 +261,7 @@ def _find_change(context: MachineContext, status: ControlStatus, job: Job | None
 def _proof_instruction(begin: PassStart) -> str:
     """Return the text that instructs the operator how to have the job proved again."""
     if begin.is_mdi_line:
-        return "request the retract path again" if begin.approach else "enter or select the line again"
+        return "request the retract path again" if begin.approach_steps else "enter or select the line again"
     return "search for the line again"
 
 
@@ -268,7 +280,7 @@ def _find_restart_change(status: ControlStatus, job: Job, begin: PassStart, now:
             else "the collet is open, but must be closed at line {line}: close the collet in MDI"
         )
         return Message(template, line=begin.line_number)
-    return find_proof_refusal(status.job, status.proof)
+    return find_proof_refusal_reason(status.job, status.proof)
 
 
 # --- announcements of a start ---------------------------------------------------------------------------
@@ -279,17 +291,17 @@ MIN_READING_TIME_S = 0.3  # s for which an announcement must have been displayed
 _VALUE_CHANGE_FRACTION = 0.1  # relative change of a value that makes a new announcement
 
 
-class AnnouncedStart(NamedTuple):
+class AnnouncedFunction(NamedTuple):
     """A function that the next start would turn on.
 
     ``function_name`` identifies the function, and ``text`` is shown to the operator. ``displayed_value`` is
     a value in the text, such as the rpm of a spindle. A large change of this value creates a new
-    announcement. ``turn_on`` turns the function on after the announced start.
+    announcement. ``turn_on_function`` turns the function on after the announced start.
     """
 
     function_name: str
     text: str
-    turn_on: Callable[[], None]
+    turn_on_function: Callable[[], None]
     displayed_value: float = 0.0
 
 
@@ -300,7 +312,7 @@ class StartAnnouncement:
     """
 
     def __init__(self) -> None:
-        self.sources: list[Callable[[], Iterable[AnnouncedStart]]] = []
+        self.sources: list[Callable[[], Iterable[AnnouncedFunction]]] = []
         self._since: dict[str, tuple[float, float]] = {}  # by key: time of the first display, and the value
 
     def update_texts(self, now: float) -> tuple[str, ...]:
@@ -309,7 +321,7 @@ class StartAnnouncement:
         self._since = {item.function_name: self._counted(item, before, now) for item in items}
         return tuple(item.text for item in items)
 
-    def find_refusal(self, now: float, function_name: str = "") -> str:
+    def find_refusal_reason(self, now: float, function_name: str = "") -> str:
         """Return why a start is refused if an announcement was not shown long enough to be read.
 
         The result is empty if the start is permitted. ``function_name`` limits the check to one function.
@@ -323,13 +335,13 @@ class StartAnnouncement:
     def start_functions(self, function_name: str = "") -> None:
         """Turn on the named function, or all announced functions, after a permitted start."""
         for item in self._items(function_name):
-            item.turn_on()
+            item.turn_on_function()
 
-    def _items(self, what: str = "") -> list[AnnouncedStart]:
+    def _items(self, what: str = "") -> list[AnnouncedFunction]:
         return [item for source in self.sources for item in source() if what in {"", item.function_name}]
 
     def _counted(
-        self, item: AnnouncedStart, before: dict[str, tuple[float, float]], now: float
+        self, item: AnnouncedFunction, before: dict[str, tuple[float, float]], now: float
     ) -> tuple[float, float]:
         known = before.get(item.function_name)
         return (

@@ -42,7 +42,7 @@ class StationSignals(NamedTuple):
     was_late_start_detected: bool = False
 
 
-class OverridePot:
+class OverridePotFilter:
     """Filter of one override potentiometer.
 
     A decrease takes effect at once. A sudden increase takes effect only after the value has become stable.
@@ -84,12 +84,12 @@ class OverridePot:
             self._jumps.popleft()
 
 
-class StationWatch:
+class StationSignalConverter:
     """Converter of raw operator station states to filtered requests."""
 
     def __init__(self) -> None:
-        self._feed = OverridePot()
-        self._spindle = OverridePot()
+        self._feed = OverridePotFilter()
+        self._spindle = OverridePotFilter()
         self._started = True  # A start signal that is on at power-up does not count as a press.
         self._last_start = -1e9
         self._auto = True  # position of the spindle switch in the last message of the station
@@ -207,7 +207,7 @@ class CommandedOutputs:
         """
         self._now = now
 
-    def mark_switched_off(self, names: Sequence[str]) -> None:
+    def mark_outputs_switched_off(self, names: Sequence[str]) -> None:
         """Mark outputs as switched off by another device, even if they were written a moment ago."""
         for name in names:
             self._written.pop(name, None)

@@ -32,7 +32,7 @@ class CornerError(CodedError):
     """
 
 
-class NoCornerError(CornerError):
+class SameDirectionError(CornerError):
     """An error raised if two moves have the same direction and therefore form no corner."""
 
 
@@ -55,7 +55,7 @@ class CornerTooLargeError(CornerError):
 def chamfer(first_element: Element, second_element: Element, leg: float) -> tuple[Element, Line, Element]:
     """Return both elements shortened by ``leg`` mm at their corner, with the chamfer between them.
 
-    Raises NoCornerError, CornerTooLargeError or CornerError. CornerError is raised if the second element
+    Raises SameDirectionError, CornerTooLargeError or CornerError. CornerError is raised if the second element
     reverses the direction of the first, or if the chamfer would cross an element.
     """
     angle = _turn_between(first_element, second_element)
@@ -76,7 +76,7 @@ def _turn_between(before: Element, after: Element) -> float:
             raise CornerTooLargeError(0.0, is_first_move=element is before)
     angle = compute_turn_angle(before.end_direction, after.start_direction)
     if abs(angle) < STRAIGHT_TOLERANCE_RAD:
-        raise NoCornerError("the two moves have the same direction", "no-corner")
+        raise SameDirectionError("the two moves have the same direction", "no-corner")
     if abs(angle) > pi - STRAIGHT_TOLERANCE_RAD:
         lines = isinstance(before, Line) and isinstance(after, Line)
         raise CornerError(
@@ -131,15 +131,15 @@ def make_rounding(
 
     The radius of the arc is ``radius`` mm. Between two lines, each line is shortened by radius·tan(turn/2).
     Otherwise the center of the arc is the intersection of both elements, each offset by ``radius``. Raises
-    NoCornerError if the elements have the same direction. Between two lines, raises CornerTooLargeError if
-    a line is too short, and CornerError if the second line reverses the direction of the first. With an
-    arc, raises CornerError if no arc is tangent to both elements within their lengths.
+    SameDirectionError if the elements have the same direction. Between two lines, raises
+    CornerTooLargeError if a line is too short, and CornerError if the second line reverses the direction of
+    the first. With an arc, raises CornerError if no arc is tangent to both elements within their lengths.
     """
     if isinstance(first_element, Line) and isinstance(second_element, Line):
         return _fillet(first_element, second_element, radius)
     angle = compute_turn_angle(first_element.end_direction, second_element.start_direction)
     if abs(angle) < STRAIGHT_TOLERANCE_RAD:
-        raise NoCornerError("the two moves have the same direction", "no-corner")
+        raise SameDirectionError("the two moves have the same direction", "no-corner")
     side = radius if angle > 0 else -radius
     try:
         aside = offset_element(first_element, side), offset_element(second_element, side)
@@ -191,9 +191,9 @@ def find_chamfer_leg(first_element: Element, second_element: Element, length: fl
     """Return the leg of a chamfer that is ``length`` mm long.
 
     Between two lines, no error is raised, because ``chamfer`` checks the leg. With an arc, raises
-    NoCornerError if the elements have the same direction. Raises CornerTooLargeError if an element has no
-    length. Raises CornerError if the second element reverses the direction of the first, or if the elements
-    are too short for the chamfer.
+    SameDirectionError if the elements have the same direction. Raises CornerTooLargeError if an element has
+    no length. Raises CornerError if the second element reverses the direction of the first, or if the
+    elements are too short for the chamfer.
     """
     if isinstance(first_element, Line) and isinstance(second_element, Line):
         # The chamfer and its two legs are an isosceles triangle.

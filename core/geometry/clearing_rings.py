@@ -14,12 +14,12 @@ from math import dist
 from core.geometry.lines_and_arcs import SAME_POINT_TOLERANCE_MM, Line, Point
 from core.geometry.pocket_area import (
     AreaChecker,
-    AreaError,
     ElementLoop,
+    PocketAreaError,
     WindingCalculator,
     is_counterclockwise,
     make_inset_loops,
-    start_loop_near,
+    move_loop_start_near,
 )
 from core.message import Message
 
@@ -76,12 +76,12 @@ def make_clearing_rings(
 
     The outermost ring is ``first_inset`` mm inside the area, and the rings are ``ring_distance`` mm apart.
     ``radius`` is the tool radius in mm. If ``is_conventional`` is True, the rings are clockwise
-    (conventional milling with M3). Raises AreaError if the tool does not fit, if an inset is not closed, if
-    an island touches the edge of its pocket, or if more than 2000 rings are needed.
+    (conventional milling with M3). Raises PocketAreaError if the tool does not fit, if an inset is not
+    closed, if an island touches the edge of its pocket, or if more than 2000 rings are needed.
     """
     outmost = _find_patches(make_inset_loops(area, first_inset))
     if not outmost:
-        raise AreaError("the tool does not fit anywhere inside the contour")
+        raise PocketAreaError("the tool does not fit anywhere inside the contour")
     layer, apart = outmost, first_inset
     for _ in range(_MAX_RINGS):
         apart += ring_distance
@@ -93,7 +93,7 @@ def make_clearing_rings(
         if not layer:
             break
     else:
-        raise AreaError(
+        raise PocketAreaError(
             Message("clearing needs more than {most_rings} concentric passes", most_rings=_MAX_RINGS)
         )
     return _order_rings(
@@ -117,7 +117,7 @@ def _find_patches(loops: Sequence[ElementLoop]) -> list[_AreaPatch]:
             None,
         )
         if home is None:
-            raise AreaError("an island touches the edge of its pocket")
+            raise PocketAreaError("an island touches the edge of its pocket")
         home.hole_loops.append(hole)
     return found
 
@@ -138,7 +138,7 @@ def _order_rings(
     """Return the rings in machining order, each starting at the point where the tool reaches it."""
     made: list[ClearingRing] = []
     for index, (ring, around) in enumerate(_iter_inner_first(outmost, [])):
-        loop = start_loop_near(_sense(ring, against=conventional), position)
+        loop = move_loop_start_near(_sense(ring, against=conventional), position)
         link = (
             Line(position, loop[0].start) if dist(position, loop[0].start) > SAME_POINT_TOLERANCE_MM else None
         )
@@ -149,7 +149,7 @@ def _order_rings(
         if not straight and _size(loop) < _RAMP_RADII * radius:
             wider = next((each for each in reversed(around) if _size(each) >= _RAMP_RADII * radius), None)
             if wider is not None:
-                wider = start_loop_near(_sense(wider, against=conventional), loop[0].start)
+                wider = move_loop_start_near(_sense(wider, against=conventional), loop[0].start)
                 gap = dist(wider[0].start, loop[0].start) > SAME_POINT_TOLERANCE_MM
                 if not gap or room.contains_element(Line(wider[0].start, loop[0].start), distance):
                     ramp = wider

@@ -284,7 +284,7 @@ class ElementIndex:
         self._elements = elements
         self._boxes = np.array([element.bounding_box for element in elements])
 
-    def find_near(self, box: BoundingBox, distance: float) -> list[Element]:
+    def find_elements_near(self, box: BoundingBox, distance: float) -> list[Element]:
         """Return the elements whose bounding boxes are near ``box``.
 
         An element is near if the distance is at most ``distance`` mm along both axes.
@@ -344,7 +344,7 @@ def split_at_edges(piece: Element, edges: ElementIndex) -> list[Element]:
     """Return the sections of an offset piece between its intersections with the region edges."""
     length = piece.length
     at = {0.0: piece.start, length: piece.end}
-    for edge in edges.find_near(piece.bounding_box, SAME_POINT_TOLERANCE_MM):
+    for edge in edges.find_elements_near(piece.bounding_box, SAME_POINT_TOLERANCE_MM):
         for point in find_intersections(piece, edge):
             along = piece.get_distance_from_start(point)
             if SAME_POINT_TOLERANCE_MM < along < length - SAME_POINT_TOLERANCE_MM:
@@ -365,7 +365,7 @@ def _is_far_enough(part: Element, contour: ElementIndex, min_distance: float) ->
     x, z = middle = part.get_point(part.length / 2)
     return all(
         compute_distance_to_point(element, middle) >= min_distance
-        for element in contour.find_near((x, x, z, z), min_distance)
+        for element in contour.find_elements_near((x, x, z, z), min_distance)
     )
 
 
@@ -428,7 +428,7 @@ class RoughingArea:
             for element in self.path
         )
 
-    def find_spans(self, depth: float) -> list[ZSpan]:
+    def find_clear_spans(self, depth: float) -> list[ZSpan]:
         """Return the spans along Z in which a tool may move at ``depth``.
 
         Each span is also free of the contour at all smaller depths, up to depth 0.

@@ -48,7 +48,7 @@ _SIDE_OFFSET_MM = 1e-5  # mm from a part, on either side, at which the area is t
 _HALF_TURN = pi - 1e-9
 
 
-class AreaError(Exception):
+class PocketAreaError(Exception):
     """An error raised if contours enclose no area or cannot be offset. The message is a clause."""
 
 
@@ -129,7 +129,7 @@ def is_counterclockwise(loop: Sequence[Element]) -> bool:
 def find_boundary(curves: Sequence[ElementLoop], contains_point: ContainsPoint) -> list[ElementLoop]:
     """Return the sections of the given curves that form the boundary of an area.
 
-    ``contains_point`` defines the area. Raises AreaError if the boundary is not closed.
+    ``contains_point`` defines the area. Raises PocketAreaError if the boundary is not closed.
     """
     elements = [part for loop in curves for element in loop for part in _split_large_arcs(element)]
     if not elements:
@@ -145,7 +145,7 @@ def _divide_at_crossings(element: Element, every: ElementIndex) -> list[Element]
     parts = split_at_edges(element, every)
     ends = {
         end
-        for other in every.find_near(element.bounding_box, SAME_POINT_TOLERANCE_MM)
+        for other in every.find_elements_near(element.bounding_box, SAME_POINT_TOLERANCE_MM)
         for end in (other.start, other.end)
     }
     for end in ends:
@@ -184,7 +184,7 @@ def _direction_halfway(part: Element) -> Point:
 def make_inset_loops(loops: Sequence[ElementLoop], distance: float) -> list[ElementLoop]:
     """Return the boundary of the points inside the loops, at least ``distance`` mm from the loops.
 
-    Raises AreaError if the boundary is not closed.
+    Raises PocketAreaError if the boundary is not closed.
     """
     if distance <= 0.0 or not loops:
         return [list(loop) for loop in loops]
@@ -216,7 +216,7 @@ def _apart(part: Element, contour: ElementIndex, least: float, within: Sequence[
     x, y = middle = part.get_point(part.length / 2.0)
     if any(
         compute_distance_to_point(element, middle) < least
-        for element in contour.find_near((x, x, y, y), least)
+        for element in contour.find_elements_near((x, x, y, y), least)
     ):
         return False
     return sum(each.compute_winding_number(middle) for each in within) > 0
@@ -240,7 +240,7 @@ def _remove_duplicates(parts: Sequence[Element]) -> list[Element]:
 def _chain_loops(parts: Sequence[Element]) -> list[ElementLoop]:
     """Return the sections connected to closed loops, sorted by their longest section, longest first.
 
-    Raises AreaError if a loop is not closed.
+    Raises PocketAreaError if a loop is not closed.
     """
     parts = _remove_tails(parts)
     starts = np.array([part.start for part in parts]).reshape(-1, 2)
@@ -281,7 +281,7 @@ def _collect_loop(parts: Sequence[Element], starts: npt.NDArray[np.float64], fre
         if min(home, nearest) > _JOIN_TOLERANCE_MM:
             if sum(part.length for part in loop) <= 2 * _JOIN_TOLERANCE_MM:
                 return []
-            raise AreaError("the offset contour is not closed")
+            raise PocketAreaError("the offset contour is not closed")
         if home <= nearest:
             break
         after = max(np.flatnonzero(away <= nearest + SAME_POINT_TOLERANCE_MM).tolist(),
@@ -332,7 +332,7 @@ class AreaChecker:
 
         The distance from the boundary must be at least ``distance`` mm.
         """
-        near = self._contour.find_near(element.bounding_box, distance)
+        near = self._contour.find_elements_near(element.bounding_box, distance)
         if any(compute_min_distance(other, element) < distance - 2 * _OFFSET_TOLERANCE_MM for other in near):
             return False
         return (
@@ -344,7 +344,7 @@ class AreaChecker:
         )
 
 
-def start_loop_near(loop: ElementLoop, point: Point) -> ElementLoop:
+def move_loop_start_near(loop: ElementLoop, point: Point) -> ElementLoop:
     """Return the same closed loop, but starting near a point.
 
     The new start is the end or the middle of an element, whichever is nearest to the point.
@@ -356,10 +356,10 @@ def start_loop_near(loop: ElementLoop, point: Point) -> ElementLoop:
     )
     del best
     index, half = cut
-    return start_loop_at(loop, index, loop[index].length / 2.0 if half else 0.0)
+    return move_loop_start_to(loop, index, loop[index].length / 2.0 if half else 0.0)
 
 
-def start_loop_at(loop: ElementLoop, index: int, distance: float) -> ElementLoop:
+def move_loop_start_to(loop: ElementLoop, index: int, distance: float) -> ElementLoop:
     """Return the same closed loop, but starting ``distance`` mm after the start of one element."""
     element = loop[index]
     turned = [*loop[index + 1 :], *loop[:index]]
@@ -384,8 +384,8 @@ def split_loop(loop: ElementLoop, length: float) -> tuple[list[Element], Element
         element = loop[at % len(loop)]
         if element.length > left + SAME_POINT_TOLERANCE_MM:
             first_elements.append(element.cut_section(element.start, element.get_point(left)))
-            return first_elements, start_loop_at(loop, at % len(loop), left)
+            return first_elements, move_loop_start_to(loop, at % len(loop), left)
         first_elements.append(element)
         left -= element.length
         at += 1
-    return first_elements, start_loop_at(loop, at % len(loop), 0.0)
+    return first_elements, move_loop_start_to(loop, at % len(loop), 0.0)

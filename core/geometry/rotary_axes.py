@@ -334,7 +334,7 @@ class PivotMove:
         spots -= np.array(self.kinematics.origin)
         return spots
 
-    def get_critical_fraction(self) -> float:
+    def get_fastest_rotation_fraction(self) -> float:
         """Return 0.5, because the axis rotation per path length has no particular maximum."""
         return 0.5
 

@@ -55,19 +55,23 @@ def scale_vector(a: Vector, factor: float) -> Vector:
     return a[0] * factor, a[1] * factor, a[2] * factor
 
 
-def dot_product(a: Vector, b: Vector) -> float:
+def compute_dot_product(a: Vector, b: Vector) -> float:
     """Return the scalar product of two vectors."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-def cross_product(a: Vector, b: Vector) -> Vector:
+def compute_cross_product(a: Vector, b: Vector) -> Vector:
     """Return the vector product of two vectors."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 def apply_matrix(matrix: Matrix, vector: Vector) -> Vector:
     """Return the product of a matrix and a vector."""
-    return dot_product(matrix[0], vector), dot_product(matrix[1], vector), dot_product(matrix[2], vector)
+    return (
+        compute_dot_product(matrix[0], vector),
+        compute_dot_product(matrix[1], vector),
+        compute_dot_product(matrix[2], vector),
+    )
 
 
 def transpose_matrix(matrix: Matrix) -> Matrix:
@@ -82,7 +86,11 @@ def multiply_matrices(*factors: Matrix) -> Matrix:
     for factor in factors:
         columns = transpose_matrix(factor)
         first, second, third = (
-            (dot_product(row, columns[0]), dot_product(row, columns[1]), dot_product(row, columns[2]))
+            (
+                compute_dot_product(row, columns[0]),
+                compute_dot_product(row, columns[1]),
+                compute_dot_product(row, columns[2]),
+            )
             for row in made
         )
         made = first, second, third
@@ -114,12 +122,12 @@ def make_frame_from_points(first: Vector, second: Vector, third: Vector) -> Matr
     if aside < MIN_VECTOR_LENGTH:
         raise InvalidFrameError("the first and third points are the same", "first-and-third-point-equal")
     x = scale_vector(u, 1.0 / along)
-    normal = cross_product(x, scale_vector(v, 1.0 / aside))
+    normal = compute_cross_product(x, scale_vector(v, 1.0 / aside))
     sine = math.hypot(*normal)
     if sine < MIN_SINE:
         raise InvalidFrameError("the three points are on one straight line", "points-on-one-line")
     z = scale_vector(normal, 1.0 / sine)
-    return transpose_matrix((x, cross_product(z, x), z))
+    return transpose_matrix((x, compute_cross_product(z, x), z))
 
 
 def make_frame_from_spatial_angles(x_angle: float, y_angle: float, z_angle: float) -> Matrix:
@@ -145,12 +153,12 @@ def make_frame_from_vectors(base: Vector, normal: Vector) -> Matrix:
     if long < MIN_VECTOR_LENGTH or wide < MIN_VECTOR_LENGTH:
         raise InvalidFrameError("a vector has zero length", "vector-without-length")
     z = scale_vector(normal, 1.0 / long)
-    y = cross_product(z, scale_vector(base, 1.0 / wide))
+    y = compute_cross_product(z, scale_vector(base, 1.0 / wide))
     sine = math.hypot(*y)
     if sine < MIN_SINE:
         raise InvalidFrameError("the two vectors are parallel", "parallel-vectors")
     y = scale_vector(y, 1.0 / sine)
-    return transpose_matrix((cross_product(y, z), y, z))
+    return transpose_matrix((compute_cross_product(y, z), y, z))
 
 
 def make_frame_from_projections(first: float, second: float, rotation: float) -> Matrix:
@@ -164,7 +172,7 @@ def make_frame_from_projections(first: float, second: float, rotation: float) ->
         raise InvalidFrameError("a projection angle is 90 degrees", "projection-angle")
     along, aside = (c1, 0.0, s1), (0.0, c2, s2)
     return multiply_matrices(
-        make_frame_from_vectors(along, cross_product(along, aside)), make_rotation(Z_AXIS, rotation)
+        make_frame_from_vectors(along, compute_cross_product(along, aside)), make_rotation(Z_AXIS, rotation)
     )
 
 

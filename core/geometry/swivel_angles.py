@@ -19,9 +19,9 @@ from core.geometry.rotation_frames import (
     Matrix,
     Vector,
     apply_matrix,
+    compute_cross_product,
+    compute_dot_product,
     compute_z_rotation_deg,
-    cross_product,
-    dot_product,
     make_rotation,
     multiply_matrices,
     scale_vector,
@@ -34,7 +34,7 @@ REACHED_TOLERANCE = 1e-9  # sine of the angle below which a tool direction count
 TRAVEL_TOLERANCE_DEG = 1e-6  # degrees by which two travels must differ to count as different
 
 
-class SolutionSide(StrEnum):
+class PrimaryAxisSide(StrEnum):
     """The side on which the primary rotary axis is requested, as programmed with SYM or SEQ.
 
     The side is relative to the axis's symmetry point (SYM) or basic position (SEQ).
@@ -60,7 +60,7 @@ class SwivelSolution:
     symmetry_angle_deg: float = 0.0
     primary_angle_deg: float = 0.0
 
-    def is_on_side(self, side: SolutionSide | None) -> bool:
+    def is_on_side(self, side: PrimaryAxisSide | None) -> bool:
         """Return whether the solution is on this side.
 
         The symmetry point and the basic position themselves are on both sides.
@@ -69,12 +69,12 @@ class SwivelSolution:
             return True
         angle = (
             self.symmetry_angle_deg
-            if side in {SolutionSide.SYM_PLUS, SolutionSide.SYM_MINUS}
+            if side in {PrimaryAxisSide.SYM_PLUS, PrimaryAxisSide.SYM_MINUS}
             else self.primary_angle_deg
         )
         return (
             angle >= -TRAVEL_TOLERANCE_DEG
-            if side in {SolutionSide.SYM_PLUS, SolutionSide.SEQ_PLUS}
+            if side in {PrimaryAxisSide.SYM_PLUS, PrimaryAxisSide.SEQ_PLUS}
             else angle <= TRAVEL_TOLERANCE_DEG
         )
 
@@ -100,9 +100,9 @@ def find_all_solutions(
         if (
             rotates_table
             and first is not None
-            and math.hypot(*cross_product(first.direction, normal)) < PARALLEL_TOLERANCE_RAD
+            and math.hypot(*compute_cross_product(first.direction, normal)) < PARALLEL_TOLERANCE_RAD
         ):
-            angles[first.name] += math.copysign(1.0, dot_product(first.direction, normal)) * spin
+            angles[first.name] += math.copysign(1.0, compute_dot_product(first.direction, normal)) * spin
             spin = 0.0
         made = SwivelSolution(angles, spin, symmetry, primary)
         if not any(_same(machine, made, other) for other in found):
@@ -114,7 +114,7 @@ def choose_solution(
     machine: Kinematics,
     frame: Matrix,
     present_angles: Mapping[str, float],
-    side: SolutionSide | None = None,
+    side: PrimaryAxisSide | None = None,
     *,
     rotates_table: bool = False,
 ) -> SwivelSolution | None:
@@ -138,7 +138,7 @@ def find_reachable_solutions(
     machine: Kinematics,
     frame: Matrix,
     present_angles: Mapping[str, float],
-    side: SolutionSide | None = None,
+    side: PrimaryAxisSide | None = None,
     *,
     rotates_table: bool = False,
 ) -> list[SwivelSolution]:
@@ -158,21 +158,21 @@ def _iter_tilt_angles(machine: Kinematics, normal: Vector) -> Iterator[tuple[dic
     """
     angles = dict(machine.zero_angles)
     tilting = list(machine.rotary_axes)
-    while tilting and math.hypot(*cross_product(tilting[-1].direction, Z_AXIS)) < REACHED_TOLERANCE:
+    while tilting and math.hypot(*compute_cross_product(tilting[-1].direction, Z_AXIS)) < REACHED_TOLERANCE:
         tilting.pop()  # the axis rotates about the tool and does not tilt it
     if not tilting:
-        if math.hypot(*cross_product(Z_AXIS, normal)) < REACHED_TOLERANCE and normal[2] > 0.0:
+        if math.hypot(*compute_cross_product(Z_AXIS, normal)) < REACHED_TOLERANCE and normal[2] > 0.0:
             yield angles, 0.0, 0.0
     elif len(tilting) == 1:
         axis = tilting[0]
-        if abs(dot_product(axis.direction, normal)) < REACHED_TOLERANCE:
+        if abs(compute_dot_product(axis.direction, normal)) < REACHED_TOLERANCE:
             angle = _angle_about(axis.direction, Z_AXIS, normal)
             yield angles | {axis.name: angle}, angle, angle
     else:
         first, second = tilting[-2:]
         for tilt, symmetry in _iter_second_angles(first.direction, second.direction, normal):
             tool = apply_matrix(make_rotation(second.direction, tilt), Z_AXIS)
-            free = math.hypot(*cross_product(first.direction, normal)) < PARALLEL_TOLERANCE_RAD
+            free = math.hypot(*compute_cross_product(first.direction, normal)) < PARALLEL_TOLERANCE_RAD
             turn = angles[first.name] if free else _angle_about(first.direction, tool, normal)
             yield angles | {first.name: turn, second.name: tilt}, symmetry, tilt
 
@@ -183,8 +183,14 @@ def _iter_second_angles(a1: Vector, a2: Vector, normal: Vector) -> Iterator[tupl
     The larger angle is first. For either direction of the other axis, the mean is calculated from the
     displayed angles between -180 and 180.
     """
-    middle = math.degrees(math.atan2(dot_product(a1, cross_product(a2, Z_AXIS)), dot_product(a1, Z_AXIS)))
-    away = math.degrees(math.atan2(math.hypot(*cross_product(a1, normal)), dot_product(a1, normal)))
+    middle = math.degrees(
+        math.atan2(
+            compute_dot_product(a1, compute_cross_product(a2, Z_AXIS)), compute_dot_product(a1, Z_AXIS)
+        )
+    )
+    away = math.degrees(
+        math.atan2(math.hypot(*compute_cross_product(a1, normal)), compute_dot_product(a1, normal))
+    )
     low, high = sorted((_wrap_angle(middle + away), _wrap_angle(middle - away)))
     half = (high - low) / 2.0
     yield high, half
@@ -193,8 +199,12 @@ def _iter_second_angles(a1: Vector, a2: Vector, normal: Vector) -> Iterator[tupl
 
 def _angle_about(axis: Vector, start: Vector, end: Vector) -> float:
     """Return the signed angle in degrees from ``start`` to ``end``, as seen along ``axis``."""
-    p, q = (subtract_vectors(each, scale_vector(axis, dot_product(axis, each))) for each in (start, end))
-    return math.degrees(math.atan2(dot_product(axis, cross_product(p, q)), dot_product(p, q)))
+    p, q = (
+        subtract_vectors(each, scale_vector(axis, compute_dot_product(axis, each))) for each in (start, end)
+    )
+    return math.degrees(
+        math.atan2(compute_dot_product(axis, compute_cross_product(p, q)), compute_dot_product(p, q))
+    )
 
 
 def _wrap_angle(angle: float) -> float:

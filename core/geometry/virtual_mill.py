@@ -188,7 +188,7 @@ class PlaneMove:
         """
         if isinstance(self.frame, SidePlane) or self.length <= AXIS_TOLERANCE_MM:
             return [self]
-        share = self.get_critical_fraction()
+        share = self.get_fastest_rotation_fraction()
         if self.compute_distance_from_axis(share) > AXIS_TOLERANCE_MM or any(
             math.hypot(*end[:2]) <= AXIS_TOLERANCE_MM for end in (self.start, self.end)
         ):
@@ -217,7 +217,7 @@ class PlaneMove:
             return abs(turn)
         return turn
 
-    def get_critical_fraction(self) -> float:
+    def get_fastest_rotation_fraction(self) -> float:
         """Return the fraction of the path that is closest to the axis."""
         if self.center is None:
             dx, dy = self.end[0] - self.start[0], self.end[1] - self.start[1]
@@ -235,7 +235,7 @@ class PlaneMove:
         """Return the minimum and the maximum of lathe X, Z, C (3,) along the path."""
         count = 2 if self.is_straight else _SAMPLES
         table = self.compute_machine_positions(
-            np.append(np.linspace(0.0, 1.0, count), self.get_critical_fraction())
+            np.append(np.linspace(0.0, 1.0, count), self.get_fastest_rotation_fraction())
         )
         return table.min(axis=0), table.max(axis=0)
 

@@ -160,7 +160,7 @@ class HelixMove:
         ) @ np.array(self.transform.rotation)
         return spots
 
-    def get_critical_fraction(self) -> float:
+    def get_fastest_rotation_fraction(self) -> float:
         """Return 0.5, because the axis rotation per path length has no particular maximum."""
         return 0.5
 
@@ -171,7 +171,7 @@ CurvedMove = HelixMove | PivotMove | PlaneMove
 ``length`` is the length that the feed counts, in mm, or in degrees if ``is_feed_in_degrees``.
 ``compute_machine_positions`` returns positions (k, axes) at fractions (k,) from 0 to 1, without jumps.
 ``compute_workpiece_points`` returns the tool positions (k, 3) at machine positions.
-``get_critical_fraction`` returns the fraction at which the axes turn most per path length.
+``get_fastest_rotation_fraction`` returns the fraction at which the axes turn most per path length.
 """
 
 

@@ -11,7 +11,7 @@ import sys
 from core.interpreter.dialects import DIALECT_NAMES, get_code_book
 from core.language.code_book import CodeBook, CodeBookEntry
 from core.language.source import Dialect
-from core.page_contents import make_contents
+from core.page_contents import make_table_of_contents
 
 _TOP = """\
 # {name}, code by code
@@ -33,7 +33,7 @@ def render_code_book(dialect: Dialect) -> str:
         f"\n## {title}\n\n" + "".join(map(_entry, entries)) for title, entries in book.chapters
     )
     titles = [*(["Cycle parameters"] if book.word_meanings else []), *(title for title, _ in book.chapters)]
-    top = _TOP.format(name=DIALECT_NAMES[dialect], dialect=dialect, contents=make_contents(titles))
+    top = _TOP.format(name=DIALECT_NAMES[dialect], dialect=dialect, contents=make_table_of_contents(titles))
     return top + _frame(book) + _parameter_table(book) + chapters
 
 

@@ -10,7 +10,7 @@ from functools import cache, cached_property
 from typing import TYPE_CHECKING
 
 from core.interpreter.shared.interpretation import InterpreterPass, RejectedPass
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.language.source import Dialect, ProgramSource
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _LATHE_AXES = 3
 
 
-PassFactory = Callable[[Setup], InterpreterPass]
+PassFactory = Callable[[InterpreterSetup], InterpreterPass]
 """Function that makes another interpreter pass through a program that has already been read."""
 
 
@@ -38,13 +38,13 @@ class _OmniTurn:
     def __init__(self, program: Program) -> None:
         self.program = program
 
-    def __call__(self, setup: Setup) -> InterpreterPass:
+    def __call__(self, setup: InterpreterSetup) -> InterpreterPass:
         from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 
         return Interpreter(self.program.copy_for_pass(), setup)
 
 
-def interpret_mdi_line(source: ProgramSource, setup: Setup) -> InterpreterPass:
+def interpret_mdi_line(source: ProgramSource, setup: InterpreterSetup) -> InterpreterPass:
     """Return a pass through one MDI line in the machine's dialect.
 
     The pass starts from the state ``setup.begin``.
@@ -54,20 +54,20 @@ def interpret_mdi_line(source: ProgramSource, setup: Setup) -> InterpreterPass:
     return _LINE_INTERPRETERS[source.dialect](source, setup)
 
 
-def _omniturn_line(source: ProgramSource, setup: Setup) -> InterpreterPass:
+def _omniturn_line(source: ProgramSource, setup: InterpreterSetup) -> InterpreterPass:
     from core.interpreter.omniturn.omniturn_interpreter import Interpreter
     from core.interpreter.omniturn.omniturn_program import read_mdi_line
 
     return Interpreter(read_mdi_line(source), setup)
 
 
-def _sinumerik_line(source: ProgramSource, setup: Setup) -> InterpreterPass:
+def _sinumerik_line(source: ProgramSource, setup: InterpreterSetup) -> InterpreterPass:
     from core.interpreter.sinumerik.sinumerik_interpreter import Interpreter
 
     return Interpreter(source, setup)
 
 
-def _klartext_line(source: ProgramSource, setup: Setup) -> InterpreterPass:
+def _klartext_line(source: ProgramSource, setup: InterpreterSetup) -> InterpreterPass:
     from core.interpreter.klartext.klartext_interpreter import Interpreter
     from core.interpreter.klartext.klartext_mdi import read_mdi_block
 
@@ -75,7 +75,7 @@ def _klartext_line(source: ProgramSource, setup: Setup) -> InterpreterPass:
     return Interpreter(read_mdi_block(source, is_inch=not setup.metric), setup, setup.kinematics)
 
 
-_LINE_INTERPRETERS: Mapping[Dialect, Callable[[ProgramSource, Setup], InterpreterPass]] = {
+_LINE_INTERPRETERS: Mapping[Dialect, Callable[[ProgramSource, InterpreterSetup], InterpreterPass]] = {
     Dialect.OMNITURN: _omniturn_line,
     Dialect.SINUMERIK: _sinumerik_line,
     Dialect.KLARTEXT: _klartext_line,
@@ -94,14 +94,14 @@ def _klartext(source: ProgramSource, _strict: bool) -> PassFactory:
 
     program = read_program(source)
 
-    def begin(setup: Setup) -> InterpreterPass:
+    def start_pass(setup: InterpreterSetup) -> InterpreterPass:
         assert setup.kinematics is not None  # otherwise, the pass was rejected
         return Interpreter(program, setup, setup.kinematics)
 
-    return begin
+    return start_pass
 
 
-def _refusal(dialect: Dialect, setup: Setup) -> RejectedPass | None:
+def _refusal(dialect: Dialect, setup: InterpreterSetup) -> RejectedPass | None:
     """Return a rejected pass if this machine cannot run the dialect, or None otherwise."""
     lathe = len(setup.start) == _LATHE_AXES
     if dialect is Dialect.OMNITURN and not lathe:
@@ -130,9 +130,9 @@ def get_code_book(dialect: Dialect) -> CodeBook:
         from core.interpreter.omniturn.codes.omniturn_book import build_code_book
 
         return build_code_book()
-    from core.language.code_book_files import CODE_BOOKS_FOLDER, read_book
+    from core.language.code_book_files import CODE_BOOKS_FOLDER, read_code_book
 
-    return read_book(CODE_BOOKS_FOLDER / dialect)
+    return read_code_book(CODE_BOOKS_FOLDER / dialect)
 
 
 # The module of a language is imported when a program needs it.
@@ -169,7 +169,7 @@ class SharedProgram:
         """Return whether another program has the same text and the same parsing mode."""
         return self.source == other.source and self._strict == other._strict
 
-    def start_pass(self, setup: Setup) -> InterpreterPass:
+    def start_pass(self, setup: InterpreterSetup) -> InterpreterPass:
         """Start a new interpreter pass through the program with this setup, and return it."""
         dialect = self.source.dialect
         if refused := _refusal(dialect, setup):
@@ -178,7 +178,9 @@ class SharedProgram:
             return interpret_mdi_line(self.source, setup)
         return self._begin(setup)
 
-    def start_branching_pass(self, setup: Setup, branch_record: BranchRecord) -> BranchingPass | None:
+    def start_branching_pass(
+        self, setup: InterpreterSetup, branch_record: BranchRecord
+    ) -> BranchingPass | None:
         """Start a pass that can execute both branches of conditional calls, and return it.
 
         ``branch_record`` selects the branches. Returns None if the program does not read any inputs.
@@ -207,6 +209,6 @@ def _unread(source: ProgramSource, strict: bool) -> SharedProgram:
     return SharedProgram(source, strict=strict)
 
 
-def interpret_program(source: ProgramSource, setup: Setup) -> InterpreterPass:
+def interpret_program(source: ProgramSource, setup: InterpreterSetup) -> InterpreterPass:
     """Return a single pass through a program that is not shared with other passes."""
     return SharedProgram(source, strict=setup.strict).start_pass(setup)

@@ -75,7 +75,7 @@ class CodeBook:
     word_meanings: Mapping[str, str] = field(default_factory=dict)
     word_pattern: str = r"[A-Z_][A-Z0-9_]*"
 
-    def list_words(self, entry: CodeBookEntry) -> tuple[tuple[str, str], ...]:
+    def list_word_meanings(self, entry: CodeBookEntry) -> tuple[tuple[str, str], ...]:
         """Return the words that can follow a code, each with its meaning; unexplained words are omitted."""
         found = dict.fromkeys(re.findall(self.word_pattern, f"{entry.words} {entry.insert}".strip()))
         said = (

@@ -38,7 +38,7 @@ _KINDS: Mapping[str, type | tuple[type, ...]] = {
 _PLACEHOLDER = re.compile(r"\{(\w+)\}")
 
 
-def read_book(folder: Path) -> CodeBook:
+def read_code_book(folder: Path) -> CodeBook:
     """Return the code book of a folder.
 
     Raises ValueError if an entry is invalid or a code has more than one entry. The message names the code
@@ -105,13 +105,13 @@ def _fill_placeholders(text: str, known: Mapping[str, Any]) -> str:
     if "{" not in text:
         return text.strip("\n")
 
-    def part(hole: re.Match[str]) -> str:
+    def get_placeholder_text(hole: re.Match[str]) -> str:
         found = known.get(hole[1])
         if isinstance(found, str):
             return _fill_placeholders(found, {name: each for name, each in known.items() if name != hole[1]})
         raise ValueError(f"{hole[0]} has no text")
 
-    return _PLACEHOLDER.sub(part, text).strip("\n")
+    return _PLACEHOLDER.sub(get_placeholder_text, text).strip("\n")
 
 
 def _replace_pieces(example: str, pieces: Mapping[str, str]) -> str:

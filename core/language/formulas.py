@@ -56,7 +56,7 @@ FUNCTION_OPERATIONS = {
 """Formula functions with the same name in every program language, by name."""
 
 
-def split_index(index: Formula) -> tuple[Formula, ...]:
+def get_index_formulas(index: Formula) -> tuple[Formula, ...]:
     """Return the formulas of an index in square brackets, with one formula for each dimension."""
     return index.operands if isinstance(index, Operation) and index.name == INDEX_OPERATION else (index,)
 

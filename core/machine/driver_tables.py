@@ -19,7 +19,7 @@ from core.table_schema import (
     find_raw_value,
     find_unknown_keys,
     read_named_tables,
-    read_table,
+    read_table_values,
 )
 
 ANALOG_INPUT_NAMES = ("feed_pot", "spindle_pot", "handwheel", "spindle_load")
@@ -47,7 +47,9 @@ class DriverTableReader:
         for table in self._tables:
             raw = file.raw(table.path)
             raw = {} if raw is None and table.is_always_read else raw
-            self.findings += read_table(raw, table.key_class, table.path, file.values, table.child_tables)
+            self.findings += read_table_values(
+                raw, table.key_class, table.path, file.file_values, table.child_tables
+            )
             self.findings += table.read_children(file)
         self.findings += _read_analog(file)
 
@@ -56,7 +58,7 @@ class DriverTableReader:
 
         Call this method only if the file has no findings.
         """
-        file, values = self.file, self.file.values
+        file, values = self.file, self.file.file_values
         refreshed = {name: values.read_number(f"io.out.{name}.refresh_ms") for name in outputs}
         return Hardware(
             uses_driver_host=values.read_flag("machine.feeder"),
@@ -92,7 +94,9 @@ def _read_analog(file: MachineFileReading) -> Iterator[FileFinding]:
     if isinstance(table, dict):
         yield from find_unknown_keys(table, list(ANALOG_INPUT_NAMES), "io.analog")
         table = {name: entry for name, entry in table.items() if name in ANALOG_INPUT_NAMES}
-    yield from read_named_tables({} if table is None else table, AnalogInputModel, "io.analog", file.values)
+    yield from read_named_tables(
+        {} if table is None else table, AnalogInputModel, "io.analog", file.file_values
+    )
 
 
 # --- rules between drivers and the rest of the file --------------------------------------------------------
@@ -105,10 +109,10 @@ def check_driver_tables(
     yield from _backend(file, drivers)
     yield from _spindle(file, drivers)
     yield from _check_orientation(file, drivers)
-    yield from _check_count_rates(file.values, drivers)
+    yield from _check_count_rates(file.file_values, drivers)
     yield from _renewed(file)
     yield from _guard(file)
-    yield from _check_serial_ports(file.values, drivers)
+    yield from _check_serial_ports(file.file_values, drivers)
     for table in list_driver_tables(drivers):
         yield from table.check_rules(file)
 
@@ -119,7 +123,7 @@ def _backend(file: MachineFileReading, drivers: Sequence[DriverDeclaration]) -> 
         if (
             driver.backend_name
             and path not in file.tables
-            and file.values.has_text("machine.backend", driver.backend_name)
+            and file.file_values.has_text("machine.backend", driver.backend_name)
         ):
             yield FileFinding(
                 Message("[{path}]", path=path),
@@ -133,7 +137,7 @@ def _backend(file: MachineFileReading, drivers: Sequence[DriverDeclaration]) -> 
 
 
 def _spindle(file: MachineFileReading, drivers: Sequence[DriverDeclaration]) -> Iterator[FileFinding]:
-    values, path = file.values, "spindle.driver"
+    values, path = file.file_values, "spindle.driver"
     if not values.has_values(path, "machine.backend"):
         return
     word, backend = values.text(path), values.text("machine.backend")
@@ -166,7 +170,7 @@ def _check_orientation(
     file: MachineFileReading, drivers: Sequence[DriverDeclaration]
 ) -> Iterator[FileFinding]:
     """Check that a spindle with orientation has a driver that supports it and is not the C axis."""
-    values, path = file.values, "spindle.oriented"
+    values, path = file.file_values, "spindle.oriented"
     if not values.has_values(path, "spindle.driver") or not values.read_flag(path):
         return
     word = values.text("spindle.driver")
@@ -214,7 +218,7 @@ def _check_count_rates(values: FileValues, drivers: Sequence[DriverDeclaration])
 
 
 def _renewed(file: MachineFileReading) -> Iterator[FileFinding]:
-    values = file.values
+    values = file.file_values
     for path in file.terminals:
         wanted = path.startswith("io.out.") and values.has_values(f"{path}.refresh_ms", f"{path}.safe")
         if (
@@ -233,8 +237,8 @@ def _renewed(file: MachineFileReading) -> Iterator[FileFinding]:
 
 def _guard(file: MachineFileReading) -> Iterator[FileFinding]:
     path = "interlocks.guard_stops"
-    named = "io.in.guard" in file.terminals or "io.in.guard.at" in file.values.invalid_paths
-    if file.values.has_values(path) and file.values.read_flag(path) and not named:
+    named = "io.in.guard" in file.terminals or "io.in.guard.at" in file.file_values.invalid_paths
+    if file.file_values.has_values(path) and file.file_values.read_flag(path) and not named:
         yield FileFinding(
             path,
             "true",

@@ -25,8 +25,8 @@ class Axis:
     max_speed: float
     max_acceleration: float
     count_size: float  # encoder and command step
-    following_window: float
-    following_time_s: float
+    following_error_window: float
+    following_error_time_s: float
     in_position_tolerance: float
     is_position_absolute: bool  # the position is known at power-up, so no homing is needed
     home_order: int = 0
@@ -47,10 +47,11 @@ class Axis:
     def compute_max_following_error(self, speed: float) -> float:
         """Return the permitted following error at a commanded speed.
 
-        The limit increases linearly from the standstill tolerance to ``following_window`` at ``max_speed``.
+        The limit increases linearly from the standstill tolerance to ``following_error_window`` at
+        ``max_speed``.
         """
         share = min(abs(speed) / self.max_speed, 1.0)
-        return self.standstill_tolerance + (self.following_window - self.standstill_tolerance) * share
+        return self.standstill_tolerance + (self.following_error_window - self.standstill_tolerance) * share
 
 
 @make_key_table
@@ -59,29 +60,29 @@ class SpindleModel:
 
     _: KW_ONLY
     rpm: Pair = declare_key(KeyRange(1.0, 20000.0, FileUnit.RPM), meaning="Lowest and highest speed.")
-    accel: float = declare_key(
+    acceleration_rpm_s: float = declare_key(
         KeyRange(10.0, 50000.0, FileUnit.RPM_PER_SECOND),
         name="accel_rpm_s",
         meaning="Acceleration of the spindle.",
     )
-    decel: float = declare_key(
+    deceleration_rpm_s: float = declare_key(
         KeyRange(10.0, 50000.0, FileUnit.RPM_PER_SECOND),
         name="decel_rpm_s",
         is_derived=True,
         meaning="Deceleration of the spindle. Default: `accel_rpm_s`.",
     )
-    at_speed: float = declare_key(
+    at_speed_tolerance: float = declare_key(
         KeyRange(0.005, 0.25, FileUnit.PERCENT),
         name="at_speed_pct",
         meaning="Largest difference between the measured and the commanded speed, in percent of the "
         "commanded speed, at which the spindle is at speed.",
     )
-    at_speed_time: float = declare_key(
+    at_speed_time_s: float = declare_key(
         KeyRange(0.05, 5.0, FileUnit.SECONDS),
         name="at_speed_s",
         meaning="Time for which the speed must be within `at_speed_pct` before the spindle is at speed.",
     )
-    timeout: float = declare_key(
+    timeout_s: float = declare_key(
         KeyRange(0.5, 60.0, FileUnit.SECONDS),
         name="timeout_s",
         meaning="Time within which the spindle must reach its speed or stop. If it does not, an alarm "
@@ -112,7 +113,7 @@ class SpindleModel:
         meaning="Speed at which the oriented spindle turns to its angle. The proof uses this value, and a "
         "faster spindle raises alarm 203.",
     )
-    power: float = declare_key(
+    power_w: float = declare_key(
         KeyRange(50.0, 100000.0, FileUnit.KILOWATTS),
         name="power_kw",
         default=0.0,
@@ -144,13 +145,13 @@ class OutputModel:
         meaning='Terminal of the output, written as the backend requires. "none": the machine does not '
         "have this output.",
     )
-    stated_safe: bool | str = declare_key(
+    configured_safe_state: bool | str = declare_key(
         name="safe",
         choices=(True, False, "keep"),
         meaning="State of the output after an E-stop and, where the backend supports it, if TurnDesk stops "
         'responding. "keep" leaves the output unchanged.',
     )
-    refresh: float = declare_key(
+    refresh_timeout_s: float = declare_key(
         KeyRange(0.05, 10.0, FileUnit.MILLISECONDS),
         name="refresh_ms",
         default=0.0,
@@ -161,7 +162,7 @@ class OutputModel:
     @property
     def safe_state(self) -> bool | None:
         """Return the state of the output after an E-stop, or None if an E-stop does not change it."""
-        return None if self.stated_safe == "keep" else self.stated_safe is True
+        return None if self.configured_safe_state == "keep" else self.configured_safe_state is True
 
 
 @make_key_table
@@ -190,28 +191,28 @@ class InputModel:
 class Timing:
     """The times of the control in seconds."""
 
-    commit: float = declare_key(
+    commit_time_s: float = declare_key(
         KeyRange(0.001, 0.2, FileUnit.MILLISECONDS),
         name="commit_ms",
         meaning="Remaining time before its execution below which a queued setpoint can no longer be "
         "changed. A feed hold and the end of a jog take effect after this time.",
     )
-    lookahead: float = declare_key(
+    lookahead_time_s: float = declare_key(
         KeyRange(0.1, 10.0, FileUnit.MILLISECONDS),
         name="lookahead_ms",
         meaning="Time for which setpoints are queued ahead of the motion.",
     )
-    low_water: float = declare_key(
+    low_water_time_s: float = declare_key(
         KeyRange(0.005, 2.0, FileUnit.MILLISECONDS),
         name="low_water_ms",
         meaning="If less than this time is queued during a cycle, TurnDesk starts a feed hold.",
     )
-    lease: float = declare_key(
+    motion_lease_s: float = declare_key(
         KeyRange(0.05, 0.5, FileUnit.MILLISECONDS),
         name="lease_ms",
         meaning="Time after which a jog stops if it is not renewed.",
     )
-    setpoint: float = declare_key(
+    setpoint_duration_s: float = declare_key(
         KeyRange(0.0001, 0.02, FileUnit.MILLISECONDS),
         name="setpoint_ms",
         default=0.001,
@@ -338,14 +339,14 @@ class ColletModel:
     """The opening and closing times of the collet in seconds."""
 
     _: KW_ONLY
-    open_time: float = declare_key(
+    open_time_s: float = declare_key(
         KeyRange(0.01, 10.0, FileUnit.SECONDS),
         name="open_s",
         default=0.5,
         meaning="Time that the collet takes to open. The proof uses it, and so does a cycle if no input "
         "`collet_closed` is wired.",
     )
-    close_time: float = declare_key(
+    close_time_s: float = declare_key(
         KeyRange(0.01, 10.0, FileUnit.SECONDS),
         name="close_s",
         is_derived=True,
@@ -373,7 +374,7 @@ class Machine:
     collet: ColletModel
     outputs: Mapping[str, OutputModel]
     inputs: Mapping[str, InputModel]
-    m_codes: Mapping[int, tuple[str, bool]]  # M code → output, state
+    m_code_outputs: Mapping[int, tuple[str, bool]]  # M code → output, state
     disabled_m_codes: frozenset[int] = frozenset()  # defined with enabled = false
     ignored_m_codes: frozenset[int] = frozenset()  # codes of other machines, which have no effect on this one
     missing_outputs: frozenset[str] = (
@@ -388,8 +389,10 @@ class Machine:
     mdi_language: str = "omniturn"  # language of MDI: omniturn, sinumerik or klartext
     control_model: str = "840d"  # SINUMERIK control for which the programs were written
     third_axis_name: str = "C"  # name of C in SINUMERIK programs, on the position display and on keys
-    is_c_modulo: bool = True  # C counts from 0 to below 360 degrees; otherwise its travel is -360 to +360
-    has_c_own_drive: bool = False  # C has its own drive and is not the spindle
+    is_c_axis_modulo: bool = (
+        True  # C counts from 0 to below 360 degrees; otherwise its travel is -360 to +360
+    )
+    has_separate_c_drive: bool = False  # C has its own drive and is not the spindle
     is_third_axis_linear: bool = False  # the third axis is linear, in mm instead of degrees
     hardware: Hardware = field(default_factory=Hardware)  # wiring of the machine
     kinematics: KinematicsModel | None = None  # kinematics of a mill with rotary axes
@@ -403,7 +406,7 @@ class Machine:
     @property
     def is_spindle_c_axis(self) -> bool:
         """Return whether the spindle is also the C axis, so that C cannot move while the spindle turns."""
-        return self.kind == "lathe" and not self.has_c_own_drive
+        return self.kind == "lathe" and not self.has_separate_c_drive
 
     def get_displayed_axis_name(self, name: str) -> str:
         """Return the name of an axis as displayed to the operator.

@@ -22,7 +22,7 @@ from core.table_schema import (
     find_unknown_keys,
     join_path,
     make_missing_finding,
-    read_table,
+    read_table_values,
 )
 
 _NONE = "none"  # terminal of an output that the machine does not have, such as a manual collet
@@ -91,7 +91,7 @@ class MachineReading:
                 FileFinding(f"[{path}]", "", "this table is missing but required by TurnDesk", "missing")
             )
         else:
-            self.findings += read_table(table, keys, path, self.values, children)
+            self.findings += read_table_values(table, keys, path, self.values, children)
 
     def _read_parent_table(self, path: str, known: tuple[str, ...]) -> Mapping[str, object]:
         """Return a table that contains other tables, or an empty table if the entry is not a table."""

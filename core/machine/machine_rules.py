@@ -34,7 +34,7 @@ def check_rules(values: FileValues) -> Iterator[FileFinding]:
 def _maximum_rule(path: str, limit: str, reason: str, unit: FileUnit) -> ValueRule:
     """Return the rule that the value at ``path`` must not exceed the value at ``limit``."""
 
-    def wrong(values: FileValues) -> str:
+    def find_error(values: FileValues) -> str:
         value, bound = values.read_number(path), values.read_number(limit)
         if value <= bound * (1 + 1e-9):
             return ""
@@ -47,23 +47,23 @@ def _maximum_rule(path: str, limit: str, reason: str, unit: FileUnit) -> ValueRu
             why=reason,
         )
 
-    return ValueRule(path, (limit,), wrong)
+    return ValueRule(path, (limit,), find_error)
 
 
 def _home_inside(axis: str) -> ValueRule:
     path = f"axis.{axis}.travel"
 
-    def wrong(values: FileValues) -> str:
+    def find_error(values: FileValues) -> str:
         low, high = values.read_pair(path)
         return "" if low <= 0.0 <= high else ("travel is measured from home, so 0 must be within the travel")
 
-    return ValueRule(path, (), wrong)
+    return ValueRule(path, (), find_error)
 
 
 def _fixed_points(axis: str) -> ValueRule:
     path = f"axis.{axis}.fixed_points"
 
-    def wrong(values: FileValues) -> str:
+    def find_error(values: FileValues) -> str:
         points, (low, high) = values.read_numbers(path), values.read_pair(f"axis.{axis}.travel")
         if len(points) > 1 and values.text("machine.kind") != "lathe":
             return (
@@ -85,7 +85,7 @@ def _fixed_points(axis: str) -> ValueRule:
             ends=" to ".join(ends),
         )
 
-    return ValueRule(path, (f"axis.{axis}.travel", "machine.kind"), wrong)
+    return ValueRule(path, (f"axis.{axis}.travel", "machine.kind"), find_error)
 
 
 def _jog_overrun_rule(axis: str) -> ValueRule:
@@ -95,7 +95,7 @@ def _jog_overrun_rule(axis: str) -> ValueRule:
     """
     vmax, amax = f"axis.{axis}.vmax", f"axis.{axis}.amax"
 
-    def wrong(values: FileValues) -> str:
+    def find_error(values: FileValues) -> str:
         v = values.read_number(vmax)
         run_on = values.read_number("machine.lease_ms") * v + v * v / (2 * values.read_number(amax))
         limit = values.read_number("limits.clearance")
@@ -111,14 +111,14 @@ def _jog_overrun_rule(axis: str) -> ValueRule:
             nearest=near,
         )
 
-    return ValueRule("machine.lease_ms", (vmax, amax, "limits.clearance"), wrong)
+    return ValueRule("machine.lease_ms", (vmax, amax, "limits.clearance"), find_error)
 
 
 def _corner_tolerance_rule(axis: str) -> ValueRule:
     """Return the rule that the corner tolerance must not be below the rounding error of one count."""
     path, count = "limits.corner_tolerance", f"axis.{axis}.count"
 
-    def wrong(values: FileValues) -> str:
+    def find_error(values: FileValues) -> str:
         said, least = values.read_number(path), math.sqrt(2.0) * values.read_number(count)
         if said == 0.0 or said >= least * (1 - 1e-9):
             return ""
@@ -131,13 +131,13 @@ def _corner_tolerance_rule(axis: str) -> ValueRule:
             least_shown=least_shown,
         )
 
-    return ValueRule(path, (count,), wrong)
+    return ValueRule(path, (count,), find_error)
 
 
 def _homing(axis: str) -> ValueRule:
     path = f"axis.{axis}.absolute"
 
-    def wrong(values: FileValues) -> str:
+    def find_error(values: FileValues) -> str:
         known = values.read_flag(path) or values.is_specified(f"axis.{axis}.home.order")
         known = known or (axis == "C" and values.text("machine.kind") == "lathe")  # M19 finds it
         return (
@@ -148,14 +148,14 @@ def _homing(axis: str) -> ValueRule:
             )
         )
 
-    return ValueRule(path, ("machine.kind",), wrong)
+    return ValueRule(path, ("machine.kind",), find_error)
 
 
 def _home_order_rules() -> tuple[ValueRule, ...]:
     """Return the rules by which no two axes may have the same place in the homing order."""
 
-    def rule(one: str, other: str) -> ValueRule:
-        def wrong(values: FileValues) -> str:
+    def make_order_rule(one: str, other: str) -> ValueRule:
+        def find_error(values: FileValues) -> str:
             same = values.read_number(f"axis.{one}.home.order") == values.read_number(
                 f"axis.{other}.home.order"
             )
@@ -169,9 +169,9 @@ def _home_order_rules() -> tuple[ValueRule, ...]:
                 else ""
             )
 
-        return ValueRule(f"axis.{other}.home.order", (f"axis.{one}.home.order",), wrong)
+        return ValueRule(f"axis.{other}.home.order", (f"axis.{one}.home.order",), find_error)
 
-    return tuple(rule(one, other) for one, other in combinations("XYZABC", 2))
+    return tuple(make_order_rule(one, other) for one, other in combinations("XYZABC", 2))
 
 
 def _timeout(values: FileValues) -> str:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from core.key_declaration import FileUnit, KeyRange, NumberTriple, declare_key, make_key_table
 from core.message import Message
 from core.secret_values import format_toml_value
-from core.table_schema import FileFinding, FileValues, read_table
+from core.table_schema import FileFinding, FileValues, read_table_values
 
 KINEMATICS_TABLE = "kinematics"
 MAX_ROTARY_AXIS_COUNT = 2
@@ -109,7 +109,9 @@ class KinematicsTableReader:
         return self._values.make_model(KinematicsModel, KINEMATICS_TABLE, chain=tuple(ordered))
 
     def _read(self, table: object, kind: str, rotary: Sequence[str]) -> None:
-        self.findings += read_table(table, KinematicsModel, KINEMATICS_TABLE, self._values, tuple(rotary))
+        self.findings += read_table_values(
+            table, KinematicsModel, KINEMATICS_TABLE, self._values, tuple(rotary)
+        )
         if kind != "mill":
             self.findings.append(
                 FileFinding(
@@ -133,7 +135,7 @@ class KinematicsTableReader:
                     )
                 )
                 continue
-            found = read_table(table[name], RotaryModel, path, self._values)
+            found = read_table_values(table[name], RotaryModel, path, self._values)
             self.findings += found
             if not found:
                 self._names.append(name)

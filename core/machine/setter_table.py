@@ -13,7 +13,7 @@ MAX_TOUCH_DELAY_S = 0.1  # s, longest time from the touch to the command to brak
 
 
 @make_key_table
-class SetterModel:
+class ToolSetterModel:
     """The position of the stylus of a tool setter, and the motion of a touch-off.
 
     Values are in mm and mm/s, with X as a radius.
@@ -65,7 +65,7 @@ class SetterModel:
 
 
 def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
-    values, here = file.values, "setter" in file.tables
+    values, here = file.file_values, "setter" in file.tables
     there = PROBE_INPUT in file.terminals
     if here and not there and f"{PROBE_INPUT}.at" not in values.invalid_paths:
         yield FileFinding(
@@ -115,7 +115,7 @@ SETTER_DRIVER = DriverDeclaration(
     tables=(
         DriverTable(
             "setter",
-            SetterModel,
+            ToolSetterModel,
             check_rules=_rules,
             purpose="A tool setter, or a probe at a fixed place, for touching off the tools of a lathe. "
             "It needs the input `probe`.",

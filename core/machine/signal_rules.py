@@ -212,7 +212,7 @@ def check_potentiometers(
     file: MachineFileReading, drivers: Sequence[DriverDeclaration]
 ) -> Iterator[FileFinding]:
     """Yield a finding for every potentiometer with an invalid range or switch."""
-    values = file.values
+    values = file.file_values
     there = (*file.terminals, *(path.removesuffix(".at") for path in values.invalid_paths))
     inputs = {path.removeprefix("io.in.") for path in there if path.startswith("io.in.")}
     for name in file.list_table_keys("io.analog"):
@@ -242,7 +242,7 @@ def check_missing_devices(file: MachineFileReading) -> Iterator[FileFinding]:
     Without this rule, a stop button on the pendant would be an input that never turns on.
     """
     analog = {f"io.analog.{name}": f"io.analog.{name}.at" for name in file.list_table_keys("io.analog")}
-    pots = {path: file.values.text(at) for path, at in analog.items() if file.values.has_values(at)}
+    pots = {path: file.file_values.text(at) for path, at in analog.items() if file.file_values.has_values(at)}
     reserved = tuple(each for each in DEVICE_PREFIXES if each not in file.address_prefixes)
     for path, terminal in {**file.terminals, **pots}.items():
         if terminal.startswith(reserved):
@@ -278,7 +278,7 @@ def _suggest_line(file: MachineFileReading, drivers: Sequence[DriverDeclaration]
 
     Without this input, the switch would always be at AUTO.
     """
-    backend = _backend(file.values, drivers)
+    backend = _backend(file.file_values, drivers)
     terminal = _free_input(file, drivers, backend) if backend is not None else "IN-…"
     key = switch if switch.replace("_", "").isalnum() else format_toml_value(switch)
     return Message(

@@ -41,7 +41,7 @@ def check_jog_buttons(file: MachineFileReading) -> Iterator[FileFinding]:
 
 def check_handwheel(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield a finding for every invalid handwheel count and every switch that is not a handwheel switch."""
-    values, analog = file.values, file.list_table_keys("io.analog")
+    values, analog = file.file_values, file.list_table_keys("io.analog")
     for name in analog:
         path = f"io.analog.{name}.counts_per_click"
         if values.has_values(path) and name == HANDWHEEL_INPUT and values.read_number(path) == 0:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from core.geometry.working_plane import AxisMove, CurvedMove
 
 
-class ModalLike(Protocol):
+class ModalStateLike(Protocol):
     """The modal values that the planner uses.
 
     The values are the rpm limits of constant surface speed, the shift of C in degrees, and whether the
@@ -89,7 +89,7 @@ class MotionBlock(Protocol):
         ...
 
     @property
-    def modal(self) -> ModalLike:
+    def modal(self) -> ModalStateLike:
         """Return the modal values that apply to the block."""
         ...
 
@@ -138,7 +138,7 @@ class BlockTable:
     length: FloatArray
 
 
-def read_blocks(blocks: Sequence[MotionBlock], rpm_max: float) -> BlockTable:
+def build_block_table(blocks: Sequence[MotionBlock], rpm_max: float) -> BlockTable:
     """Return the table of blocks that move.
 
     ``rpm_max`` is the maximum spindle speed in rpm. Raises MotionError with the block number if the kind of
@@ -347,10 +347,10 @@ def _is_row(each: MotionBlock | MoveSeries) -> TypeGuard[MoveSeries]:
     return isinstance(each, Sequence)  # single blocks are not sequences
 
 
-def build_table(batch: Sequence[BlockGroup], rpm_max: float) -> BlockTable:
-    """Return the table of all blocks of a batch; see ``read_blocks``."""
+def build_batch_table(batch: Sequence[BlockGroup], rpm_max: float) -> BlockTable:
+    """Return the table of all blocks of a batch; see ``build_block_table``."""
     unlike = [block for part in batch for block in (part if isinstance(part, list) else [part.pattern])]
-    table = read_blocks(unlike, rpm_max)
+    table = build_block_table(unlike, rpm_max)
     if all(isinstance(part, list) for part in batch):
         return table  # =
     counts = [n for part in batch for n in ([1] * len(part) if isinstance(part, list) else [len(part)])]

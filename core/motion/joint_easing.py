@@ -63,7 +63,9 @@ def _twice(values: npt.NDArray[np.generic]) -> FloatArray:
     return np.repeat(values, 2).astype(np.float64, copy=False)
 
 
-def ease_joints(joints: Points, distances: FloatArray, is_free: BoolArray, max_shifts: FloatArray) -> Points:
+def smooth_joint_points(
+    joints: Points, distances: FloatArray, is_free: BoolArray, max_shifts: FloatArray
+) -> Points:
     """Return the joints (m,) between path elements, moved toward the mean of their neighbors.
 
     ``distances`` contains the distances of the joints along the path. Each joint moves by at most
@@ -75,7 +77,7 @@ def ease_joints(joints: Points, distances: FloatArray, is_free: BoolArray, max_s
     span = _twice(np.maximum(distances[last] - distances[window.first_index], 1e-12))
     off = _twice(distances - window.mean(distances.astype(np.complex128)).real)
 
-    def mean(of: Points) -> Points:
+    def compute_neighbor_means(of: Points) -> Points:
         """Return the mean of the neighbors, shifted along their line to the joint's distance.
 
         The joints of a straight line therefore remain on the line.
@@ -89,10 +91,10 @@ def ease_joints(joints: Points, distances: FloatArray, is_free: BoolArray, max_s
         carried += rise
         return carried
 
-    once = mean(mean(joints))
+    once = compute_neighbor_means(compute_neighbor_means(joints))
     # A mean flattens the curve by some height, and the mean of the mean flattens it by as much again.
     smooth = 2.0 * view_coordinates(once)
-    smooth -= view_coordinates(mean(mean(once)))
+    smooth -= view_coordinates(compute_neighbor_means(compute_neighbor_means(once)))
     return _within(smooth, view_coordinates(joints), window, is_free, _twice(max_shifts)).view(np.complex128)
 
 
@@ -111,7 +113,7 @@ def _within(
         if not over.any():
             return smooth
         for correct, excess in ((np.add, over), (np.subtract, -over)):
-            most = near.find_largest(np.maximum(excess, 0.0, out=excess))
+            most = near.find_largest_values(np.maximum(excess, 0.0, out=excess))
             most *= movable
             correct(smooth, view_coordinates(window.mean(most.view(np.complex128))), out=smooth)
     return np.clip(smooth, low, high, out=smooth)
@@ -150,7 +152,7 @@ class _Near(NamedTuple):
         steps = [2 * step for step in _doublings()]
         return cls(tuple((step, (run[step:] == run[:-step]).astype(np.float64)) for step in steps))
 
-    def find_largest(self, values: FloatArray) -> FloatArray:
+    def find_largest_values(self, values: FloatArray) -> FloatArray:
         """Return the largest value (2m,) within ``MAX_NEIGHBOR_COUNT`` joints of each joint, at least 0."""
         ahead, back = values.copy(), values.copy()
         for step, same in self.doubling_steps:

@@ -25,7 +25,7 @@ from core.motion.axis_limits import (
     MotionError,
     MotionLimits,
 )
-from core.motion.block_table import BlockGroup, BlockTable, MotionBlock, build_table
+from core.motion.block_table import BlockGroup, BlockTable, MotionBlock, build_batch_table
 from core.motion.joint_easing import SUPPORT_PIECE_COUNT
 from core.motion.path_pieces import (
     SAME_POINT_TOLERANCE,
@@ -96,7 +96,7 @@ def divide_into_chords(move: CurvedMove, feed_mm_s: float, limits: MotionLimits)
     MAX_CHORD_ERROR_MM, measured on the part. Their directions differ so little that the feed ``feed_mm_s``
     is possible where two chords meet, unless the move itself has a corner there.
     """
-    share, nearest = np.linspace(0.0, 1.0, _FIRST_CHORDS + 1), move.get_critical_fraction()
+    share, nearest = np.linspace(0.0, 1.0, _FIRST_CHORDS + 1), move.get_fastest_rotation_fraction()
     if np.abs(share - nearest).min() > _ROUNDING:
         share = np.sort(np.append(share, nearest))
     for _ in range(_MAX_HALVINGS):
@@ -211,11 +211,11 @@ class MotionPath:
     - ``joint_distances`` (n+1,) are the distances of the joints along the path in mm. They include the
       length of earlier pieces that a builder has dropped.
     - ``speed_caps`` (n,) in mm/s and ``accelerations`` (n,) in mm/s² are the limits along the pieces.
-    - ``joint_limits`` (n+1,) are the squared speed limits of the joints, infinite at both ends.
+    - ``squared_speed_limits`` (n+1,) are the squared speed limits of the joints, infinite at both ends.
     - The block ``block_numbers[i]`` has the pieces ``first_pieces[i]:first_pieces[i+1]``; a block without
       length has no pieces.
     - ``start_position`` (axes,) is the first point of the path.
-    - The last ``loose_joint_count`` joints may still move, by the resolution of the words, when blocks
+    - The last ``movable_joint_count`` joints may still move, by the resolution of the words, when blocks
       are added.
     """
 
@@ -223,12 +223,12 @@ class MotionPath:
     joint_distances: FloatArray
     speed_caps: FloatArray
     accelerations: FloatArray
-    joint_limits: FloatArray
+    squared_speed_limits: FloatArray
     block_numbers: IntArray
     first_pieces: IntArray
     start_position: FloatArray
     limits: MotionLimits
-    loose_joint_count: int = 0
+    movable_joint_count: int = 0
 
     def __len__(self) -> int:
         return len(self.pieces)
@@ -260,7 +260,7 @@ class MotionPath:
             self.joint_distances[self.first_pieces[i + 1]]
         )
 
-    def piece_at(self, distances: FloatArray) -> IntArray:
+    def find_piece_indices(self, distances: FloatArray) -> IntArray:
         """Return the index of the piece at each distance along the path.
 
         At the junction of two pieces, this is the second piece.
@@ -268,14 +268,14 @@ class MotionPath:
         found: IntArray = np.searchsorted(self.joint_distances, distances, side="right") - 1
         return np.clip(found, 0, max(len(self) - 1, 0))
 
-    def positions_at(self, distances: FloatArray, piece: IntArray | None = None) -> FloatArray:
+    def compute_positions(self, distances: FloatArray, piece: IntArray | None = None) -> FloatArray:
         """Return the machine positions (k, axes) at the given distances (k,).
 
         The positions are exact on lines and arcs.
         """
         if not len(self):
             return np.tile(self.start_position, (len(distances), 1))
-        index = self.piece_at(distances) if piece is None else piece
+        index = self.find_piece_indices(distances) if piece is None else piece
         pieces = self.pieces[index]
         return pieces.point(np.clip(distances - self.joint_distances[index], 0.0, pieces.length))
 
@@ -319,7 +319,7 @@ class PathBuilder:
 
     def add_batch(self, batch: Sequence[BlockGroup], reached_distance: float = -np.inf) -> None:
         """Append blocks given as non-empty lists and series; see ``add_blocks``."""
-        table = build_table(batch, self.rpm_max)
+        table = build_batch_table(batch, self.rpm_max)
         if self._closed:
             raise MotionError(
                 Message(
@@ -397,7 +397,7 @@ class PathBuilder:
         keep = int(np.searchsorted(path.first_pieces, max(min(piece - 1, near), 0), side="right")) - 1
         piece = int(path.first_pieces[keep])
         self._s0 = float(path.joint_distances[piece])
-        self._start = path.positions_at(path.joint_distances[piece : piece + 1])[0]
+        self._start = path.compute_positions(path.joint_distances[piece : piece + 1])[0]
         self._parts = [path.pieces[piece:]]
         self._blocks = [path.block_numbers[keep:]]
         self._counts = [np.diff(path.first_pieces)[keep:]]
@@ -413,12 +413,12 @@ class PathBuilder:
             joint_distances=self._s0 + np.concatenate([[0.0], np.cumsum(pieces.length)]),
             speed_caps=cap,
             accelerations=a,
-            joint_limits=corner,
+            squared_speed_limits=corner,
             block_numbers=np.concatenate(self._blocks),
             first_pieces=np.concatenate([[0], np.cumsum(np.concatenate(self._counts))]),
             start_position=self._start,
             limits=self._limits,
-            loose_joint_count=SUPPORT_PIECE_COUNT
+            movable_joint_count=SUPPORT_PIECE_COUNT
             if not self._closed and ends_with_chord(pieces, self._limits)
             else 0,
         )

@@ -16,7 +16,7 @@ import numpy as np
 from core.message import Message
 from core.motion.axis_limits import OVERRIDE_MAX, FloatArray, IntArray, MotionError
 from core.motion.motion_path import MotionPath
-from core.motion.motion_profile import MotionProfile, Phases
+from core.motion.motion_profile import MotionPhases, MotionProfile
 
 # --- look-ahead -----------------------------------------------------------------------------------------
 
@@ -25,7 +25,7 @@ FEW_PIECES = 24  # number of limits up to which a plain loop is faster than arra
 _SUMS_ROW = 256  # =
 
 
-def limit_forward(limit: FloatArray, gain: FloatArray) -> FloatArray:
+def limit_values_forward(limit: FloatArray, gain: FloatArray) -> FloatArray:
     """Return the largest r (n+1,) with r[i] ≤ limit[i] and r[i+1] ≤ r[i] + gain[i].
 
     If ``limit`` contains squared speeds and ``gain`` (n,) ≥ 0 is 2·a·length, the result is the squared
@@ -49,12 +49,12 @@ def limit_forward(limit: FloatArray, gain: FloatArray) -> FloatArray:
     return _remove_rounding(carried.reshape(-1)[:count], limit, steps[1:count])
 
 
-def limit_backward(limit: FloatArray, gain: FloatArray) -> FloatArray:
+def limit_values_backward(limit: FloatArray, gain: FloatArray) -> FloatArray:
     """Return the largest r (n+1,) with r[i] ≤ limit[i] and r[i] ≤ r[i+1] + gain[i].
 
     The result is the squared speed from which braking is possible.
     """
-    return limit_forward(limit[::-1], gain[::-1])[::-1]
+    return limit_values_forward(limit[::-1], gain[::-1])[::-1]
 
 
 def _one_by_one(limits: list[float], gains: list[float]) -> FloatArray:
@@ -91,7 +91,7 @@ _TINY_LENGTH = 1e-12  # relative length below which a ramp or a cruise is a roun
 def make_rest_profile(path: MotionPath, distance: float) -> MotionProfile:
     """Return a profile without motion at the given distance."""
     none = np.empty(0)
-    phases = Phases(none, none, none, none, none, np.empty(0, dtype=np.int64))
+    phases = MotionPhases(none, none, none, none, none, np.empty(0, dtype=np.int64))
     return MotionProfile(
         path=path, start_distance=distance, end_distance=distance, duration_s=0.0, phases=phases
     )
@@ -145,11 +145,11 @@ class Ramps(NamedTuple):
     start_speeds: FloatArray
     speed_changes: FloatArray
 
-    def make_phases(self, start_times_s: FloatArray, piece_indices: IntArray) -> Phases:
+    def make_phases(self, start_times_s: FloatArray, piece_indices: IntArray) -> MotionPhases:
         """Return the phases that take time; the arguments have one entry for each of the 3·n phases."""
         kept = np.flatnonzero(self.durations_s)
         dt = self.durations_s.take(kept)
-        return Phases(
+        return MotionPhases(
             start_times_s=start_times_s.take(kept),
             durations_s=dt,
             start_distances=self.start_distances.take(kept),
@@ -247,7 +247,7 @@ def plan_motion(
     """
     _demand_sane(start_speed, feed_scale, rapid_scale)
     at = _start(path, start_distance)
-    first = int(path.piece_at(np.array([at]))[0])
+    first = int(path.find_piece_indices(np.array([at]))[0])
     if path.joint_distances[-1] - at <= ROUNDING_TOLERANCE or not len(path):
         return _rest(path, start_speed)
     if stop_early:
@@ -257,7 +257,7 @@ def plan_motion(
     blocked = np.flatnonzero(soft == 0.0)
     last = int(blocked[0]) if len(blocked) else len(soft)
     run = _PieceRun.from_path(path, at, first, first + last)
-    if len(blocked) and (last == 0 or not run.can_rest(start_speed)):
+    if len(blocked) and (last == 0 or not run.can_stop(start_speed)):
         return _braking_profile(path, at, start_speed, first)
     speeds = _squared_speeds(run, soft[:last] ** 2, start_speed)
     cap = soft[:last] ** 2
@@ -273,14 +273,14 @@ def find_last_settled_joint(path: MotionPath, start_distance: float | None = Non
     no corner. The speed at the start of the last piece may therefore have any value up to its limit. A
     joint is settled if its speed is the same for 0 and for this limit.
     """
-    first = int(path.piece_at(np.array([_start(path, start_distance)]))[0])
+    first = int(path.find_piece_indices(np.array([_start(path, start_distance)]))[0])
     # Later pieces may raise the limits of joints of short chords near the end.
     known = int(
         np.searchsorted(
             path.joint_distances[:-1], path.joint_distances[-1] - path.corner_reach_mm, side="right"
         )
     )
-    known = min(known, len(path) - path.loose_joint_count)
+    known = min(known, len(path) - path.movable_joint_count)
     settled, back = -1, _BACKWARD_PIECES
     while settled < 0 and known - first >= 2:
         begin = max(known - back, first)
@@ -299,9 +299,9 @@ def _find_settled_joint(path: MotionPath, first: int, known: int) -> int:
     np.minimum(limit, soft, out=limit)
     np.minimum(limit[1:], soft[:-1], out=limit[1:])
     gain = run.squared_speed_gains[:-1]
-    most = limit_backward(limit, gain)
+    most = limit_values_backward(limit, gain)
     limit[-1] = 0.0
-    least = limit_backward(limit, gain)
+    least = limit_values_backward(limit, gain)
     same = np.flatnonzero(most - least <= _SETTLED * most)
     return first + int(same[-1]) if len(same) else -1
 
@@ -321,16 +321,18 @@ class _PieceRun:
         if len(length):
             length[0] = path.joint_distances[first + 1] - at
             hard[:-1] = cap
-            hard[1:-1] = np.minimum(np.minimum(cap[:-1], cap[1:]), path.joint_limits[first + 1 : last])
+            hard[1:-1] = np.minimum(
+                np.minimum(cap[:-1], cap[1:]), path.squared_speed_limits[first + 1 : last]
+            )
             if at <= path.joint_distances[first]:
-                hard[0] = min(cap[0], path.joint_limits[first])
+                hard[0] = min(cap[0], path.squared_speed_limits[first])
         return cls(length, path.accelerations[first:last], hard)
 
     @property
     def squared_speed_gains(self) -> FloatArray:
         return 2.0 * self.accelerations * self.length
 
-    def can_rest(self, v: float) -> bool:
+    def can_stop(self, v: float) -> bool:
         return v * v <= float(self.squared_speed_gains.sum()) + self.calculate_rounding_error(v)
 
     def calculate_rounding_error(self, v: float) -> float:
@@ -345,11 +347,11 @@ def _squared_speeds(run: _PieceRun, soft: FloatArray, v: float) -> FloatArray:
     limit = run.max_squared_speeds.copy()
     np.minimum(limit[:-1], soft, out=limit[:-1])
     np.minimum(limit[1:], soft, out=limit[1:])
-    allowed = limit_backward(limit, run.squared_speed_gains)
+    allowed = limit_values_backward(limit, run.squared_speed_gains)
     slack = run.calculate_rounding_error(v)
     if v * v <= allowed[0] + slack:
         allowed[0] = v * v
-        return limit_forward(allowed, run.squared_speed_gains)
+        return limit_values_forward(allowed, run.squared_speed_gains)
     return _brake_to_limits(run, allowed, v * v, slack)
 
 
@@ -371,7 +373,7 @@ def _brake_to_limits(run: _PieceRun, allowed: FloatArray, square: float, slack: 
     k = int(fits[0])
     _demand_passable(braked[:k], run.max_squared_speeds[:k], slack)
     allowed[k] = min(allowed[k], braked[k - 1] + run.squared_speed_gains[k - 1])
-    tail = limit_forward(allowed[k:], run.squared_speed_gains[k:])
+    tail = limit_values_forward(allowed[k:], run.squared_speed_gains[k:])
     return np.concatenate([braked[:k], tail])
 
 
@@ -396,9 +398,9 @@ def _braking_profile(path: MotionPath, at: float, v: float, first: int) -> Motio
     while True:
         last = min(len(path), last + max(64, last - first))
         run = _PieceRun.from_path(path, at, first, last)
-        if run.can_rest(v) or last == len(path):
+        if run.can_stop(v) or last == len(path):
             break
-    if not run.can_rest(v):
+    if not run.can_stop(v):
         _brake_to_limits(run, np.zeros(len(run.length) + 1), v * v, run.calculate_rounding_error(v))
     braked = v * v - np.concatenate([[0.0], np.cumsum(run.squared_speed_gains)])
     k = (

@@ -24,7 +24,7 @@ SHORT_PART_S = (
 MAX_PART_ANGLE_RAD = 0.25  # rad, longest part of an arc
 
 
-class Phases(NamedTuple):
+class MotionPhases(NamedTuple):
     """Arrays (k,) of k phases of constant acceleration along a path, each within one piece."""
 
     start_times_s: FloatArray  # start, s
@@ -34,9 +34,9 @@ class Phases(NamedTuple):
     accelerations: FloatArray  # mm/s²
     piece_indices: IntArray
 
-    def select_phases(self, selection: IntArray | BoolArray | slice) -> Phases:
+    def select_phases(self, selection: IntArray | BoolArray | slice) -> MotionPhases:
         """Return only the phases that ``selection`` selects."""
-        return Phases(
+        return MotionPhases(
             start_times_s=self.start_times_s[selection],
             durations_s=self.durations_s[selection],
             start_distances=self.start_distances[selection],
@@ -46,7 +46,7 @@ class Phases(NamedTuple):
         )
 
 
-def make_axis_segments(path: MotionPath, phases: Phases, time_origin_s: float) -> SegmentArrays:
+def make_axis_segments(path: MotionPath, phases: MotionPhases, time_origin_s: float) -> SegmentArrays:
     """Return the setpoint pieces (t, dt, p, v, a) of k phases; ``time_origin_s`` is added to times.
 
     A phase on a line gives one exact piece. A phase on an arc is divided into parts of equal time, each at
@@ -70,7 +70,7 @@ def make_axis_segments(path: MotionPath, phases: Phases, time_origin_s: float) -
 
 
 def _join_on_arc(
-    path: MotionPath, phases: Phases, nth: IntArray, h: FloatArray, begin: tuple[FloatArray, FloatArray]
+    path: MotionPath, phases: MotionPhases, nth: IntArray, h: FloatArray, begin: tuple[FloatArray, FloatArray]
 ) -> tuple[FloatArray, FloatArray]:
     """Return the velocity and acceleration that move each part from its start to its end on the arc."""
     end = (nth + 1) * h
@@ -84,7 +84,7 @@ def _join_on_arc(
     return v, np.where(short, _arc_acceleration(path, phases, v0), joining)
 
 
-def _arc_acceleration(path: MotionPath, phases: Phases, v: FloatArray) -> FloatArray:
+def _arc_acceleration(path: MotionPath, phases: MotionPhases, v: FloatArray) -> FloatArray:
     """Return the true acceleration (k, 3) at the start of phases on arcs.
 
     ``v`` (k, 3) is the velocity at this point.
@@ -100,7 +100,7 @@ def _arc_acceleration(path: MotionPath, phases: Phases, v: FloatArray) -> FloatA
     return curved
 
 
-def _part_counts(path: MotionPath, phases: Phases) -> IntArray:
+def _part_counts(path: MotionPath, phases: MotionPhases) -> IntArray:
     counts = np.ones(len(phases.start_times_s), dtype=np.int64)
     if not len(path):
         return counts
@@ -116,7 +116,7 @@ def _part_counts(path: MotionPath, phases: Phases) -> IntArray:
 
 
 def _phase_states(
-    path: MotionPath, phases: Phases, tau: FloatArray
+    path: MotionPath, phases: MotionPhases, tau: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the position, velocity and tangential acceleration (k, axes) at a time in each phase.
 
@@ -150,12 +150,12 @@ class MotionProfile:
     start_distance: float
     end_distance: float
     duration_s: float
-    phases: Phases
+    phases: MotionPhases
 
     def __len__(self) -> int:
         return len(self.phases.start_times_s)
 
-    def distance_and_speed_at(self, times_s: FloatArray | float) -> tuple[FloatArray, FloatArray]:
+    def compute_distances_and_speeds(self, times_s: FloatArray | float) -> tuple[FloatArray, FloatArray]:
         """Return the distances and speeds at the times ``times_s`` (m,).
 
         Times before the start give the state at the start. Times after the end give rest at the end.
@@ -182,18 +182,18 @@ class MotionProfile:
         last = self.phases.select_phases(slice(-1, None))
         return max(float(last.start_speeds[0] + last.accelerations[0] * last.durations_s[0]), 0.0)
 
-    def positions_at(self, times_s: FloatArray | float) -> FloatArray:
+    def compute_positions(self, times_s: FloatArray | float) -> FloatArray:
         """Return the machine positions (m, axes) at the times ``times_s`` (m,).
 
         The positions are exact on lines and arcs.
         """
         times = np.atleast_1d(np.asarray(times_s, dtype=np.float64))
-        s, _ = self.distance_and_speed_at(times)
+        s, _ = self.compute_distances_and_speeds(times)
         if not len(self):
-            return self.path.positions_at(s)
-        return self.path.positions_at(s, self.phases.piece_indices[self._phase(times)])
+            return self.path.compute_positions(s)
+        return self.path.compute_positions(s, self.phases.piece_indices[self._phase(times)])
 
-    def block_numbers_at(self, times_s: FloatArray | float) -> IntArray:
+    def find_block_numbers(self, times_s: FloatArray | float) -> IntArray:
         """Return the numbers of the blocks that are executed at the times ``times_s`` (m,).
 
         All numbers are 0 for a profile without motion.
@@ -204,10 +204,10 @@ class MotionProfile:
         owner: IntArray = self.path.pieces.block[self.phases.piece_indices[self._phase(times)]]
         return owner
 
-    def block_number_at(self, time_s: float) -> int:
+    def find_block_number(self, time_s: float) -> int:
         """Return the number of the block that is executed at ``time_s``, in seconds.
 
-        This is faster than ``block_numbers_at``.
+        This is faster than ``find_block_numbers``.
         """
         if not len(self):
             return 0
@@ -224,7 +224,7 @@ class MotionProfile:
         joints, first = self._joint_times(), self.path.first_pieces
         return self.path.block_numbers, joints[first[:-1]], joints[first[1:]]
 
-    def times_at_distances(self, distances: FloatArray) -> FloatArray:
+    def compute_times_at_distances(self, distances: FloatArray) -> FloatArray:
         """Return the times at which the motion reaches the distances (m,).
 
         The time is 0 before the start, and inf after the end.
@@ -282,7 +282,7 @@ class MotionProfile:
         ]
         return np.where(self.path.joint_distances > self.end_distance + ROUNDING_TOLERANCE_MM, np.inf, times)
 
-    def _window(self, t_from: float, t_to: float) -> Phases:
+    def _window(self, t_from: float, t_to: float) -> MotionPhases:
         lo, hi = max(t_from, 0.0), min(t_to, self.duration_s)
         if not len(self) or hi <= lo:
             return self.phases.select_phases(slice(0, 0))

@@ -17,7 +17,7 @@ import numpy as np
 from core.message import Message
 from core.motion.axis_limits import BoolArray, FloatArray, IntArray, MotionError, MotionLimits
 from core.motion.block_table import BlockTable
-from core.motion.joint_easing import ease_joints
+from core.motion.joint_easing import smooth_joint_points
 
 SAME_POINT_TOLERANCE = 1e-7  # mm or degrees; closer points count as one point
 _MAX_DEG_PER_MM = 1e5  # degrees of C per mm; distances have an accuracy of 1e-9 mm, so C has 1e-4 degrees
@@ -200,7 +200,7 @@ def smooth_joints(pieces: PathPieces, limits: MotionLimits) -> PathPieces:
     joints = _joint_positions(pieces)
     points = np.empty(len(joints), dtype=np.complex128)
     points.real, points.imag = joints[:, 0], joints[:, 1]
-    points = ease_joints(points, s, free, allowed)
+    points = smooth_joint_points(points, s, free, allowed)
     joints[:, 0], joints[:, 1] = points.real, points.imag
     return move_joints(pieces, joints, free)
 

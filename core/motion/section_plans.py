@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from core.motion.axis_limits import BoolArray, FloatArray, MotionError, MotionLimits
-from core.motion.block_table import BlockTable, MotionBlock, read_blocks
+from core.motion.block_table import BlockTable, MotionBlock, build_block_table
 from core.motion.motion_path import MotionPath, demand_unbroken, find_divided_blocks
 from core.motion.motion_plan import FEW_PIECES, find_ramps
 from core.motion.motion_profile import MotionProfile
@@ -49,7 +49,7 @@ def plan_sections(
     """
     plans: list[SectionPlan | None] = [None] * len(sections)
     try:
-        table = read_blocks([block for section in sections for block in section], rpm_max)
+        table = build_block_table([block for section in sections for block in section], rpm_max)
         demand_unbroken(table, None)
         pieces = make_pieces(table, find_block_speeds(table))
     except MotionError:
@@ -106,7 +106,7 @@ def _plan_rows(pieces: PathPieces, count: int, limits: MotionLimits) -> Iterator
             joint_distances=distances[row],
             speed_caps=caps[there],
             accelerations=accelerations[there],
-            joint_limits=joint_limits[row],
+            squared_speed_limits=joint_limits[row],
             block_numbers=own.block,
             first_pieces=first_pieces,
             start_position=own.start[0],

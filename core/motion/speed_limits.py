@@ -40,25 +40,25 @@ MAX_RPM_RATIO = 1.02  # largest factor of the spindle speed within a piece
 ARC_SAMPLE_COUNT = 65  # points at which the radius of an arc is sampled for the split
 
 
-class JointLimits(NamedTuple):
+class PathJointLimits(NamedTuple):
     """Speed limits and acceleration demands at k junctions (joints) of path elements.
 
-    ``squared_speeds`` (k,) are in mm²/s², and ``required_acceleration`` (k, axes) is in mm/s².
+    ``squared_speeds`` (k,) are in mm²/s², and ``required_accelerations`` (k, axes) is in mm/s².
     """
 
     joint_numbers: IntArray
     squared_speeds: FloatArray
-    required_acceleration: FloatArray
+    required_accelerations: FloatArray
 
 
-def find_joint_limits(
+def find_path_joint_limits(
     pieces: PathPieces,
-    single_limits: JointLimits,
+    single_limits: PathJointLimits,
     max_speeds: FloatArray,
     limits: MotionLimits,
     *,
     has_more_pieces: bool,
-) -> JointLimits:
+) -> PathJointLimits:
     """Return the limits at the joints of ``single_limits``, considering the path around each joint.
 
     Joint i is the junction of pieces i and i+1, passed at ``max_speeds`` (k,) mm/s or slower.
@@ -87,8 +87,8 @@ def find_joint_limits(
     taken = np.where((speeds**2 <= better)[:, :, None], asked, 0.0).max(axis=0, initial=0.0)
     taken[squared < max_speeds**2] = share
     kept = (squared <= single_limits.squared_speeds) & (squared > 0.0)
-    taken[kept] = single_limits.required_acceleration[kept]
-    return JointLimits(single_limits.joint_numbers, better, taken)
+    taken[kept] = single_limits.required_accelerations[kept]
+    return PathJointLimits(single_limits.joint_numbers, better, taken)
 
 
 def _second_difference(pieces: PathPieces, s: FloatArray, at: FloatArray, reach: FloatArray) -> FloatArray:
@@ -225,7 +225,7 @@ def _chord_demand(
     limits: MotionLimits,
     *,
     more: bool,
-) -> JointLimits:
+) -> PathJointLimits:
     """Return the limits of short chords over one setpoint interval.
 
     They apply at joints where the limits of the single corners would force a low speed.
@@ -235,8 +235,8 @@ def _chord_demand(
     alone = turns * (np.minimum(fastest**2, single) / mean)[:, None]
     much = (alone > _MIN_DEMAND_FRACTION * limits.max_acceleration_array).any(axis=1) | (single < fastest**2)
     joints = np.flatnonzero(much & (mean < fastest * limits.interval))
-    given = JointLimits(joints, single[joints], alone[joints])
-    return find_joint_limits(pieces, given, fastest[joints], limits, has_more_pieces=more)
+    given = PathJointLimits(joints, single[joints], alone[joints])
+    return find_path_joint_limits(pieces, given, fastest[joints], limits, has_more_pieces=more)
 
 
 def find_spare_acceleration(
@@ -245,14 +245,14 @@ def find_spare_acceleration(
     direction_changes: FloatArray,
     single_limits: FloatArray,
     limits: MotionLimits,
-    joint_limits: JointLimits,
+    joint_limits: PathJointLimits,
     *,
     has_more_pieces: bool,
 ) -> FloatArray:
     """Return the tangential acceleration (n,) that remains while short chords follow a curve.
 
     Chords that are passed within one setpoint interval act as a curve. The curve uses v²·|Δu|/ℓ of each
-    axis, or the demand over the whole interval (``JointLimits``). The remainder is (amax - used)/|u|. The
+    axis, or the demand over the whole interval (``PathJointLimits``). The remainder is (amax - used)/|u|. The
     corner limits ensure that at least a fifth of amax remains. If ``has_more_pieces`` is True, the last
     chord gets exactly this fifth, so that a later corner cannot reduce it. For longer lines and for arcs,
     the result is infinite.
@@ -266,7 +266,7 @@ def find_spare_acceleration(
     before = bend * np.minimum(speeds[1:] ** 2, single_limits)[:, None]
     after = bend * np.minimum(speeds[:-1] ** 2, single_limits)[:, None]
     before[joint_limits.joint_numbers] = after[joint_limits.joint_numbers] = (
-        joint_limits.required_acceleration
+        joint_limits.required_accelerations
     )
     taken = np.zeros(pieces.direction.shape)
     taken[1:] = before

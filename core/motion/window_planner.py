@@ -148,4 +148,4 @@ def sample_positions(
     count = max(math.ceil((profile.duration_s - time_offset_s) / interval_s), 0)
     t: FloatArray = time_offset_s + interval_s * np.arange(count, dtype=np.float64)
     t = t[t < profile.duration_s]
-    return t, profile.positions_at(t), profile.block_numbers_at(t)
+    return t, profile.compute_positions(t), profile.find_block_numbers(t)

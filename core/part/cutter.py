@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from core.part.swept_edge import AxisFacingEdge, FloatArray, Point, find_axis_facing_edge, sweep_edge
-from core.part.tool_outline import make_outline as outline_of
+from core.part.tool_outline import make_tool_outline as outline_of
 from core.part.tool_shape import ToolShape
 from core.part.turned_part import NO_CUT, Cut, TurnedPart
 
@@ -112,7 +112,7 @@ class Cutter:
     def _clearance(self, forward: int) -> float:
         outline = self._cutting.sides[0]
         edge = outline.far_edge if self.side is CutSide.BORE else outline.near_edge
-        rises = -forward * edge.slope
+        rises = -forward * edge.slopes
         lengths = np.where(rises > 0.0, np.hypot(np.diff(edge.z), np.diff(edge.r)), 0.0)
         sides = rises[lengths > 0.5 * lengths.max(initial=0.0)]  # without the chords of the nose
         return float(np.degrees(np.arctan(sides.min()))) if len(sides) else 90.0
@@ -152,9 +152,9 @@ class Cutter:
         ):
             return NO_CUT
         for outline in self._body.sides:
-            met = met.combine(self._take(part, outline, start, end, cut=True))
+            met = met.combine_with(self._take(part, outline, start, end, cut=True))
             if self.side is CutSide.BORE and not self.is_drill:
-                met = met.combine(_find_opposite_wall(part, outline, start, end))
+                met = met.combine_with(_find_opposite_wall(part, outline, start, end))
         return (
             met if met.depth_mm > _OVERLAP_TOLERANCE_MM and met.width_mm > _OVERLAP_TOLERANCE_MM else NO_CUT
         )
@@ -169,7 +169,7 @@ class Cutter:
         for outlines in (self._cutting, self._body):
             if not self._is_clear(part, outlines, start, end):
                 for outline in outlines.sides:
-                    met = met.combine(self._take(part, outline, start, end, cut=False))
+                    met = met.combine_with(self._take(part, outline, start, end, cut=False))
         return (
             met if met.depth_mm > _OVERLAP_TOLERANCE_MM and met.width_mm > _OVERLAP_TOLERANCE_MM else NO_CUT
         )
@@ -189,7 +189,7 @@ class Cutter:
         while at <= count + _PHASE:
             share = min(at / count, 1.0) if count else 0.0
             place = start[0] + (end[0] - start[0]) * share, start[1] + (end[1] - start[1]) * share
-            met = met.combine(self.cut_material(part, place, place))
+            met = met.combine_with(self.cut_material(part, place, place))
             at += 1.0
         return met
 
@@ -224,7 +224,7 @@ class Cutter:
         met = NO_CUT
         start, end = self._ends_on_working_side(start, end)
         for outline in self._cutting.sides:
-            met = met.combine(self._take(part, outline, start, end, cut=cut))
+            met = met.combine_with(self._take(part, outline, start, end, cut=cut))
         return met
 
     def _take(self, part: TurnedPart, outline: _OutlineSides, start: Point, end: Point, *, cut: bool) -> Cut:
@@ -266,7 +266,7 @@ class SolidTool(NamedTuple):
 
     lower_corner: FloatArray
     upper_corner: FloatArray
-    sides: tuple[Cutter, Cutter]
+    side_cutters: tuple[Cutter, Cutter]
 
     def find_collision(self, part: TurnedPart, start: Point, end: Point) -> Cut:
         """Return the material that the tool hits on a straight path, without removing it.
@@ -283,15 +283,15 @@ class SolidTool(NamedTuple):
             return NO_CUT
         if low[1] > radius or high[1] < -radius:
             return NO_CUT
-        front, rear = self.sides
-        return front.find_collision(part, start, end).combine(rear.find_collision(part, start, end))
+        front, rear = self.side_cutters
+        return front.find_collision(part, start, end).combine_with(rear.find_collision(part, start, end))
 
 
 class _NeighborTool(NamedTuple):
     """A tool with its position on the tool plate in Z and r."""
 
     plate_position: Point
-    solid: SolidTool
+    solid_tool: SolidTool
 
 
 class NeighborTools:
@@ -324,7 +324,7 @@ class NeighborTools:
                 shift = own[0] - each.plate_position[0], own[1] - each.plate_position[1]
                 if number == tool or dist(own, each.plate_position) < _SAME_PLACE_MM:
                     continue
-                if each.solid.find_collision(part, _moved(start, shift), _moved(end, shift)):
+                if each.solid_tool.find_collision(part, _moved(start, shift), _moved(end, shift)):
                     return number
         return 0
 

@@ -136,7 +136,7 @@ class InsertCodeError(CodedError, ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class Insert:
+class CuttingInsert:
     """The geometry of an indexable insert, in degrees and mm.
 
     ``corner_angles`` and ``edge_lengths`` are the interior angles and the edge lengths, counterclockwise
@@ -179,7 +179,7 @@ def calculate_edge_length(corner_deg: float, next_corner_deg: float, circle_diam
     )
 
 
-def make_insert(shape: str, circle_diameter: float, nose_radius: float) -> Insert:
+def make_insert(shape: str, circle_diameter: float, nose_radius: float) -> CuttingInsert:
     """Return the insert with this shape letter, inscribed circle and nose radius, in mm."""
     corners = CORNER_ANGLES[shape]
     if shape == "K":  # only the long edges of a parallelogram touch the circle; the end edge is short
@@ -189,7 +189,9 @@ def make_insert(shape: str, circle_diameter: float, nose_radius: float) -> Inser
             calculate_edge_length(corner, after, circle_diameter)
             for corner, after in pairwise((*corners, *corners[:1]))
         )
-    return Insert(shape, corners, edges, circle_diameter, nose_radius if corners else circle_diameter / 2.0)
+    return CuttingInsert(
+        shape, corners, edges, circle_diameter, nose_radius if corners else circle_diameter / 2.0
+    )
 
 
 def list_metric_circle_sizes(shape: str) -> dict[str, float]:
@@ -209,7 +211,7 @@ def list_metric_circle_sizes(shape: str) -> dict[str, float]:
 
 
 @lru_cache(maxsize=256)  # called for every feed of a program
-def decode_insert_code(code: str) -> Insert:
+def decode_insert_code(code: str) -> CuttingInsert:
     """Return the insert of an ISO or ANSI code.
 
     Characters after the size (edge condition, hand, chip breaker of the manufacturer) are ignored. Raises
@@ -375,15 +377,15 @@ class ToolHolder:
     """A tool holder, with dimensions in mm; 0 means not specified.
 
     A bar is round; a shank is square or nearly square. ``reach_mm`` is the distance from the tip to the far
-    side of the shank. ``entering_angle_deg`` is the entering angle in degrees. ``is_facing_angle`` is True
-    if this angle applies to a feed toward the axis. ``outline`` replaces all other values.
+    side of the shank. ``entering_angle_deg`` is the entering angle in degrees. ``is_angle_for_facing`` is
+    True if this angle applies to a feed toward the axis. ``outline`` replaces all other values.
     """
 
     shank_width_mm: float = 0.0
     bar_diameter_mm: float = 0.0
     reach_mm: float = 0.0
     entering_angle_deg: float = 0.0
-    is_facing_angle: bool = False
+    is_angle_for_facing: bool = False
     outline: tuple[tuple[float, float], ...] = ()
 
 

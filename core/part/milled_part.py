@@ -36,8 +36,8 @@ _LEVELS = 8  # exact floors of one path; a surface with more levels has no floor
 class RayCut(NamedTuple):
     """A cut on rays from the part's axis: its columns, its rays and the interval of r."""
 
-    columns: slice
-    rays: IntArray
+    column_range: slice
+    ray_indices: IntArray
     start_radii: FloatArray
     end_radii: FloatArray
 
@@ -77,7 +77,7 @@ class MilledPart:
 
     # --- a mill parallel to the axis
 
-    def mill_axial(
+    def mill_axial_path(
         self, path: FloatArray, radius: float, cutting_length: float = math.inf, cone_height: float = 0.0
     ) -> RemovedMaterial:
         """Mill along ``path`` (m, 3) with the tool parallel to Z.
@@ -102,11 +102,11 @@ class MilledPart:
     ) -> bool:
         """Return whether the mill would hit material on its path, without removing the material.
 
-        See ``mill_axial`` for the arguments.
+        See ``mill_axial_path`` for the arguments.
         """
         path, radius = _path_lines(path) + np.array([0.0, 0.0, _NEAR_DISTANCE_MM]), radius - _NEAR_DISTANCE_MM
 
-        def met(levels: FloatArray) -> bool:
+        def hits_material(levels: FloatArray) -> bool:
             return any(
                 self._met(self._axial_cuts(path + np.array([0.0, 0.0, rise]), r, length - rise, levels))
                 for rise, r in _iter_cone_steps(radius, point)
@@ -114,10 +114,10 @@ class MilledPart:
 
         # Columns are divided only if the mill may hit material, because a mill that enters a column is
         # checked twice.
-        if not met(self.field.column_edges[1:]):
+        if not hits_material(self.field.column_edges[1:]):
             return False
         self.field.divide_columns(_floor_levels(path, length))
-        return met(self.field.column_centers)
+        return hits_material(self.field.column_centers)
 
     def _axial_cuts(
         self, path: FloatArray, radius: float, length: float, levels: FloatArray
@@ -141,7 +141,7 @@ class MilledPart:
 
     # --- a mill on a radius
 
-    def mill_radial(
+    def mill_radial_path(
         self,
         path: FloatArray,
         radius: float,
@@ -153,7 +153,7 @@ class MilledPart:
 
         The path contains r of the tool end, z, and the polar angle in degrees. ``axis_offset`` is the
         offset of the tool's axis from the part's axis, positive toward increasing angles. See
-        ``mill_axial`` for ``cutting_length`` and ``cone_height``.
+        ``mill_axial_path`` for ``cutting_length`` and ``cone_height``.
 
         A move only in r, only in Z or, with the tool axis through the part axis, only in the angle is
         exact. Any other move is divided into steps with an error of at most 0.001 mm.
@@ -180,11 +180,11 @@ class MilledPart:
     ) -> bool:
         """Return whether the mill would hit material on its path, without removing the material.
 
-        See ``mill_radial`` for the arguments.
+        See ``mill_radial_path`` for the arguments.
         """
         runs = [_lifted(run, _NEAR_DISTANCE_MM) for run in self._group_strokes(path, radius, height)]
 
-        def met(wide: bool) -> bool:
+        def hits_material(wide: bool) -> bool:
             return any(
                 self._met(
                     self._radial_cuts(_lifted(run, rise), r, length - rise, height, covers_whole_columns=wide)
@@ -193,10 +193,10 @@ class MilledPart:
                 for run in runs
             )
 
-        if not met(wide=True):
+        if not hits_material(wide=True):
             return False
         self._divide_at_ends(runs, radius - _NEAR_DISTANCE_MM)
-        return met(wide=False)
+        return hits_material(wide=False)
 
     def _radial_cuts(
         self,
@@ -278,7 +278,7 @@ class MilledPart:
 
     def _take(self, reaches: Iterator[RayCut], met: RemovedMaterial) -> RemovedMaterial:
         for reach in reaches:
-            met = met.combine(self.field.find_removed_material(*reach))
+            met = met.combine_with(self.field.find_removed_material(*reach))
         return met
 
     def _met(self, reaches: Iterator[RayCut]) -> bool:

@@ -17,14 +17,15 @@ SHADES = 256
 class PartColors(NamedTuple):
     """Colors of the part and of the objects around it, as 0xRRGGBB.
 
-    ``outside``, ``bore``, ``section`` and ``hit`` are the colors of the part. ``chuck``, ``holder`` and
-    ``insert`` are the colors of the objects around it. ``background`` is the background color as 0xAARRGGBB.
+    ``outside``, ``bore``, ``section`` and ``hit_material`` are the colors of the part. ``chuck``, ``holder``
+    and ``insert`` are the colors of the objects around it. ``background`` is the background color as
+    0xAARRGGBB.
     """
 
     outside: int = 0xB9C3CC
     bore: int = 0xC9B48A
     section: int = 0xD98E4A
-    hit: int = 0xE5322D
+    hit_material: int = 0xE5322D
     background: int = 0x00000000
     chuck: int = 0x6F6A61
     holder: int = 0x6C7A89

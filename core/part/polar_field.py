@@ -49,7 +49,7 @@ class RemovedMaterial(NamedTuple):
     def __bool__(self) -> bool:
         return self.volume_mm3 > 0.0
 
-    def combine(self, other: RemovedMaterial) -> RemovedMaterial:
+    def combine_with(self, other: RemovedMaterial) -> RemovedMaterial:
         """Return the total of this cut and another cut."""
         return RemovedMaterial(
             self.volume_mm3 + other.volume_mm3,
@@ -338,7 +338,7 @@ class FieldCopy(NamedTuple):
     has only one ray.
     """
 
-    columns: Mapping[ColumnEnds, FloatArray]
+    radii_by_column: Mapping[ColumnEnds, FloatArray]
     column_edges: FloatArray
     layer_count: int
     ray_count: int
@@ -350,7 +350,7 @@ def make_compact_copy(field: PolarField, previous: FieldCopy | None) -> FieldCop
 
     Columns that are unchanged since ``previous`` share the memory of that copy.
     """
-    known = previous.columns if previous is not None else {}
+    known = previous.radii_by_column if previous is not None else {}
     ends = zip(field.column_edges[:-1].tolist(), field.column_edges[1:].tolist(), strict=True)
     columns = {
         pair: _share_column(field.inner_radii[:, at], field.outer_radii[:, at], known.get(pair))
@@ -362,9 +362,9 @@ def make_compact_copy(field: PolarField, previous: FieldCopy | None) -> FieldCop
 
 def restore_field(copy: FieldCopy) -> PolarField:
     """Return an independent field that is restored from a copy."""
-    shape = copy.layer_count, len(copy.columns), copy.ray_count
+    shape = copy.layer_count, len(copy.radii_by_column), copy.ray_count
     low, high = np.zeros(shape), np.zeros(shape)
-    for at, column in enumerate(copy.columns.values()):
+    for at, column in enumerate(copy.radii_by_column.values()):
         low[: column.shape[1], at], high[: column.shape[1], at] = column
     return PolarField(copy.column_edges.copy(), low, high, copy.max_columns)
 

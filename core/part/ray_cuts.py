@@ -152,8 +152,8 @@ def make_plane_path(
 ) -> FloatArray:
     """Return the path (n, 3) of a move in a working plane; ``z_offset`` (mm) is added to the program Z.
 
-    On the face, the path contains x, y and z of the mill's end, as for ``MilledPart.mill_axial``. On the
-    side, it contains r, z and the polar angle in degrees, as for ``MilledPart.mill_radial``.
+    On the face, the path contains x, y and z of the mill's end, as for ``MilledPart.mill_axial_path``. On the
+    side, it contains r, z and the polar angle in degrees, as for ``MilledPart.mill_radial_path``.
     """
     shares = np.linspace(0.0, 1.0, _count_chords(move, max_chord_error) + 1)
     if isinstance(move.frame, SidePlane):
@@ -186,7 +186,7 @@ def make_radial_path(positions: FloatArray, *, is_far_side: bool = False) -> Flo
     return np.column_stack([x, z, 180.0 - c]) if is_far_side else np.column_stack([-x, z, -c])
 
 
-def make_locked_path(
+def make_c_axis_path(
     start: FloatArray, end: FloatArray, max_chord_error: float = MAX_CHORD_ERROR_MM
 ) -> FloatArray:
     """Return points X, Z, C (n, 3) of the lathe along a straight move.
@@ -212,7 +212,7 @@ def _is_too_close_to_axis(move: PlaneMove) -> bool:
     """Return whether a face mill passes closer to the axis than its height offset permits."""
     return (
         not isinstance(move.frame, SidePlane)
-        and move.compute_distance_from_axis(move.get_critical_fraction())
+        and move.compute_distance_from_axis(move.get_fastest_rotation_fraction())
         < abs(move.frame.tool_height_mm) - _AXIS_TOLERANCE_MM
     )
 

@@ -9,7 +9,7 @@ from core.message import Message
 from core.part.insert_codes import InsertCodeError, decode_insert_code, parse_holder
 from core.part.tool_outline import BORING_ENTERING_ANGLES, ENTERING_ANGLES
 from core.part.tool_polygons import PartError, split_into_convex_pieces
-from core.part.tool_shape import Hand, ToolKind, ToolShape
+from core.part.tool_shape import ToolHand, ToolKind, ToolShape
 from core.tool_edges import TIP_DIRECTIONS
 
 _EDGED_TOOL_FIELDS = ("hand", "tip", "nose_radius", "insert", "holder", "entry", "stick_out", "rear")
@@ -84,9 +84,11 @@ def _check_entry_angle(shape: ToolShape, letter: str, point: float) -> Iterator[
     """Check that the end cutting edge does not extend in front of the tip."""
     holder = parse_holder(shape.holder)
     coded = (
-        holder.entering_angle_deg if holder and not (holder.is_facing_angle and not shape.internal) else 0.0
+        holder.entering_angle_deg
+        if holder and not (holder.is_angle_for_facing and not shape.internal)
+        else 0.0
     )
-    neutral = shape.hand is Hand.NEUTRAL or 0 in shape.direction
+    neutral = shape.hand is ToolHand.NEUTRAL or 0 in shape.direction
     usual = (
         0.0 if neutral else (BORING_ENTERING_ANGLES if shape.internal else ENTERING_ANGLES).get(letter, 0.0)
     )

@@ -32,7 +32,7 @@ _LIGHT = np.array([-0.38, 0.62, 0.69])  # right, up, toward the viewer
 _GHOST = 0.3
 
 
-class RoundAxis(StrEnum):
+class SymmetryAxis(StrEnum):
     """The axis about which a tool is rotationally symmetrical, if any."""
 
     NONE = ""
@@ -43,13 +43,13 @@ class RoundAxis(StrEnum):
 class ToolBody(NamedTuple):
     """A tool at its position, as outlines (k, 2) of Z and X in mm.
 
-    ``is_ghost`` means that the body of the tool is only assumed.
+    ``is_body_assumed`` means that the body of the tool is only assumed.
     """
 
     cutting_outlines: tuple[FloatArray, ...]
     body_outlines: tuple[FloatArray, ...]
-    round_axis: RoundAxis = RoundAxis.NONE
-    is_ghost: bool = False
+    symmetry_axis: SymmetryAxis = SymmetryAxis.NONE
+    is_body_assumed: bool = False
 
 
 class ImageLayer(NamedTuple):
@@ -62,7 +62,7 @@ class ImageLayer(NamedTuple):
     depth: DepthArray
     opacity: float = 1.0
 
-    def draw_over(self, image: ImageArray, depth: DepthArray) -> None:
+    def draw_onto_image(self, image: ImageArray, depth: DepthArray) -> None:
         """Draw the layer over a picture, and update the depth of the picture."""
         nearer = self.depth > depth
         if not nearer.any():
@@ -88,24 +88,24 @@ class _LitFace(NamedTuple):
 class _Viewer(NamedTuple):
     """The position of the viewer and the visible range.
 
-    ``rotation`` is the rotation into coordinates to the right, up and toward the viewer. ``z`` and ``x`` are
-    the visible ranges in mm.
+    ``rotation`` is the rotation into coordinates to the right, up and toward the viewer. ``z_range_mm`` and
+    ``x_range_mm`` are the visible ranges in mm.
     """
 
     rotation: FloatArray
     pixels_per_mm: float
-    z: tuple[float, float]
-    x: tuple[float, float]
+    z_range_mm: tuple[float, float]
+    x_range_mm: tuple[float, float]
 
 
 def make_chuck_solid(clamping: Clamping, stock: Stock) -> Solid:
     """Return the front of a chuck with jaws or of a collet, together with the tailstock center."""
     edges: list[float] = []
     columns: list[tuple[float, float]] = []  # inner and outer radius
-    if clamping.diameter:
-        inside = clamping.make_chuck_around(stock).bore_profile[0][1]
+    if clamping.chuck_diameter:
+        inside = clamping.make_chuck_for_stock(stock).bore_profile[0][1]
         body = -clamping.stick_out - clamping.jaw_length
-        radius, jaws = clamping.diameter / 2.0, (clamping.jaw_diameter or clamping.diameter) / 2.0
+        radius, jaws = clamping.chuck_diameter / 2.0, (clamping.jaw_diameter or clamping.chuck_diameter) / 2.0
         edges += [body - _CHUCK_FRONT_MM, body - _STEP, body]
         columns += [(inside, radius)] * 2
         if clamping.jaw_length:
@@ -138,11 +138,11 @@ def make_tool_layers(
     """
     eye = _make_viewer(view, width, height)
     for polygons, lift, thick, colour, ghost in (
-        (tool.body_outlines, 0.0, _HOLDER, colors[0], tool.is_ghost),
+        (tool.body_outlines, 0.0, _HOLDER, colors[0], tool.is_body_assumed),
         (tool.cutting_outlines, _INSERT_HEIGHT_MM, _INSERT, colors[1], False),
     ):
         faces = [
-            face for polygon in polygons for face in _faces(polygon, (lift, thick), tool.round_axis, eye)
+            face for polygon in polygons for face in _faces(polygon, (lift, thick), tool.symmetry_axis, eye)
         ]
         if faces:
             yield _make_layer(
@@ -166,9 +166,9 @@ def _make_viewer(view: SolidView, width: int, height: int) -> _Viewer:
 
 
 def _faces(
-    polygon: FloatArray, heights: tuple[float, float], round_: RoundAxis, eye: _Viewer
+    polygon: FloatArray, heights: tuple[float, float], round_: SymmetryAxis, eye: _Viewer
 ) -> Iterable[_LitFace]:
-    if round_ is not RoundAxis.NONE:
+    if round_ is not SymmetryAxis.NONE:
         return [_revolved_surface(polygon, round_, eye)]
     lift, thick = heights
     size = np.ptp(polygon, axis=0)
@@ -194,7 +194,7 @@ def _prism_faces(polygon: FloatArray, lift: float, thick: float, eye: _Viewer) -
             continue
         share = np.linspace(0.0, 1.0, max(math.ceil(length * eye.pixels_per_mm), 1), endpoint=False)
         edge = a + share[:, None] * vector
-        edge = edge[_seen(edge[:, 0], eye.z) & _seen(edge[:, 1], eye.x)]
+        edge = edge[_seen(edge[:, 0], eye.z_range_mm) & _seen(edge[:, 1], eye.x_range_mm)]
         points = np.column_stack([np.repeat(edge, len(down), axis=0), np.tile(down, len(edge))])
         yield _LitFace(points, float(shade))
 
@@ -210,10 +210,10 @@ def _face_brightness(eye: _Viewer, normals: FloatArray) -> FloatArray:
     return np.where(turned[..., 2] > 0.0, light, 0.0)
 
 
-def _revolved_surface(polygon: FloatArray, round_: RoundAxis, eye: _Viewer) -> _LitFace:
+def _revolved_surface(polygon: FloatArray, round_: SymmetryAxis, eye: _Viewer) -> _LitFace:
     """Return the surface of a rotating tool, whose outline is symmetrical about its axis."""
-    axis, across = (0, 1) if round_ is RoundAxis.Z else (1, 0)
-    span = eye.z if axis == 0 else eye.x
+    axis, across = (0, 1) if round_ is SymmetryAxis.Z else (1, 0)
+    span = eye.z_range_mm if axis == 0 else eye.x_range_mm
     low, high = max(polygon[:, axis].min(), span[0]), min(polygon[:, axis].max(), span[1])
     middle = 0.5 * (polygon[:, across].min() + polygon[:, across].max())
     at = np.linspace(low, high, max(math.ceil((high - low) * eye.pixels_per_mm), 2))
@@ -252,11 +252,11 @@ def _crossing_range(polygon: FloatArray, axis: int, at: FloatArray) -> tuple[Flo
 
 def _points_inside(polygon: FloatArray, eye: _Viewer) -> FloatArray:
     """Return the visible points (n, 2) of a convex outline, one pixel apart."""
-    low, high = max(polygon[:, 0].min(), eye.z[0]), min(polygon[:, 0].max(), eye.z[1])
+    low, high = max(polygon[:, 0].min(), eye.z_range_mm[0]), min(polygon[:, 0].max(), eye.z_range_mm[1])
     if high < low:
         return np.zeros((0, 2))
     at = np.linspace(low, high, max(math.ceil((high - low) * eye.pixels_per_mm), 2))
-    first, last = (np.clip(each, *eye.x) for each in _crossing_range(polygon, 0, at))
+    first, last = (np.clip(each, *eye.x_range_mm) for each in _crossing_range(polygon, 0, at))
     there = last >= first
     at, first, last = at[there], first[there], last[there]
     count = np.maximum(np.ceil((last - first) * eye.pixels_per_mm), 1.0).astype(np.intp)

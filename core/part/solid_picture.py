@@ -54,11 +54,11 @@ class _PointGroup(NamedTuple):
 
     first_point_index: int
     point_count: int
-    wall: LayerWall | None = None
+    layer_wall: LayerWall | None = None
     columns: IntArray | None = None
-    rays: slice = slice(None)
-    patch: SurfacePatch | None = None
-    cut_face_phi: float = 0.0  # phi of a cut face
+    ray_range: slice = slice(None)
+    surface_patch: SurfacePatch | None = None
+    cut_face_angle: float = 0.0  # phi of a cut face
     z: Float32Array | None = None
 
 
@@ -75,7 +75,7 @@ class SolidPicture:
         self._made_of: tuple[object, ...] = ()
         self._held: tuple[tuple[object, ...], ImageLayer] | None = None  # chuck or collet in the last view
 
-    def draw(
+    def draw_picture(
         self,
         solid: Solid,
         view: SolidView,
@@ -98,18 +98,20 @@ class SolidPicture:
                 replace(view, pixels_per_mm=0.5 * view.pixels_per_mm),
                 (-(-width // 2), -(-height // 2)),
             )
-            image = self.draw(solid, half, *small, version=version, hit_z_spans=hit_z_spans, scene=scene)
+            image = self.draw_picture(
+                solid, half, *small, version=version, hit_z_spans=hit_z_spans, scene=scene
+            )
             return image.repeat(2, axis=0).repeat(2, axis=1)[:height, :width]
         surface = self._kept(solid, view, width, version)
         image, depth = _PictureDrawing(surface, view, width, height).draw_image(
             self._table, self.colors.background, hit_z_spans
         )
         if scene.chuck is not None:
-            self._draw_chuck(scene.chuck, view, width, height).draw_over(image, depth)
+            self._draw_chuck(scene.chuck, view, width, height).draw_onto_image(image, depth)
         if scene.tool is not None:
             looks = (self.colors.holder, self.colors.insert)
             for layer in make_tool_layers(scene.tool, view, width, height, looks, _DEPTH, _FAR):
-                layer.draw_over(image, depth)
+                layer.draw_onto_image(image, depth)
         return image
 
     def _draw_chuck(self, chuck: Solid, view: SolidView, width: int, height: int) -> ImageLayer:
@@ -143,12 +145,12 @@ class _PictureDrawing:
     def __init__(self, surface: SolidSurface, view: SolidView, width: int, height: int) -> None:
         self.surface, self.view, self.width, self.height = surface, view, width, height
         self.cos, self.sin = (np.float32(part) for part in view.azimuth_cos_sin)
-        self.phi = view.to_viewer_angles(surface.ray_angles)
-        self.shown = ~view.is_cut_open(self.phi)
+        self.phi = view.convert_to_viewer_angles(surface.ray_angles)
+        self.shown = ~view.is_cut_out(self.phi)
         # Patches also need the angles halfway between rays.
-        phi = view.to_viewer_angles(np.arange(2 * surface.ray_count) * (math.pi / surface.ray_count))
+        phi = view.convert_to_viewer_angles(np.arange(2 * surface.ray_count) * (math.pi / surface.ray_count))
         self.near, self.up = np.cos(phi).astype(np.float32), np.sin(phi).astype(np.float32)
-        self.halves_shown = None if view.open_range_deg is None else ~view.is_cut_open(phi)
+        self.halves_shown = None if view.cut_out_range_deg is None else ~view.is_cut_out(phi)
         self.nearest = np.zeros((height + 2) * (width + 2), np.int64)
         self.groups: list[_PointGroup] = []
         self._next = 0
@@ -173,7 +175,7 @@ class _PictureDrawing:
             self._part_of_wall(wall, np.flatnonzero(wall.is_sloped), ~facing & self.shown)
 
     def _seen_inside(self) -> bool:
-        looked_into = self.surface.faces is not None or self.view.open_range_deg is not None
+        looked_into = self.surface.faces is not None or self.view.cut_out_range_deg is not None
         return looked_into or len(self.surface.inner_radii) > 1
 
     def _part_of_wall(self, wall: LayerWall, columns: IntArray | None, rays: BoolArray) -> None:
@@ -192,7 +194,9 @@ class _PictureDrawing:
             z, r = patch.z_px[:, None], patch.radius_px[:, None]
             if patch.half_ray_numbers is None:
                 for run in _true_slices(self.shown):
-                    group = _PointGroup(self._next, len(r) * (run.stop - run.start), rays=run, patch=patch)
+                    group = _PointGroup(
+                        self._next, len(r) * (run.stop - run.start), ray_range=run, surface_patch=patch
+                    )
                     self._put(group, z, r, self.up[::2][run], self.near[::2][run])
             else:
                 if self.halves_shown is not None:
@@ -201,15 +205,15 @@ class _PictureDrawing:
                     self.up[patch.half_ray_numbers][:, None],
                     self.near[patch.half_ray_numbers][:, None],
                 )
-                self._put(_PointGroup(self._next, len(r), patch=patch), z, r, up, near, masked=True)
+                self._put(_PointGroup(self._next, len(r), surface_patch=patch), z, r, up, near, masked=True)
 
     def _sections(self) -> None:
         """Draw the cut faces of the material at both edges of an opening."""
-        if self.view.open_range_deg is None:
+        if self.view.cut_out_range_deg is None:
             return
         surface = self.surface
         r = (np.arange(math.ceil(max(surface.max_radius_px, 1.0))) + 0.5).astype(np.float32)
-        for side, degrees in zip((1.0, -1.0), self.view.open_range_deg, strict=True):
+        for side, degrees in zip((1.0, -1.0), self.view.cut_out_range_deg, strict=True):
             edge = math.radians(degrees)
             away = np.abs(np.remainder(self.phi - edge + math.pi, 2.0 * math.pi) - math.pi)
             ray = 0 if surface.is_turned else int(np.argmin(away))
@@ -218,7 +222,7 @@ class _PictureDrawing:
                 metal |= (low[:, ray, None] <= r) & (r < high[:, ray, None])
             column, place = np.nonzero(metal)
             z = surface.z_px[column]
-            group = _PointGroup(self._next, len(column), cut_face_phi=side * (edge or 1e-9), z=z)
+            group = _PointGroup(self._next, len(column), cut_face_angle=side * (edge or 1e-9), z=z)
             up, near = np.array([math.sin(edge)], np.float32), np.array([math.cos(edge)], np.float32)
             self._put(group, z[:, None], r[place][:, None], up, near)
 
@@ -326,13 +330,13 @@ class _PictureDrawing:
         """Return the brightness (n,) and the colors of points of a group, and a mask of the rough points."""
         rough: BoolArray | bool = False
         colour: CodeArray | int = _SECTION
-        if group.wall is not None:
-            shade, z, colour, rough = self._wall_light(group, group.wall, index)
-        elif group.patch is not None:
-            shade, z, colour, rough = self._patch_light(group, group.patch, index)
+        if group.layer_wall is not None:
+            shade, z, colour, rough = self._wall_light(group, group.layer_wall, index)
+        elif group.surface_patch is not None:
+            shade, z, colour, rough = self._patch_light(group, group.surface_patch, index)
         else:
             assert group.z is not None
-            shade, z = self._section_light(group.cut_face_phi, len(index)), group.z[index]
+            shade, z = self._section_light(group.cut_face_angle, len(index)), group.z[index]
         if not hits:
             return shade, colour, rough
         at = z / self.view.pixels_per_mm + self.view.center_z_mm
@@ -342,8 +346,8 @@ class _PictureDrawing:
     def _wall_light(
         self, group: _PointGroup, wall: LayerWall, index: IndexArray
     ) -> tuple[Float32Array, Float32Array, CodeArray | int, BoolArray]:
-        row, ray = np.divmod(index, group.rays.stop - group.rays.start)
-        ray += group.rays.start
+        row, ray = np.divmod(index, group.ray_range.stop - group.ray_range.start)
+        ray += group.ray_range.start
         if group.columns is not None:
             row = group.columns[row]
         across, tangential, along = _wall_normals(wall, row, ray, self.surface)
@@ -361,8 +365,8 @@ class _PictureDrawing:
         self, group: _PointGroup, patch: SurfacePatch, index: IndexArray
     ) -> tuple[Float32Array, Float32Array, int, BoolArray]:
         if patch.half_ray_numbers is None:
-            index, ray = np.divmod(index, group.rays.stop - group.rays.start)
-            halves = 2 * (ray + group.rays.start)
+            index, ray = np.divmod(index, group.ray_range.stop - group.ray_range.start)
+            halves = 2 * (ray + group.ray_range.start)
         else:
             halves = patch.half_ray_numbers[index]
         shade = self._shade(halves, patch.normal_r[index], patch.normal_angle[index], patch.normal_z[index])

@@ -24,7 +24,7 @@ class SolidView:
     - ``tilt_deg`` raises the viewer: 0 is the position of the operator, and 90 is the view from above.
     - ``roll_deg`` is the angle of C.
     - ``pixels_per_mm`` is the scale, and ``center_z_mm`` is the Z of the middle of the picture.
-    - ``open_range_deg`` is the range of phi that is cut open, within -180 to 180, or None if the part is
+    - ``cut_out_range_deg`` is the range of phi that is cut open, within -180 to 180, or None if the part is
       closed.
     """
 
@@ -33,14 +33,14 @@ class SolidView:
     roll_deg: float = 0.0
     pixels_per_mm: float = 10.0
     center_z_mm: float = 0.0
-    open_range_deg: tuple[float, float] | None = None
+    cut_out_range_deg: tuple[float, float] | None = None
 
     @property
     def azimuth_cos_sin(self) -> tuple[float, float]:
         """Return the cosine and the sine of the azimuth."""
         return math.cos(math.radians(self.azimuth_deg)), math.sin(math.radians(self.azimuth_deg))
 
-    def to_viewer_angles(self, angles: npt.NDArray[np.floating]) -> FloatArray:
+    def convert_to_viewer_angles(self, angles: npt.NDArray[np.floating]) -> FloatArray:
         """Return phi from -pi to pi for polar angles of the part; all angles are in radians.
 
         The operator is at X+ of the lathe, which is the polar angle 180° with C at 0.
@@ -48,11 +48,11 @@ class SolidView:
         phi = math.radians(180.0 - self.tilt_deg - self.roll_deg) - angles
         return np.asarray(np.remainder(phi + math.pi, 2.0 * math.pi) - math.pi, dtype=np.float64)
 
-    def is_cut_open(self, phi: FloatArray) -> npt.NDArray[np.bool_]:
+    def is_cut_out(self, phi: FloatArray) -> npt.NDArray[np.bool_]:
         """Return a mask of the values of phi (radians) that are within the cut-open range."""
-        if self.open_range_deg is None:
+        if self.cut_out_range_deg is None:
             return np.zeros(phi.shape, dtype=np.bool_)
-        first, last = (math.radians(edge) for edge in self.open_range_deg)
+        first, last = (math.radians(edge) for edge in self.cut_out_range_deg)
         return (phi > first) & (phi < last)
 
     def project_to_screen(self, points: FloatArray, width: int, height: int) -> FloatArray:
@@ -61,7 +61,7 @@ class SolidView:
         ``points`` (n, 3) are r, z and the polar angle in degrees.
         """
         r, z, angle = points.T
-        phi = self.to_viewer_angles(np.radians(angle))
+        phi = self.convert_to_viewer_angles(np.radians(angle))
         cos, sin = self.azimuth_cos_sin
         right = (z - self.center_z_mm) * cos - r * np.cos(phi) * sin
         return np.column_stack(

@@ -46,11 +46,11 @@ class Stock:
         """Return the greatest radius of the outside profile, in mm."""
         return max(r for _, r in self.outside_profile)
 
-    def outside_radius_at(self, z: FloatArray) -> FloatArray:
+    def find_outside_radii(self, z: FloatArray) -> FloatArray:
         """Return the outside radius at each z (n,)."""
         return _at(self.outside_profile, z)
 
-    def bore_radius_at(self, z: FloatArray) -> FloatArray:
+    def find_bore_radii(self, z: FloatArray) -> FloatArray:
         """Return the radius of the bore at each z (n,), or 0 where the stock is solid."""
         return _at(self.bore_profile, z) if self.bore_profile else np.zeros(len(z))
 
@@ -61,12 +61,12 @@ def _at(profile: Sequence[Point], z: FloatArray) -> FloatArray:
     return radii
 
 
-def make_bar(diameter: float, front_z_mm: float, back_z_mm: float, specification: str = "") -> Stock:
+def make_bar_stock(diameter: float, front_z_mm: float, back_z_mm: float, specification: str = "") -> Stock:
     """Return a round bar with dimensions in mm."""
     return Stock(specification, ((back_z_mm, diameter / 2), (front_z_mm, diameter / 2)))
 
 
-def make_tube(
+def make_tube_stock(
     diameter: float, bore: float, front_z_mm: float, back_z_mm: float, specification: str = ""
 ) -> Stock:
     """Return a tube with dimensions in mm."""
@@ -105,7 +105,7 @@ class Clamping:
       degrees.
     """
 
-    diameter: float
+    chuck_diameter: float
     stick_out: float
     jaw_length: float = 0.0
     jaw_diameter: float = 0.0
@@ -119,11 +119,13 @@ class Clamping:
         """Return the outside points (Z, r) of the chuck, with Z ascending."""
         face, body = -self.stick_out, -self.stick_out - self.jaw_length
         front = ((body, self.jaw_diameter / 2), (face, self.jaw_diameter / 2)) if self.jaw_length else ()
-        return ((body - _BODY_LENGTH_MM, self.diameter / 2), (body, self.diameter / 2), *front)
+        return ((body - _BODY_LENGTH_MM, self.chuck_diameter / 2), (body, self.chuck_diameter / 2), *front)
 
-    def make_chuck_around(self, stock: Stock) -> Stock:
+    def make_chuck_for_stock(self, stock: Stock) -> Stock:
         """Return the material of the chuck or collet around the clamped stock."""
-        inside = min(stock.max_radius_mm, self.diameter / 2, (self.jaw_diameter or self.diameter) / 2)
+        inside = min(
+            stock.max_radius_mm, self.chuck_diameter / 2, (self.jaw_diameter or self.chuck_diameter) / 2
+        )
         back, front = self.chuck_outline[0][0], self.chuck_outline[-1][0]
         return Stock("", self.chuck_outline, ((back, inside), (front, inside)))
 

@@ -52,14 +52,14 @@ class StockSpec:
         mm. Raises StockError if the text of a profile is invalid.
         """
         if self.points:
-            return parse_profile(self.given, self.points, unit_mm, self.allowance)
+            return parse_stock_profile(self.given, self.points, unit_mm, self.allowance)
         front = self.allowance
         ends = front - self.length if self.length else min(back_z_mm, front) - _EXTRA_LENGTH_MM, front
         hole = tuple((z, self.bore / 2) for z in ends) if self.bore else ()
         return Stock(self.given, tuple((z, self.diameter / 2) for z in ends), hole)
 
 
-def parse_specification(text: str) -> StockSpec:
+def parse_stock_specification(text: str) -> StockSpec:
     """Return the parsed specification.
 
     Raises StockError for an invalid specification. The message contains the fault and the permitted forms
@@ -153,7 +153,7 @@ def _parse_length(text: str, whole: str) -> float:
     return float(found[1]) * (1.0 if (found[2] or "").lower() == "mm" else _INCH)
 
 
-def parse_profile(specification: str, text: str, unit_mm: float, allowance: float) -> Stock:
+def parse_stock_profile(specification: str, text: str, unit_mm: float, allowance: float) -> Stock:
     """Return the stock that is specified by CSV points.
 
     The columns are Z, r and optionally the radius of the bore, in units of ``unit_mm`` mm. Raises StockError

@@ -21,7 +21,7 @@ Point = tuple[float, float]
 _UPRIGHT = 1e-9  # mm; a narrower side does not bound a column
 
 
-class Columns(NamedTuple):
+class ColumnGrid(NamedTuple):
     """Equally spaced columns along Z, in mm.
 
     ``column_count`` is the number of columns, ``step_mm`` is their spacing, and ``first_z_mm`` is the middle
@@ -46,7 +46,7 @@ class Columns(NamedTuple):
 
 
 @lru_cache(maxsize=4)
-def _find_column_centers(columns: Columns) -> FloatArray:
+def _find_column_centers(columns: ColumnGrid) -> FloatArray:
     centers: FloatArray = columns.first_z_mm + columns.step_mm * np.arange(
         columns.column_count, dtype=np.float64
     )
@@ -57,12 +57,12 @@ def _find_column_centers(columns: Columns) -> FloatArray:
 class AxisFacingEdge(NamedTuple):
     """The side of a convex outline that faces the axis, as a chain of k points.
 
-    ``z`` (k,) is ascending, ``r`` has the shape (k,), and ``slope`` (k - 1,) is ascending.
+    ``z`` (k,) is ascending, ``r`` has the shape (k,), and ``slopes`` (k - 1,) is ascending.
     """
 
     z: FloatArray
     r: FloatArray
-    slope: FloatArray
+    slopes: FloatArray
 
 
 def find_axis_facing_edge(outline: FloatArray) -> AxisFacingEdge:
@@ -87,7 +87,7 @@ def _turn(a: Point, b: Point, c: Point) -> float:
 
 
 def sweep_edge(
-    edge: AxisFacingEdge, start: Point, end: Point, columns: Columns, max_radius_mm: float = math.inf
+    edge: AxisFacingEdge, start: Point, end: Point, columns: ColumnGrid, max_radius_mm: float = math.inf
 ) -> tuple[int, FloatArray]:
     """Return the first column that the edge reaches, and the least r (m,) in each column on the move.
 
@@ -99,7 +99,7 @@ def sweep_edge(
     if z_travel_mm <= _UPRIGHT:
         z, r = edge.z + z1, edge.r + min(r0, r1)
     else:
-        at = int(edge.slope.searchsorted((r0 - r1) / z_travel_mm))  # the edge is tangent to the move
+        at = int(edge.slopes.searchsorted((r0 - r1) / z_travel_mm))  # the edge is tangent to the move
         z = np.concatenate((edge.z[: at + 1] + z1, edge.z[at:] + z0))
         r = np.concatenate((edge.r[: at + 1] + r1, edge.r[at:] + r0))
     low, high = _ends_below(z, r, max_radius_mm)

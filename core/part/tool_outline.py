@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from core.part.insert_codes import (
-    Insert,
+    CuttingInsert,
     ToolHolder,
     decode_insert_code,
     make_insert,
@@ -38,7 +38,7 @@ from core.part.tool_polygons import (
     round_corners,
     split_into_convex_pieces,
 )
-from core.part.tool_shape import Hand, ToolKind, ToolShape
+from core.part.tool_shape import ToolHand, ToolKind, ToolShape
 from core.tool_edges import TIP_DIRECTIONS
 
 # Entering angles of the usual holders, ISO 5608: MCLN, DDJN, MVJN, MTJN, MWLN, MSRN, CKJN and the like.
@@ -65,14 +65,14 @@ _POINTS = {ToolKind.DRILL: 118.0, ToolKind.CENTER_DRILL: 60.0, ToolKind.THREADIN
 class ToolOutline:
     """Convex polygons (k, 2) of (z, r) about the control point, in mm, counterclockwise.
 
-    ``cutting_outlines`` remove material, and ``body_outlines`` must not touch any material. ``is_axial``
-    means that the tool is rotationally symmetrical about an axis parallel to Z. ``assumed_fields`` lists
-    the fields of the shape for which a standard size is used.
+    ``cutting_outlines`` remove material, and ``body_outlines`` must not touch any material.
+    ``is_axially_symmetric`` means that the tool is rotationally symmetrical about an axis parallel to Z.
+    ``assumed_fields`` lists the fields of the shape for which a standard size is used.
     """
 
     cutting_outlines: tuple[FloatArray, ...]
     body_outlines: tuple[FloatArray, ...] = ()
-    is_axial: bool = False
+    is_axially_symmetric: bool = False
     assumed_fields: tuple[str, ...] = ()
 
 
@@ -85,7 +85,7 @@ class _OutlineDrawing:
     body_outlines: list[FloatArray] = field(default_factory=list)
     assumed_fields: list[str] = field(default_factory=list)
 
-    def get_size(self, name: str, usual: float) -> float:
+    def get_dimension(self, name: str, usual: float) -> float:
         """Return the value of a dimension field of the shape, or ``usual`` if the field is not specified.
 
         A field for which the usual value is used is recorded by name.
@@ -97,13 +97,13 @@ class _OutlineDrawing:
         return usual
 
     @property
-    def holder(self) -> ToolHolder:
+    def tool_holder(self) -> ToolHolder:
         """Return the tool holder, as far as it is specified."""
         return parse_holder(self.shape.holder) or ToolHolder()
 
     def make_shank(self, usual: float) -> ToolHolder:
         """Return the specified shank, or the usual shank of the width ``usual``."""
-        holder = self.holder
+        holder = self.tool_holder
         if holder.shank_width_mm:
             return holder
         self.assumed_fields.append("holder")
@@ -125,7 +125,7 @@ class _OutlineDrawing:
         return np.array([-1.0 if self.is_tip_in_quadrant else 0.0, -1.0])
 
 
-def make_outline(shape: ToolShape) -> ToolOutline:
+def make_tool_outline(shape: ToolShape) -> ToolOutline:
     """Return the outline of a tool.
 
     Raises InsertCodeError for an invalid code, and PartError for an outline of the holder or of a form tool
@@ -134,7 +134,7 @@ def make_outline(shape: ToolShape) -> ToolOutline:
     """
     drawing = _OutlineDrawing(shape)
     _DRAW[shape.kind](drawing)
-    if pieces := drawing.holder.outline:
+    if pieces := drawing.tool_holder.outline:
         drawing.body_outlines = []
     pose = _rotate_to_direction if shape.is_rotating else _mirror_to_quadrant
     placed = _as_drawn if shape.kind is ToolKind.FORM else pose
@@ -187,7 +187,7 @@ def _rotate_to_direction(points: FloatArray, direction: tuple[int, int]) -> Floa
 # --- turning and boring -------------------------------------------------------------------------------------
 
 
-def _insert(drawing: _OutlineDrawing, usual_circle: float) -> Insert:
+def _insert(drawing: _OutlineDrawing, usual_circle: float) -> CuttingInsert:
     shape = drawing.shape
     if not shape.insert.strip():
         drawing.assumed_fields.append("insert")
@@ -198,19 +198,19 @@ def _insert(drawing: _OutlineDrawing, usual_circle: float) -> Insert:
     return make_insert(insert.shape, insert.inscribed_circle, shape.nose_radius or insert.nose_radius)
 
 
-def _edge_heading(drawing: _OutlineDrawing, insert: Insert, usual: Mapping[str, float]) -> float:
+def _edge_heading(drawing: _OutlineDrawing, insert: CuttingInsert, usual: Mapping[str, float]) -> float:
     """Return the direction of the insert's end cutting edge from the tip, in degrees from +z to +r."""
-    shape, holder, point = drawing.shape, drawing.holder, insert.point_angle
+    shape, holder, point = drawing.shape, drawing.tool_holder, insert.point_angle
     entry = shape.entry or holder.entering_angle_deg
-    if not entry and (not drawing.is_tip_in_quadrant or shape.hand is Hand.NEUTRAL):
+    if not entry and (not drawing.is_tip_in_quadrant or shape.hand is ToolHand.NEUTRAL):
         return 90.0 - point / 2.0
-    if holder.is_facing_angle and not shape.entry and not shape.internal:
+    if holder.is_angle_for_facing and not shape.entry and not shape.internal:
         return entry - 90.0
     return 180.0 - (entry or usual[insert.shape]) - point
 
 
 def _seat_insert(
-    drawing: _OutlineDrawing, insert: Insert, usual: Mapping[str, float]
+    drawing: _OutlineDrawing, insert: CuttingInsert, usual: Mapping[str, float]
 ) -> tuple[FloatArray, FloatArray]:
     """Return the outlines of the insert and of its seated part, relative to the control point.
 
@@ -241,7 +241,7 @@ def _turning(drawing: _OutlineDrawing) -> None:
     across = insert.inscribed_circle
     head = max(2.5 * across, 2.0 * max(insert.edge_lengths, default=across))
     holder = drawing.make_shank(next(wide for least, wide in _SHANKS if across >= least))
-    centred = not drawing.is_tip_in_quadrant or drawing.shape.hand is Hand.NEUTRAL
+    centred = not drawing.is_tip_in_quadrant or drawing.shape.hand is ToolHand.NEUTRAL
     far = holder.shank_width_mm / 2.0 if centred else holder.reach_mm
     _add_shank(drawing, seat, (far - holder.shank_width_mm, far), head)
 
@@ -259,7 +259,7 @@ def _add_shank(drawing: _OutlineDrawing, seat: FloatArray, side: tuple[float, fl
 
 def _boring(drawing: _OutlineDrawing) -> None:
     shape = drawing.shape
-    bar = shape.diameter or drawing.holder.bar_diameter_mm
+    bar = shape.diameter or drawing.tool_holder.bar_diameter_mm
     insert = _insert(drawing, next(circle for least, circle in _BAR_INSERTS if bar >= least))
     cutting, seat = _seat_insert(drawing, insert, BORING_ENTERING_ANGLES)
     drawing.cutting_outlines.append(cutting)
@@ -283,7 +283,7 @@ def _add_bar(drawing: _OutlineDrawing, seat: FloatArray, bar: float, axis: float
     away = np.array([back, 1.0])
     low, high = axis - bar / 2.0, axis + bar / 2.0
     start = min(head, float((seat * away)[:, 0].max()))
-    end = drawing.get_size("stick_out", 4.0 * bar)
+    end = drawing.get_dimension("stick_out", 4.0 * bar)
     drawing.body_outlines.append(
         find_convex_hull(np.concatenate([seat * away, [(start, low), (start, high)]])) * away
     )
@@ -298,7 +298,7 @@ def _add_bar(drawing: _OutlineDrawing, seat: FloatArray, bar: float, axis: float
 
 def _grooving(drawing: _OutlineDrawing) -> None:
     shape = drawing.shape
-    width = drawing.get_size("width", 3.0)
+    width = drawing.get_dimension("width", 3.0)
     nose = min(shape.nose_radius, 0.49 * width)
     depth = shape.length or (0.0 if shape.internal else shape.stick_out) or _usual_depth(shape, width)
     high = max(min(depth, max(1.5 * width, 2.0)), nose + MAX_NOSE_CHORD_ERROR_MM)
@@ -332,7 +332,7 @@ def _blade_behind(drawing: _OutlineDrawing, side: tuple[float, float], high: flo
     if depth > high:
         drawing.body_outlines.append(make_rectangle(side, (high, depth)))
     if shape.internal:
-        bar = drawing.get_size("diameter", 12.0)
+        bar = drawing.get_dimension("diameter", 12.0)
         _add_bar(drawing, make_rectangle(side, (depth, depth + bar)), bar, depth + bar / 2.0, side[0])
     elif shape.length or shape.stick_out:
         wide = drawing.make_shank(20.0).shank_width_mm
@@ -345,7 +345,7 @@ def _blade_behind(drawing: _OutlineDrawing, side: tuple[float, float], high: flo
 def _draw_threading(drawing: _OutlineDrawing) -> None:
     """Draw the V-shaped point of a threading tool, with a nose radius or a 1/8 pitch flat (ISO 68-1)."""
     shape = drawing.shape
-    angle = math.radians(drawing.get_size("point", _POINTS[ToolKind.THREADING]))
+    angle = math.radians(drawing.get_dimension("point", _POINTS[ToolKind.THREADING]))
     high = shape.length or max(shape.pitch, 3.0)
     flat = 0.0 if shape.nose_radius else shape.pitch / 8.0
     half = flat / 2.0 + high * math.tan(angle / 2.0)
@@ -388,10 +388,10 @@ def _add_round_shank(drawing: _OutlineDrawing, length: float, diameter: float) -
 
 
 def _drill(drawing: _OutlineDrawing) -> None:
-    diameter = drawing.get_size("diameter", 6.0)
+    diameter = drawing.get_dimension("diameter", 6.0)
     radius = diameter / 2.0
-    length = drawing.get_size("length", 8.0 * diameter)
-    cone = radius / math.tan(math.radians(drawing.get_size("point", _POINTS[ToolKind.DRILL]) / 2.0))
+    length = drawing.get_dimension("length", 8.0 * diameter)
+    cone = radius / math.tan(math.radians(drawing.get_dimension("point", _POINTS[ToolKind.DRILL]) / 2.0))
     length = max(length, cone)
     point = [(0.0, 0.0)] if cone > MAX_NOSE_CHORD_ERROR_MM else []  # a flat drill has no point
     drawing.cutting_outlines.append(
@@ -405,11 +405,11 @@ def _draw_center_drill(drawing: _OutlineDrawing) -> None:
 
     If the ``width`` of the shape is specified, it is the diameter of the pilot.
     """
-    diameter = drawing.get_size("diameter", 6.0)
+    diameter = drawing.get_dimension("diameter", 6.0)
     pilot = drawing.shape.width or 0.4 * diameter
     tip = pilot / 2.0 / math.tan(math.radians(60.0))
     root = 1.2 * pilot
-    angle = math.radians(drawing.get_size("point", _POINTS[ToolKind.CENTER_DRILL]) / 2.0)
+    angle = math.radians(drawing.get_dimension("point", _POINTS[ToolKind.CENTER_DRILL]) / 2.0)
     end = root + (diameter - pilot) / 2.0 / math.tan(angle)
     drawing.cutting_outlines.append(_mirror_half([(0.0, 0.0), (tip, pilot / 2.0), (root, pilot / 2.0)]))
     drawing.cutting_outlines.append(
@@ -419,8 +419,8 @@ def _draw_center_drill(drawing: _OutlineDrawing) -> None:
 
 
 def _reamer(drawing: _OutlineDrawing) -> None:
-    diameter = drawing.get_size("diameter", 6.0)
-    length = drawing.get_size("length", 5.0 * diameter)
+    diameter = drawing.get_dimension("diameter", 6.0)
+    length = drawing.get_dimension("length", 5.0 * diameter)
     lead = min(0.1 * diameter, 0.5)  # at 45°
     radius = diameter / 2.0
     drawing.cutting_outlines.append(_mirror_half([(0.0, radius - lead), (lead, radius), (length, radius)]))
@@ -429,9 +429,9 @@ def _reamer(drawing: _OutlineDrawing) -> None:
 
 def _draw_tap(drawing: _OutlineDrawing) -> None:
     """Draw a tap with a chamfer of three pitches that starts below the core diameter (ISO 68-1)."""
-    diameter = drawing.get_size("diameter", 6.0)
-    pitch = drawing.get_size("pitch", diameter / 6.0)
-    length = drawing.get_size("length", 2.5 * diameter + _TAP_LEAD * pitch)
+    diameter = drawing.get_dimension("diameter", 6.0)
+    pitch = drawing.get_dimension("pitch", diameter / 6.0)
+    length = drawing.get_dimension("length", 2.5 * diameter + _TAP_LEAD * pitch)
     end = max(diameter - 1.2 * pitch, 0.5 * diameter) / 2.0
     lead = min(_TAP_LEAD * pitch, length)
     drawing.cutting_outlines.append(
@@ -441,8 +441,8 @@ def _draw_tap(drawing: _OutlineDrawing) -> None:
 
 
 def _end_mill(drawing: _OutlineDrawing) -> None:
-    diameter = drawing.get_size("diameter", 6.0)
-    length = drawing.get_size("length", 3.0 * diameter)
+    diameter = drawing.get_dimension("diameter", 6.0)
+    length = drawing.get_dimension("length", 3.0 * diameter)
     nose = min(drawing.shape.nose_radius, diameter / 2.0)
     radii = [nose, 0.0, 0.0, nose]
     body = _cylinder(0.0, length, diameter / 2.0)

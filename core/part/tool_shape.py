@@ -24,7 +24,7 @@ class ToolKind(StrEnum):
     FORM = "form"
 
 
-class Hand(StrEnum):
+class ToolHand(StrEnum):
     """The hand of a tool.
 
     A right-hand turning tool cuts toward the chuck, and a left-hand tool cuts away from it.
@@ -63,7 +63,7 @@ class ToolShape:
     """
 
     kind: ToolKind = ToolKind.TURNING
-    hand: Hand = Hand.RIGHT
+    hand: ToolHand = ToolHand.RIGHT
     tip: int = 0
     nose_radius: float = 0.0
     insert: str = ""
@@ -111,5 +111,5 @@ class ToolShape:
         if self.tip not in {0, 9}:
             return TIP_DIRECTIONS[self.tip]
         across = 1 if self.internal is not self.rear else -1
-        along = {Hand.RIGHT: -1, Hand.LEFT: 1, Hand.NEUTRAL: 0}[self.hand]
+        along = {ToolHand.RIGHT: -1, ToolHand.LEFT: 1, ToolHand.NEUTRAL: 0}[self.hand]
         return (along, across)

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from core.part.stock import Stock
-from core.part.swept_edge import AxisFacingEdge, Columns, FloatArray, Point
+from core.part.swept_edge import AxisFacingEdge, ColumnGrid, FloatArray, Point
 
 DEFAULT_COLUMN_WIDTH_MM = 0.008
 """Default column width in mm, for up to ``_MAX_COLUMNS`` columns.
@@ -82,7 +82,7 @@ class Cut(NamedTuple):
     def __bool__(self) -> bool:
         return self.area > 0.0
 
-    def combine(self, other: Cut) -> Cut:
+    def combine_with(self, other: Cut) -> Cut:
         """Return the total of this cut and another cut."""
         if not self or not other:
             return self or other
@@ -96,11 +96,11 @@ class Cut(NamedTuple):
             self.is_parted_off or other.is_parted_off,
         )
 
-    def combine_sequence(self, other: Cut) -> Cut:
+    def combine_with_later(self, other: Cut) -> Cut:
         """Return the total of this cut and a later cut of the same move, with the greater of both depths."""
         if not self or not other:
             return self or other
-        return self.combine(other)._replace(depth_mm=max(self.depth_mm, other.depth_mm))
+        return self.combine_with(other)._replace(depth_mm=max(self.depth_mm, other.depth_mm))
 
 
 NO_CUT = Cut()
@@ -135,10 +135,10 @@ class TurnedPart:
         count = max(math.ceil(length / column_width - 1e-9), 1)
         column_width = length / count if count <= _MAX_COLUMNS else length / _MAX_COLUMNS
         count = min(count, _MAX_COLUMNS)
-        self.columns = Columns(stock.back_z_mm + column_width / 2, column_width, count)
+        self.columns = ColumnGrid(stock.back_z_mm + column_width / 2, column_width, count)
         middles = self.columns.column_centers
-        self.outer_radii = stock.outside_radius_at(middles)[np.newaxis, :].copy()
-        self.inner_radii = np.minimum(stock.bore_radius_at(middles), self.outer_radii[0])[
+        self.outer_radii = stock.find_outside_radii(middles)[np.newaxis, :].copy()
+        self.inner_radii = np.minimum(stock.find_bore_radii(middles), self.outer_radii[0])[
             np.newaxis, :
         ].copy()
         self.max_stock_radius_mm = stock.max_radius_mm
@@ -236,7 +236,7 @@ class TurnedPart:
         for low, high in zip(self.inner_radii[:, there], self.outer_radii[:, there], strict=True):
             left = np.maximum(radii, low)
             np.minimum(left, high, out=left)
-            met = met.combine(self._measure_cut(first_column, low, high, left, high))
+            met = met.combine_with(self._measure_cut(first_column, low, high, left, high))
             if remove:
                 high[:] = left
         return self._taken(met, cut=remove)
@@ -250,7 +250,7 @@ class TurnedPart:
         met = NO_CUT
         for low, high in zip(self.inner_radii[:, there], self.outer_radii[:, there], strict=True):
             left = np.maximum(np.minimum(radii, high), low)
-            met = met.combine(self._measure_cut(first_column, low, high, low, left))
+            met = met.combine_with(self._measure_cut(first_column, low, high, low, left))
             if remove:
                 low[:] = left
         return self._taken(met, cut=remove)
@@ -268,7 +268,7 @@ class TurnedPart:
             low, high = self.inner_radii[layer, there], self.outer_radii[layer, there]
             start, end = np.clip(inner_radii, low, high), np.clip(outer_radii, low, high)
             end = np.maximum(start, end)
-            met = met.combine(self._measure_cut(first_column, low, high, start, end))
+            met = met.combine_with(self._measure_cut(first_column, low, high, start, end))
             if remove:
                 self._split_layer(layer, there, start, end)
         return self._taken(met, cut=remove)

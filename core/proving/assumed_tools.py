@@ -14,7 +14,7 @@ from itertools import pairwise
 
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.message import Message
-from core.part.tool_shape import Hand, ToolKind, ToolShape
+from core.part.tool_shape import ToolHand, ToolKind, ToolShape
 from core.proving.tip_moves import FAST_FEED_MM_S, LiveToolStep, TipMove
 from core.tool_edges import format_edge_name
 
@@ -87,24 +87,24 @@ class ToolUse:
     is_bar_stop: bool = False  # the tool fed while the collet was open
     has_pause: bool = False  # the program waits or switches an output while the tool is at the part
     # blocks with C engaged or in a plane of the virtual mill
-    live_steps: list[LiveToolStep] = field(default_factory=list)
+    live_tool_steps: list[LiveToolStep] = field(default_factory=list)
 
     @property
     def is_metric(self) -> bool:
         """Return whether the program uses mm while it uses this tool."""
         modals = [
             *(move.modal for move in self.moves[:1]),
-            *(block.modal for block, _ in self.live_steps[:1]),
+            *(block.modal for block, _ in self.live_tool_steps[:1]),
         ]
         return any(modal.metric for modal in modals)
 
     @property
-    def live_blocks(self) -> list[Block]:
+    def live_tool_blocks(self) -> list[Block]:
         """Return the blocks of a live tool that move X, Z or the virtual mill.
 
         Blocks that only index C are left out.
         """
-        return [b for b, _ in self.live_steps if b.plane is not None or (b.x, b.z) != (b.x0, b.z0)]
+        return [b for b, _ in self.live_tool_steps if b.plane is not None or (b.x, b.z) != (b.x0, b.z0)]
 
     @property
     def first_rapid_position(self) -> TipMove | Block | None:
@@ -115,7 +115,7 @@ class ToolUse:
         """
         if self.is_bar_stop:
             return None
-        if blocks := self.live_blocks:
+        if blocks := self.live_tool_blocks:
             fed = any(not (b.rapid or b.feed >= FAST_FEED_MM_S) for b in blocks) or not all(
                 m.is_fast for m in self.moves
             )
@@ -123,7 +123,7 @@ class ToolUse:
         if self.has_pause:
             return None
         first = [m for m in self.moves if m.points[-1][0] < -_SQUARE][:1]
-        drawn = any(m.kind is BlockKind.ARC and not m.modal.rapid for m in self.moves)
+        drawn = any(m.block_kind is BlockKind.ARC and not m.modal.rapid for m in self.moves)
         if drawn and first and not first[0].modal.rapid and any(m.modal.rapid for m in self.moves):
             return None  # the tool cuts at the F of the first line and also makes rapids with G00
         there = [m for m in self.moves if m.rpm and m.points[-1][0] < _AT_FACE]
@@ -132,9 +132,11 @@ class ToolUse:
     @property
     def is_radial(self) -> bool:
         """Return whether a live tool enters the part along X instead of Z, such as in the plane ZC."""
-        if any(b.plane is not None and b.plane.is_on_side_plane for b, _ in self.live_steps):
+        if any(b.plane is not None and b.plane.is_on_side_plane for b, _ in self.live_tool_steps):
             return True
-        feeds = [b for b, _ in self.live_steps if b.plane is None and not b.rapid and b.feed < FAST_FEED_MM_S]
+        feeds = [
+            b for b, _ in self.live_tool_steps if b.plane is None and not b.rapid and b.feed < FAST_FEED_MM_S
+        ]
         along = sum(max(b.z0 - b.z, 0.0) for b in feeds)
         return sum(max(abs(b.x0) - abs(b.x), 0.0) for b in feeds) > along
 
@@ -151,7 +153,7 @@ class AssumedTool:
     is_kind_named: bool = False
     is_diameter_assumed: bool = False  # the diameter is assumed
 
-    def add_diameter(self, tool_use: ToolUse, bore_moves: Sequence[TipMove]) -> AssumedTool:
+    def add_assumed_diameter(self, tool_use: ToolUse, bore_moves: Sequence[TipMove]) -> AssumedTool:
         """Return the tool with an assumed diameter if it is a round tool without a diameter.
 
         The diameter of a drill is slightly less than the smallest diameter that the later ``bore_moves``
@@ -172,7 +174,7 @@ class AssumedTool:
             self, tool_shape=replace(shape, diameter=diameter), explanation=words, is_diameter_assumed=True
         )
 
-    def add_width(self, tool_use: ToolUse, thread_moves: Sequence[TipMove]) -> AssumedTool:
+    def add_assumed_width(self, tool_use: ToolUse, thread_moves: Sequence[TipMove]) -> AssumedTool:
         """Return the tool with an assumed width if it is a grooving or parting tool without a width.
 
         See ``find_groove_width``.
@@ -232,14 +234,14 @@ def _kind(use: ToolUse) -> tuple[ToolKind | None, str]:
             return kind, "based on the tool comment"
     if use.is_bar_stop:
         return None, _MOVES_EXPLANATION
-    if use.live_steps:
+    if use.live_tool_steps:
         return ToolKind.END_MILL, _MOVES_EXPLANATION
     return _by_moves(use.moves), _MOVES_EXPLANATION
 
 
 def _by_moves(moves: Sequence[TipMove]) -> ToolKind:
     cuts = [move for move in moves if not move.is_fast]
-    if any(move.kind is BlockKind.THREAD for move in cuts):
+    if any(move.block_kind is BlockKind.THREAD for move in cuts):
         return ToolKind.TAP if _on_axis(cuts) else ToolKind.THREADING
     if cuts and _on_axis(cuts):
         return ToolKind.DRILL
@@ -258,7 +260,7 @@ def _has_plunge(cuts: Sequence[TipMove]) -> bool:
 
     The result is False if a cut along Z is longer than a cut that cleans the bottom of a groove.
     """
-    if not cuts or any(move.kind is BlockKind.ARC for move in cuts):
+    if not cuts or any(move.block_kind is BlockKind.ARC for move in cuts):
         return False
     along = [abs(move.points[-1][0] - move.points[0][0]) for move in cuts]
     plunged = [move for move, z in zip(cuts, along, strict=True) if z <= _SQUARE]
@@ -280,7 +282,7 @@ def works_in_bore(moves: Sequence[TipMove]) -> bool:
         if move.is_fast and not before.is_fast and inside:
             away = abs(move.points[-1][1]) - abs(move.points[0][1])
             votes += (away < 0.0) - (away > 0.0)
-    feeds = [move for move in moves if not move.is_fast and move.kind is not BlockKind.THREAD]
+    feeds = [move for move in moves if not move.is_fast and move.block_kind is not BlockKind.THREAD]
     return votes > 0 or (votes == 0 and _enters_before_cutting(feeds, moves))
 
 
@@ -299,7 +301,7 @@ def _shape(kind: ToolKind, use: ToolUse) -> ToolShape:
     if kind is ToolKind.TURNING:
         left = _cuts_away_from_chuck(use.moves)
         tip = (1 if rear else 4) if left else (2 if rear else 3)
-        hand = Hand.LEFT if left else Hand.RIGHT
+        hand = ToolHand.LEFT if left else ToolHand.RIGHT
         return ToolShape(kind, hand, tip=tip, nose_radius=nose, insert=_SLIM, rear=rear)
     if kind is ToolKind.BORING:
         return ToolShape(kind, tip=3 if rear else 2, nose_radius=nose, insert=_SLIM, rear=rear)
@@ -340,11 +342,14 @@ def parse_edge_width(comment: str) -> float:
 
 def _round_tool(kind: ToolKind, use: ToolUse) -> ToolShape:
     comment = " ".join(use.comments).upper()
-    diameter, hand = _parse_diameter(comment), Hand.LEFT if re.search(_LEFT_HAND, comment) else Hand.RIGHT
+    diameter, hand = (
+        _parse_diameter(comment),
+        ToolHand.LEFT if re.search(_LEFT_HAND, comment) else ToolHand.RIGHT,
+    )
     if kind is ToolKind.TAP:
         across, pitch = parse_tap_size(comment)
         return ToolShape(kind, hand, diameter=across or diameter, pitch=pitch)
-    if use.live_steps and not _on_axis(use.moves):
+    if use.live_tool_steps and not _on_axis(use.moves):
         return ToolShape(kind, tip=8 if use.is_radial else 7, diameter=diameter or _MILL, point=118.0)
     return ToolShape(kind, hand, diameter=diameter, point=118.0)
 

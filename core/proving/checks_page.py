@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from core.message import Message
-from core.page_contents import make_contents
+from core.page_contents import make_table_of_contents
 from core.proving.checks.part_checks import PART_CHECKS, PROGRAM_CHECKS, PartCheck
 
 _PART, _PROGRAM = "Checks of the part", "Checks that do not need the stock"
@@ -56,9 +56,9 @@ check that is turned off become notes with the reason, and are counted (`silence
 """
 
 
-def render_page() -> str:
+def render_checks_page() -> str:
     """Return the text of the page about the checks."""
-    head = _HEAD.format(contents=make_contents([_PART, _PROGRAM]))
+    head = _HEAD.format(contents=make_table_of_contents([_PART, _PROGRAM]))
     return f"{head}\n## {_PART}\n\n{_rows(PART_CHECKS)}\n## {_PROGRAM}\n\n{_rows(PROGRAM_CHECKS)}"
 
 
@@ -83,7 +83,7 @@ def _lines(name: str, check: PartCheck) -> Iterator[str]:
 
 def main(argv: list[str]) -> int:
     """Write the page to the file that the first argument names."""
-    Path(argv[0]).write_text(render_page(), encoding="utf-8")
+    Path(argv[0]).write_text(render_checks_page(), encoding="utf-8")
     return 0
 
 

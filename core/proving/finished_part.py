@@ -13,7 +13,7 @@ from typing import NamedTuple
 from core.interpreter.shared.actions import ColletSwitch
 from core.part.surface_points import Solid
 from core.proving.part_history import PartHistory, ProgramSteps, ReportProgress
-from core.proving.part_instant import PartInstant, SectionHalf
+from core.proving.part_instant import PartState, SectionHalf
 from core.proving.tip_moves import LiveToolStep, TipMove
 
 
@@ -37,18 +37,22 @@ def make_finished_part(steps: ProgramSteps, report_progress: ReportProgress) -> 
     """
     history = PartHistory(steps)
 
-    def at(block: int) -> PartInstant:
+    def make_part_at_block(block: int) -> PartState:
         return history.at(block, 0.0, lambda: report_progress(block))
 
-    pieces = at(history.last_block_number).parted_piece_count
+    pieces = make_part_at_block(history.last_block_number).parted_piece_count
     ends = [history.last_block_number, *_find_block_before_opening(history)]
     if pieces:
-        ends = [_find_block_before_last_piece(at, history.last_block_number, pieces)]
-    held = [(volume, end) for end in ends if (volume := _section_volume(at(end).x_plus_half)) > 0.0]
+        ends = [_find_block_before_last_piece(make_part_at_block, history.last_block_number, pieces)]
+    held = [
+        (volume, end)
+        for end in ends
+        if (volume := _section_volume(make_part_at_block(end).x_plus_half)) > 0.0
+    ]
     stock = history.stock
     if not held or stock is None:
         return None
-    solid = history.make_solid(at(min(held)[1]))
+    solid = history.make_solid(make_part_at_block(min(held)[1]))
     return (
         FinishedPart(solid, stock.back_z_mm, stock.front_z_mm, stock.max_radius_mm)
         if solid is not None
@@ -67,7 +71,7 @@ def _find_block_before_opening(history: PartHistory) -> list[int]:
     return []
 
 
-def _find_block_before_last_piece(at: Callable[[int], PartInstant], last: int, pieces: int) -> int:
+def _find_block_before_last_piece(at: Callable[[int], PartState], last: int, pieces: int) -> int:
     """Return the last block before the last piece is parted off.
 
     A binary search is possible, because the number of pieces never decreases.

@@ -14,7 +14,7 @@ from core.part.polar_field import PolarField, RemovedMaterial, make_field_from_s
 from core.part.ray_cuts import (
     FloatArray,
     make_axial_path,
-    make_locked_path,
+    make_c_axis_path,
     make_plane_path,
     make_radial_path,
 )
@@ -46,7 +46,7 @@ def make_mill_move(block: Block, part_zero: MachineXZ, shape: ToolShape) -> Mill
     quick = block.rapid or (not block.per_rev and not turns_only and block.feed >= FAST_FEED_MM_S)
     dx, dz = part_zero
     if block.plane is not None:
-        lift = dz + block.modal.secondary_z
+        lift = dz + block.modal.secondary_offset_z
         axial = not block.plane.is_on_side_plane
         return MillMove(block.n, block.line, make_plane_path(block.plane, lift), axial, quick)
     ends = np.array(
@@ -56,12 +56,12 @@ def make_mill_move(block: Block, part_zero: MachineXZ, shape: ToolShape) -> Mill
         return None
     axial = shape.direction[0] != 0
     if axial:
-        return MillMove(block.n, block.line, make_axial_path(make_locked_path(ends[0], ends[1])), True, quick)
+        return MillMove(block.n, block.line, make_axial_path(make_c_axis_path(ends[0], ends[1])), True, quick)
     far_side = float(ends[:, 0].mean()) > 0.0
     return MillMove(block.n, block.line, make_radial_path(ends, is_far_side=far_side), False, quick)
 
 
-def cut_path_at_fractions(path: FloatArray, start_fraction: float, end_fraction: float) -> FloatArray:
+def trim_path_to_fractions(path: FloatArray, start_fraction: float, end_fraction: float) -> FloatArray:
     """Return the section of a path between two fractions of the path, each from 0 to 1.
 
     The fractions count the points of the path as equally spaced.
@@ -106,7 +106,7 @@ class MillingState:
         return milling
 
     @property
-    def synced_volume_mm3(self) -> float:
+    def last_update_volume_mm3(self) -> float:
         """Return the volume in mm³ of the turned part at the last update of the field."""
         return self._volume
 
@@ -131,8 +131,8 @@ class MillingState:
         self._update_field()
         part, (radius, length, point) = self._part, _mill_sizes(shape)
         if move.is_axial:
-            return part.mill_axial(move.path, radius, length, point)
-        return part.mill_radial(move.path, radius, length, cone_height=point)
+            return part.mill_axial_path(move.path, radius, length, point)
+        return part.mill_radial_path(move.path, radius, length, cone_height=point)
 
     def follows_face(self, move: MillMove, shape: ToolShape) -> bool:
         """Return whether a live tool moves along a face without cutting, but would cut if .001 in deeper."""

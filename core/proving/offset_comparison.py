@@ -17,12 +17,12 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from core.interpreter.dialects import SharedProgram
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.language.diagnostics import Diagnostic
 from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
 from core.part.turned_part import PartedPiece, ProfilePoints
-from core.proving.part_proof import prove_with_part
+from core.proving.part_proof import prove_program_and_part
 from core.proving.program_tools import PartSettings
 from core.proving.proof_report import PartReport, ProofReport
 from core.proving.prove_program import ReportProgress
@@ -132,15 +132,15 @@ def match_features(own_features: Sequence[PartFeature], other_features: Sequence
 
 
 @dataclass(frozen=True, slots=True)
-class ComparedPart:
+class OffsetComparisonResult:
     """The part that results from other offsets, compared with the proved part.
 
     It contains the proof, the part, the pairs of features, and the findings that occur in only one of the
     two proofs.
     """
 
-    report: ProofReport
-    part: PartReport | None
+    proof_report: ProofReport
+    part_report: PartReport | None
     feature_pairs: tuple[Pair, ...]
     resolved_findings: tuple[Diagnostic, ...]
     new_findings: tuple[Diagnostic, ...]
@@ -158,24 +158,31 @@ class ComparedPart:
 class ProvedPart:
     """A proved program with its setup, its part settings and the resulting part."""
 
-    setup: Setup
+    setup: InterpreterSetup
     part_settings: PartSettings
-    report: ProofReport
-    part: PartReport | None
+    proof_report: ProofReport
+    part_report: PartReport | None
 
 
 def prove_other_offsets(
-    program: ProgramSource | SharedProgram, proved_part: ProvedPart, other_setup: Setup, machine: Machine,
-    report_progress: ReportProgress | None = None, *, is_ideal: bool = False,
-) -> ComparedPart:  # fmt: skip
+    program: ProgramSource | SharedProgram,
+    proved_part: ProvedPart,
+    other_setup: InterpreterSetup,
+    machine: Machine,
+    report_progress: ReportProgress | None = None,
+    *,
+    is_ideal: bool = False,
+) -> OffsetComparisonResult:
     """Prove the same program, stock and tools with the offsets of ``other_setup``.
 
     ``report_progress`` may raise to cancel the proof.
     """
     setting = proved_part.part_settings
-    if proved_part.part is not None:
-        setting = replace(setting, stock=proved_part.part.stock, tips=_tip_positions(proved_part.setup))
-    report, part = prove_with_part(
+    if proved_part.part_report is not None:
+        setting = replace(
+            setting, stock=proved_part.part_report.stock, tips=_tip_positions(proved_part.setup)
+        )
+    report, part = prove_program_and_part(
         program,
         other_setup,
         machine,
@@ -185,14 +192,14 @@ def prove_other_offsets(
         check_canceled=report_progress,
     )
     pairs: list[Pair] = []
-    if proved_part.part is not None and part is not None:
-        parts = [each.last_piece for each in (proved_part.part, part)]
+    if proved_part.part_report is not None and part is not None:
+        parts = [each.last_piece for each in (proved_part.part_report, part)]
         pairs = match_features(*([] if each is None else find_features(each) for each in parts))
-    gone, added = _find_unmatched(proved_part.report.diagnostics, report.diagnostics)
-    return ComparedPart(report, part, tuple(pairs), gone, added)
+    gone, added = _find_unmatched(proved_part.proof_report.diagnostics, report.diagnostics)
+    return OffsetComparisonResult(report, part, tuple(pairs), gone, added)
 
 
-def _tip_positions(setup: Setup) -> dict[int, tuple[float, float]]:
+def _tip_positions(setup: InterpreterSetup) -> dict[int, tuple[float, float]]:
     """Return the machine positions of tool tips at part zero, by T number and by G54 to G59."""
     own = {n: (tool.x, tool.z) for n, tool in setup.tools.items()}
     return own | {n: (zero.x, zero.z) for n, zero in setup.zero.items()}
@@ -203,10 +210,13 @@ def _find_unmatched(
 ) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
     """Return the findings that exist in only one of the two proofs, compared by line and code."""
 
-    def key(each: Diagnostic) -> tuple[int, str]:
+    def get_line_and_code(each: Diagnostic) -> tuple[int, str]:
         return each.line, each.code
 
-    ours, theirs = {key(each) for each in own_findings}, {key(each) for each in there}
-    return tuple(d for d in own_findings if key(d) not in theirs), tuple(
-        d for d in there if key(d) not in ours
+    ours, theirs = (
+        {get_line_and_code(each) for each in own_findings},
+        {get_line_and_code(each) for each in there},
+    )
+    return tuple(d for d in own_findings if get_line_and_code(d) not in theirs), tuple(
+        d for d in there if get_line_and_code(d) not in ours
     )

@@ -14,20 +14,20 @@ import numpy as np
 
 from core.message import Message
 from core.part.part_scene import PartScene
-from core.part.solid_bodies import RoundAxis, ToolBody, make_chuck_solid
+from core.part.solid_bodies import SymmetryAxis, ToolBody, make_chuck_solid
 from core.part.stock_spec import StockSpec
 from core.part.surface_points import Solid, make_milled_solid, make_turned_solid
 from core.part.swept_edge import FloatArray, Point
-from core.part.tool_outline import ToolOutline, make_outline
+from core.part.tool_outline import ToolOutline, make_tool_outline
 from core.part.tool_shape import ToolShape
 from core.proving.part_instant import (
     MaterialHit,
     PartCopies,
-    PartInstant,
+    PartState,
     PlacedTool,
     SectionHalf,
     copy_material,
-    find_hit,
+    find_material_hit,
 )
 from core.proving.part_proof import MAX_MOVES
 from core.proving.part_simulation import PartSimulation
@@ -38,7 +38,7 @@ from core.proving.tip_moves import (
     ProgramStep,
     StepConverter,
     TipMove,
-    axis_position_at,
+    find_axis_position,
     find_part_zero,
     find_step_end_points,
 )
@@ -120,7 +120,7 @@ class PartHistory:
         self._travel = program_steps.part_settings.travel
         self._chuck: Solid | None = None
         held = self._clamping
-        if held is not None and (held.diameter or held.quill_diameter) and self.stock is not None:
+        if held is not None and (held.chuck_diameter or held.quill_diameter) and self.stock is not None:
             self._chuck = make_chuck_solid(held, self.stock)
         self._making = PartSimulation(self._tools, self.stock, program_steps.part_settings)
         self._seen = self._making  # the part as last returned
@@ -128,12 +128,10 @@ class PartHistory:
             None  # number of steps, share of the next one, and its part
         )
         self._done = 0  # steps
-        self._last: PartInstant | None = None
+        self._last: PartState | None = None
         self._kept.store_copy(0, self._making)
 
-    def at(
-        self, block: int, fraction: float = 0.0, check_canceled: CheckCanceled | None = None
-    ) -> PartInstant:
+    def at(self, block: int, fraction: float = 0.0, check_canceled: CheckCanceled | None = None) -> PartState:
         """Return the part after ``block`` blocks and the given fraction (0 to 1) of the next block.
 
         ``check_canceled`` is called regularly during long work and may raise. The work done until then is
@@ -203,16 +201,16 @@ class PartHistory:
         """Return the number of the last block, or 0 without blocks."""
         return int(self._numbers[-1]) if len(self._numbers) else 0
 
-    def make_current_part(self) -> PartInstant:
+    def make_current_part(self) -> PartState:
         """Return the part as far as the work in progress has calculated it."""
         done = self._done
         return self._instant(int(self._numbers[done - 1]) if done else 0, 0.0, None)
 
-    def is_current(self, instant: PartInstant) -> bool:
+    def is_current_instant(self, instant: PartState) -> bool:
         """Return whether ``instant`` was returned last, which means that the part has not changed since."""
         return instant is self._last
 
-    def make_solid(self, instant: PartInstant) -> Solid | None:
+    def make_solid(self, instant: PartState) -> Solid | None:
         """Return the solid of the last instant, or None without material.
 
         Only the calling thread may use the solid.
@@ -224,13 +222,14 @@ class PartHistory:
             return make_milled_solid(milling.updated_field)
         return make_turned_solid(*instant.x_plus_half)
 
-    def make_scene_at(self, instant: PartInstant) -> PartScene:
+    def make_scene_at(self, instant: PartState) -> PartScene:
         """Return the objects around the part at an instant: the chuck or collet, and the tool."""
         tool = instant.tool
         if tool is None or not (tool.cutting_outlines or tool.body_outlines):
             return PartScene(self._chuck)
         return PartScene(
-            self._chuck, ToolBody(tool.cutting_outlines, tool.body_outlines, tool.round_axis, tool.is_assumed)
+            self._chuck,
+            ToolBody(tool.cutting_outlines, tool.body_outlines, tool.symmetry_axis, tool.is_assumed),
         )
 
     def _step(self, block: int) -> ProgramStep | None:
@@ -250,7 +249,7 @@ class PartHistory:
                 watch()
             self._apply_step(self.steps[self._done])
             self._done += 1
-            self._kept.store_if_due(self._done, self._making)
+            self._kept.store_copy_if_due(self._done, self._making)
 
     def _apply_step(self, step: ProgramStep) -> None:
         """Apply the next block, and store its collisions."""
@@ -258,13 +257,13 @@ class PartHistory:
         before = copy_material(making.part)
         making.apply_step(step)
         for found in making.findings.diagnostics[known:]:
-            hit = find_hit(found, step, making, before)
+            hit = find_material_hit(found, step, making, before)
             if hit is not None:
                 self._hits[found.check_name, found.line] = hit
 
     # --- displayed state
 
-    def _instant(self, block: int, share: float, under_way: ProgramStep | None) -> PartInstant:
+    def _instant(self, block: int, share: float, under_way: ProgramStep | None) -> PartState:
         making, place = self._making, self._last_position()
         if isinstance(under_way, TipMove):
             cut = _first_part(under_way, share)
@@ -273,18 +272,18 @@ class PartHistory:
                 making = making.copy()
                 making.apply_step(cut)
         elif isinstance(under_way, LiveToolStep):
-            making, place = self._milled_part(under_way, share), axis_position_at(under_way, share)
+            making, place = self._milled_part(under_way, share), find_axis_position(under_way, share)
         self._seen, found = making, making.findings.diagnostics
         near, far = _halves(making)
-        return PartInstant(
+        return PartState(
             block_count=block,
             next_block_fraction=share,
             line_number=_line(under_way or (self.steps[self._done - 1] if self._done else None)),
             x_plus_half=near,
             x_minus_half=far,
             stock=self.stock,
-            tool=self._tool(making.active_tool, place),
-            hits=tuple(
+            tool=self._tool(making.active_tool_number, place),
+            material_hits=tuple(
                 self._hits[each.check_name, each.line]
                 for each in found
                 if (each.check_name, each.line) in self._hits
@@ -307,7 +306,7 @@ class PartHistory:
         if done != self._done or gone > fraction:
             gone, ahead = 0.0, self._making.copy()
         if fraction > gone:
-            ahead.apply_milling(step, gone, fraction)
+            ahead.apply_milling_step(step, gone, fraction)
         self._ahead = self._done, fraction, ahead
         return ahead
 
@@ -347,8 +346,8 @@ class PartHistory:
         if place is None:
             return None
         if number not in self._outlines:
-            shape = self._tools.find_shape(number)
-            self._outlines[number] = make_outline(shape) if shape is not None else None
+            shape = self._tools.find_tool_shape(number)
+            self._outlines[number] = make_tool_outline(shape) if shape is not None else None
         lines = self._outlines[number]
         if lines is None:
             return PlacedTool(number, place, (), (), is_assumed=True)
@@ -356,16 +355,21 @@ class PartHistory:
             tuple(each + np.array(place) for each in group)
             for group in (lines.cutting_outlines, lines.body_outlines)
         )
-        shape = self._tools.find_shape(number)
+        shape = self._tools.find_tool_shape(number)
         return PlacedTool(
-            number, place, cutting, body, not self._tools.is_specified(number), _round(shape, lines.is_axial)
+            number,
+            place,
+            cutting,
+            body,
+            not self._tools.is_shape_specified(number),
+            _round(shape, lines.is_axially_symmetric),
         )
 
 
-def _round(shape: ToolShape | None, axial: bool) -> RoundAxis:
+def _round(shape: ToolShape | None, axial: bool) -> SymmetryAxis:
     if shape is None or not shape.is_rotating:
-        return RoundAxis.NONE
-    return RoundAxis.Z if axial else RoundAxis.X
+        return SymmetryAxis.NONE
+    return SymmetryAxis.Z if axial else SymmetryAxis.X
 
 
 def find_polyline_fraction(points: Sequence[Point], position: Point) -> float:

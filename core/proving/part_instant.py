@@ -11,11 +11,11 @@ import numpy as np
 
 from core.language.diagnostics import Diagnostic
 from core.part.polar_field import FieldCopy, RemovedMaterial, make_compact_copy, restore_field
-from core.part.solid_bodies import RoundAxis
+from core.part.solid_bodies import SymmetryAxis
 from core.part.stock import Clamping, Stock
 from core.part.swept_edge import FloatArray, Point
 from core.part.turned_part import Cut, TurnedPart
-from core.proving.checks.part_checks import is_serious
+from core.proving.checks.part_checks import is_serious_finding
 from core.proving.milling import MillingState
 from core.proving.part_simulation import PartSimulation
 from core.proving.tip_moves import LiveToolStep, ProgramStep
@@ -64,7 +64,7 @@ class PlacedTool(NamedTuple):
     """A tool at its position, with its control point and its outlines (k, 2) of Z and r in mm.
 
     ``is_assumed`` means that the shape of the tool is not specified, so its body is a typical one.
-    ``round_axis`` is the axis about which the tool is round.
+    ``symmetry_axis`` is the axis about which the tool is round.
     """
 
     tool_number: int
@@ -72,15 +72,15 @@ class PlacedTool(NamedTuple):
     cutting_outlines: tuple[FloatArray, ...]
     body_outlines: tuple[FloatArray, ...]
     is_assumed: bool
-    round_axis: RoundAxis = RoundAxis.NONE
+    symmetry_axis: SymmetryAxis = SymmetryAxis.NONE
 
 
-class PartInstant(NamedTuple):
+class PartState(NamedTuple):
     """The part after ``block_count`` blocks and the fraction ``next_block_fraction`` of the next block.
 
     ``x_plus_half`` is the half of the section at X+, and ``x_minus_half`` is the opposite half; None means
-    no material. ``hits`` and ``findings`` include everything up to this time. ``tip_range`` is the range of
-    the tip in Z and r.
+    no material. ``material_hits`` and ``findings`` include everything up to this time. ``tip_range`` is the
+    range of the tip in Z and r.
     """
 
     block_count: int
@@ -90,7 +90,7 @@ class PartInstant(NamedTuple):
     x_minus_half: SectionHalf | None
     stock: Stock | None
     tool: PlacedTool | None
-    hits: tuple[MaterialHit, ...]
+    material_hits: tuple[MaterialHit, ...]
     findings: tuple[Diagnostic, ...]
     parted_piece_count: int
     clamping: Clamping | None = None
@@ -104,14 +104,14 @@ def copy_material(part: TurnedPart | None) -> MaterialRadii | None:
     return None if part is None else (part.inner_radii.copy(), part.outer_radii.copy())
 
 
-def find_hit(
+def find_material_hit(
     finding: Diagnostic,
     step: ProgramStep,
     simulation: PartSimulation,
     previous_material: MaterialRadii | None,
 ) -> MaterialHit | None:
     """Return the material that the last block hit, or None if no finding of the block reports a hit."""
-    if not is_serious(finding):
+    if not is_serious_finding(finding):
         return None
     if finding.check_name in _CLAMPING_CHECKS:
         met = simulation.findings.clamping_cuts.get((finding.check_name, finding.line))
@@ -137,7 +137,7 @@ def _clamping_hit(
     body = (
         clamping.tailstock_solid
         if finding.check_name == "into-tailstock"
-        else clamping.make_chuck_around(stock)
+        else clamping.make_chuck_for_stock(stock)
     )
     if body is None:
         return None
@@ -146,7 +146,7 @@ def _clamping_hit(
         min(max(cut.back_z_mm, cut.front_z_mm), body.front_z_mm),
     )
     z = np.linspace(low, high, _SAMPLE_COUNT)
-    outside = body.outside_radius_at(z)
+    outside = body.find_outside_radii(z)
     return MaterialHit(
         finding, z, np.maximum(outside - cut.depth_mm, 0.0), outside, (high - low) / (_SAMPLE_COUNT - 1)
     )
@@ -214,7 +214,7 @@ class PartCopies:
             making.milling = MillingState.from_field(making.part, restore_field(field), even_with)
         return making
 
-    def store_if_due(self, step_count: int, simulation: PartSimulation) -> None:
+    def store_copy_if_due(self, step_count: int, simulation: PartSimulation) -> None:
         """Store a copy at every multiple of the copy interval that has no copy yet."""
         if step_count % self._every == 0 and step_count not in self._copies:
             self.store_copy(step_count, simulation)
@@ -226,7 +226,7 @@ class PartCopies:
         if milling is not None:
             near = self._copies.get(max((each for each in self._copies if each < step_count), default=-1))
             field = make_compact_copy(milling.updated_field, near[1] if near is not None else None)
-            even_with = milling.synced_volume_mm3
+            even_with = milling.last_update_volume_mm3
         simulation.milling = None
         self._copies[step_count] = simulation.copy(), field, even_with
         simulation.milling = milling
@@ -242,6 +242,6 @@ class PartCopies:
             id(column): column.nbytes
             for _, field, _ in self._copies.values()
             if field is not None
-            for column in field.columns.values()
+            for column in field.radii_by_column.values()
         }
         return sum(columns.values()) + sum(making.nbytes for making, _, _ in self._copies.values())

@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection, Iterable
 from dataclasses import replace
 
 from core.interpreter.dialects import SharedProgram
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
@@ -33,12 +33,17 @@ slow the machine: see ``part_history``.
 _CHECK_INTERVAL = 200  # moves between two calls of ``check_canceled``
 
 
-def prove_with_part(
-    program: ProgramSource | SharedProgram, setup: Setup, machine: Machine, part_settings: PartSettings,
-    report_progress: ReportProgress | None = None, *, is_ideal: bool = False,
+def prove_program_and_part(
+    program: ProgramSource | SharedProgram,
+    setup: InterpreterSetup,
+    machine: Machine,
+    part_settings: PartSettings,
+    report_progress: ReportProgress | None = None,
+    *,
+    is_ideal: bool = False,
     on_span: Callable[[MotionSpan | RestSpan], None] | None = None,
     check_canceled: Callable[[float], None] | None = None,
-) -> tuple[ProofReport, PartReport | None]:  # fmt: skip
+) -> tuple[ProofReport, PartReport | None]:
     """Return the proof of a program, with the findings about its part.
 
     The proof of a mill program includes no part. ``on_span`` receives each span, as in ``prove``.
@@ -48,12 +53,12 @@ def prove_with_part(
         return prove(program, setup, machine, report_progress, is_ideal=is_ideal, on_span=on_span), None
     gathered = PartProof(part_settings)
 
-    def see(span: MotionSpan | RestSpan) -> None:
+    def process_span(span: MotionSpan | RestSpan) -> None:
         gathered.add_span(span)
         if on_span is not None:
             on_span(span)
 
-    report = prove(program, setup, machine, report_progress, is_ideal=is_ideal, on_span=see)
+    report = prove(program, setup, machine, report_progress, is_ideal=is_ideal, on_span=process_span)
     part = gathered.make_report(check_canceled)
     # findings of the reading, which does not know the stock
     known = {(each.line, each.code) for each in report.diagnostics}
@@ -62,7 +67,7 @@ def prove_with_part(
     return replace(report, diagnostics=sort_findings((*left, *found))), part
 
 
-def require_tool_offsets(report: ProofReport, setup: Setup) -> ProofReport:
+def require_tool_offsets(report: ProofReport, setup: InterpreterSetup) -> ProofReport:
     """Return the report of ``prove`` with missing tool offsets as errors, if any offsets are known.
 
     The machine would not start with a missing offset. The operator screen and the command ``run`` reject

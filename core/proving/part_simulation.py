@@ -62,7 +62,7 @@ def describe_missing_data(
     """
     return tuple(
         _phrases(
-            [n for n in sorted(tool_uses) if tool_uses[n].moves or tool_uses[n].live_steps],
+            [n for n in sorted(tool_uses) if tool_uses[n].moves or tool_uses[n].live_tool_steps],
             shapes,
             clamping,
             gang_positions,
@@ -83,7 +83,7 @@ def _phrases(
         )
     if short := [n for n in used if n in shapes and shapes[n].kind in _DEEP and not shapes[n].length]:
         yield Message("{short}: maximum tool depth (unknown: no flute length defined)", short=_names(short))
-    if clamping is None or not clamping.diameter:
+    if clamping is None or not clamping.chuck_diameter:
         yield (
             "collisions with the chuck and jaws, and stock whip (these checks require a "
             "diameter in [clamping] and a stick-out)"
@@ -123,14 +123,14 @@ class PartSimulation:
         )
         self._milled = False
         self.findings = PartFindings(
-            tools.find_shape,
+            tools.find_tool_shape,
             stock,
             part_settings.clamping,
             NeighborTools(part_settings.shapes, part_settings.gang) if part_settings.gang else None,
-            ThreadChecks(part_settings.drives, tools.has_releasing_holder, self._stock_said),
+            ThreadChecks(part_settings.drives, tools.has_releasing_tap_holder, self._stock_said),
             self._find_unspecified_data,
             part_settings.silenced,
-            tools.part_off_z,
+            tools.part_off_z_mm,
         )
         self._unchecked = describe_missing_data(
             tools.tool_uses, part_settings.shapes, part_settings.clamping, part_settings.gang
@@ -144,7 +144,7 @@ class PartSimulation:
         self.part = TurnedPart(stock, self._step) if stock is not None and not tools.feeds_bar_first else None
 
     @property
-    def active_tool(self) -> int:
+    def active_tool_number(self) -> int:
         """Return the T number of the active tool, or 0 without a tool."""
         return self._tool
 
@@ -199,7 +199,7 @@ class PartSimulation:
                 self._move(step, self.part)
             return
         if isinstance(step, LiveToolStep):
-            self.apply_milling(step)
+            self.apply_milling_step(step)
             return
         match step.action:
             case ToolChange(tool=tool):
@@ -225,17 +225,17 @@ class PartSimulation:
             self.part = TurnedPart(self._stock, self._step)
         self._is_open = False
 
-    def apply_milling(
+    def apply_milling_step(
         self, step: LiveToolStep, start_fraction: float = 0.0, end_fraction: float = 1.0
     ) -> None:
         """Apply a block of a live tool, or the part of the block between two fractions."""
-        move, shape = self.make_mill_move(step), self._tools.find_shape(self._tool)
+        move, shape = self.make_mill_move(step), self._tools.find_tool_shape(self._tool)
         if move is None or shape is None or self.part is None or self._is_open:
             return
-        from core.proving.milling import MillingState, cut_path_at_fractions
+        from core.proving.milling import MillingState, trim_path_to_fractions
 
         if end_fraction - start_fraction < 1.0:
-            move = move._replace(path=cut_path_at_fractions(move.path, start_fraction, end_fraction))
+            move = move._replace(path=trim_path_to_fractions(move.path, start_fraction, end_fraction))
         if self.milling is None:
             self.milling = MillingState(self.part)
         self._milled = True
@@ -252,7 +252,7 @@ class PartSimulation:
 
     def make_mill_move(self, step: LiveToolStep) -> MillMove | None:
         """Return the move of a live tool in the part's frame, or None if no cutting shape is known."""
-        shape = self._tools.find_shape(self._tool)
+        shape = self._tools.find_tool_shape(self._tool)
         if shape is None or not shape.diameter:
             return None
         from core.proving.milling import make_mill_move
@@ -285,7 +285,7 @@ class PartSimulation:
         A spindle that never turns in the program is assumed to be switched manually.
         """
         is_after_cut, self._in_cut = self._in_cut, False
-        shape = self._tools.find_shape(self._tool)
+        shape = self._tools.find_tool_shape(self._tool)
         if not self._turned or move.rpm or shape is None:
             return False
         round_tool = shape.is_rotating
@@ -339,15 +339,15 @@ class PartSimulation:
             else None
         )
         self._finish()
-        self.findings.finish_program()
+        self.findings.add_final_findings()
         stock = self._stock
         assumed = [each.explanation for _, each in sorted(self._tools.assumed_tools.items())]
         if stock is None and self._tools.tool_uses:
             assumed.append(
                 "no stock could be assumed: feed moves cut in front of Z0, so the stock face cannot be at Z0"
             )
-        for line, n, text in self._tools.find_uncut_feeds(stock):
-            self.findings.report_nothing_cut(line, n, text)
+        for line, n, text in self._tools.find_feeds_without_cut(stock):
+            self.findings.report_missing_cut(line, n, text)
         volume = TurnedPart(stock).volume_mm3 if stock is not None else 0.0
         return PartReport(
             stock=stock,
@@ -361,9 +361,9 @@ class PartSimulation:
             findings=self.findings.diagnostics,
             unchecked_data=(*self._unchecked, *_cut_standing(self._standing)),
             tool_shapes={
-                n: self._tools.find_shape(n)
+                n: self._tools.find_tool_shape(n)
                 for n, use in self._tools.tool_uses.items()
-                if use.moves or use.live_steps
+                if use.moves or use.live_tool_steps
             },
             section_halves=sides,
         )

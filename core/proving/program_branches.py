@@ -21,7 +21,7 @@ from core.interpreter.omniturn.flow.loops_and_subroutines import get_input_termi
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.shared.actions import InputRead
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.interpreter.shared.machine_requirements import remove_repeated_requirements
 from core.language.diagnostics import Diagnostic, Severity
 from core.machine.machine_model import Machine
@@ -65,7 +65,7 @@ class ProgramBranch:
     is_proved: bool = False
     has_failed: bool = False
 
-    def time_after_blocks(self, block_count: int) -> float:
+    def get_time_after_blocks(self, block_count: int) -> float:
         """Return the time in seconds at which the first ``block_count`` blocks have been executed."""
         made = block_count - self.preceding_block_count
         if made <= 0 or not self.block_end_times:
@@ -118,7 +118,9 @@ def _next_nodes(node: _Node) -> list[tuple[_Node, float]]:
     there, blocks = branch.merge_point
     fork = next((k for k, each in enumerate(there.forks) if each.block_count >= blocks), len(there.forks))
     node = there, fork
-    return [(node, branch.duration_s - _time((branch, at)) + _time(node) - there.time_after_blocks(blocks))]
+    return [
+        (node, branch.duration_s - _time((branch, at)) + _time(node) - there.get_time_after_blocks(blocks))
+    ]
 
 
 # --- uncalled subroutines -------------------------------------------------------------------------------
@@ -127,10 +129,10 @@ def _next_nodes(node: _Node) -> list[tuple[_Node, float]]:
 def find_uncalled_subroutines(reading: SharedProgram) -> Iterator[Diagnostic]:
     """Yield a note for each subroutine that the main program never calls."""
     program = reading.omniturn_program
-    if program is None or not program.structure.subroutines:
+    if program is None or not program.structure.subroutine_starts:
         return
     reached = _reached(program)
-    for number, at in sorted(program.structure.subroutines.items()):
+    for number, at in sorted(program.structure.subroutine_starts.items()):
         if number not in reached:
             text = Message("Subroutine {number} is never called, so it was not proved.", number=number)
             hint = Message("Call the subroutine with M98P{number}, or remove the subroutine.", number=number)
@@ -148,7 +150,7 @@ def _reached(program: Program) -> set[int]:
     todo = [0]
     while todo:
         for number in calls.get(todo.pop(), ()):
-            if number in structure.subroutines and number not in reached:
+            if number in structure.subroutine_starts and number not in reached:
                 reached.add(number)
                 todo.append(number)
     return reached
@@ -162,7 +164,7 @@ def _enclosing_subroutine(program: Program, line_index: int) -> int:
     structure = program.structure
     if line_index < structure.main_end_index:
         return 0
-    starts = [(start, number) for number, start in structure.subroutines.items() if start <= line_index]
+    starts = [(start, number) for number, start in structure.subroutine_starts.items() if start <= line_index]
     return max(starts)[1] if starts else 0
 
 
@@ -205,14 +207,14 @@ class _BranchPass:
     """One path through the program that is being proved or is waiting to be proved."""
 
     branch: ProgramBranch
-    source: BranchingPass | None
+    interpreter_pass: BranchingPass | None
     choices: tuple[InputChoice, ...] = ()
     rest_state: RestState | None = None  # None: not reached, because the path before it has errors
     checks: CuttingChecks | None = None
     branches_by_call: list[_BranchPass | None] = field(
         default_factory=list
     )  # in the order of its conditional calls
-    answered_call_count: int = 0
+    processed_call_count: int = 0
 
 
 def _add_choices(choices: Sequence[InputChoice], message: str) -> str:
@@ -233,7 +235,9 @@ class BranchProof:
     ``iter_spans`` proves the first path, and ``report_all_branches`` proves the other paths.
     """
 
-    def __init__(self, reading: SharedProgram, setup: Setup, machine: Machine, *, ideal: bool) -> None:
+    def __init__(
+        self, reading: SharedProgram, setup: InterpreterSetup, machine: Machine, *, ideal: bool
+    ) -> None:
         self._reading, self._setup, self._machine, self._ideal = reading, setup, machine, ideal
         self.root_pass = reading.start_branching_pass(setup, self)
         self._current = _BranchPass(ProgramBranch(), self.root_pass)
@@ -252,7 +256,7 @@ class BranchProof:
 
     # Called by the interpreter:
 
-    def is_known(self, branch: BranchingPass) -> bool:
+    def is_state_known(self, branch: BranchingPass) -> bool:
         """Return whether an earlier path has reached this state."""
         key = branch.state_key
         found = self._known.get(key)
@@ -298,9 +302,9 @@ class BranchProof:
         for span in timeline.iter_spans():
             yield span
             if isinstance(span, MotionSpan):
-                shift = span.start_time_s - span.chunk.start_time_s
-                self._work += _SPAN + len(span.chunk.block_ends_s)
-                now.branch.block_end_times.extend((span.chunk.block_ends_s + shift).tolist())
+                shift = span.start_time_s - span.planned_chunk.start_time_s
+                self._work += _SPAN + len(span.planned_chunk.block_ends_s)
+                now.branch.block_end_times.extend((span.planned_chunk.block_ends_s + shift).tolist())
             elif span.block is not None:
                 now.branch.block_end_times.append(span.end_time_s)
                 if isinstance(span.block.action, InputRead):
@@ -317,15 +321,15 @@ class BranchProof:
     ) -> None:
         """Record the machine state at a conditional call, from which the other path continues."""
         branch_pass = (
-            current_pass.branches_by_call[current_pass.answered_call_count]
-            if current_pass.answered_call_count < len(current_pass.branches_by_call)
+            current_pass.branches_by_call[current_pass.processed_call_count]
+            if current_pass.processed_call_count < len(current_pass.branches_by_call)
             else None
         )
-        current_pass.answered_call_count += 1
+        current_pass.processed_call_count += 1
         if branch_pass is not None:
             branch_pass.rest_state, branch_pass.checks = (
                 timeline.rest_state,
-                proof_pass.checks.copy_for_branch(),
+                proof_pass.cutting_checks.copy_for_branch(),
             )
             branch_pass.branch.start_time_s = timeline.time_s
             current_pass.branch.forks.append(
@@ -341,7 +345,7 @@ class BranchProof:
             return replace(
                 report,
                 diagnostics=sort_findings(found),
-                branch_summary=BranchSummary(cycle_time_range=(report.times.cycle_s,) * 2),
+                branch_summary=BranchSummary(cycle_time_range=(report.program_times.cycle_time_s,) * 2),
             )
         self._reported = {(each.line, each.code) for each in report.diagnostics}
         first = self._current.branch
@@ -357,7 +361,7 @@ class BranchProof:
             report,
             diagnostics=sort_findings(found),
             tool_numbers=tuple(sorted(self._tools.union(report.tool_numbers))),
-            missing_tools=tuple(sorted(self._missing.union(report.missing_tools))),
+            missing_tool_numbers=tuple(sorted(self._missing.union(report.missing_tool_numbers))),
             required_functions=needs,
             branch_summary=BranchSummary(
                 self._proved, self._unproved + len(self._waiting), find_cycle_time_range(first)
@@ -367,12 +371,12 @@ class BranchProof:
     def _prove(
         self, branch_pass: _BranchPass, most: int, progress: Callable[[float], None] | None
     ) -> ProofReport:
-        assert branch_pass.source is not None
+        assert branch_pass.interpreter_pass is not None
         assert branch_pass.rest_state is not None
         assert branch_pass.checks is not None
         self._current, self._proved = branch_pass, self._proved + 1
         self._covered.add((branch_pass.choices[-1].line, branch_pass.choices[-1].is_on))
-        timeline = Timeline(branch_pass.source, self._setup, self._machine, ideal=self._ideal)
+        timeline = Timeline(branch_pass.interpreter_pass, self._setup, self._machine, ideal=self._ideal)
         timeline.continue_from(branch_pass.rest_state)
         proof_pass = ProofPass(self._machine, branch_pass.checks)
         for span in self.iter_spans(proof_pass, timeline):
@@ -386,13 +390,13 @@ class BranchProof:
         branch_pass.branch.is_proved = True
         report = proof_pass.make_report(timeline, self._reading.source)
         self._tools.update(report.tool_numbers)
-        self._missing.update(report.missing_tools)
+        self._missing.update(report.missing_tool_numbers)
         self._report(branch_pass, report)
-        branch_pass.source = None
+        branch_pass.interpreter_pass = None
         return report
 
     def _report(self, branch_pass: _BranchPass, report: ProofReport) -> None:
-        unlikely = branch_pass.source is not None and branch_pass.source.has_input_change
+        unlikely = branch_pass.interpreter_pass is not None and branch_pass.interpreter_pass.has_input_change
         for each in report.diagnostics:
             if each.severity is Severity.NOTE or (each.line, each.code) in self._reported:
                 continue

@@ -29,7 +29,7 @@ from core.interpreter.shared.elementary_blocks import (
     TimedSeries,
 )
 from core.interpreter.shared.interpretation import InterpreterPass
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
@@ -101,7 +101,7 @@ class MotionSpan(NamedTuple):
     """
 
     start_time_s: float
-    chunk: PlannedChunk
+    planned_chunk: PlannedChunk
     block_groups: tuple[BlockGroup, ...]
 
     @property
@@ -123,7 +123,7 @@ class MotionSpan(NamedTuple):
 
         The next span may continue without a stop.
         """
-        return self.start_time_s + self.chunk.profile.duration_s
+        return self.start_time_s + self.planned_chunk.profile.duration_s
 
     def iter_block_times(self) -> Iterator[TimedBlock]:
         """Yield each block with its start and end time in seconds on the program's time scale."""
@@ -137,10 +137,13 @@ class MotionSpan(NamedTuple):
 
     def iter_group_times(self) -> Iterator[TimedBlock | TimedSeries]:
         """Yield the same items as ``iter_block_times``, but with each series as a single item."""
-        shift, first = self.start_time_s - self.chunk.start_time_s, 0
+        shift, first = self.start_time_s - self.planned_chunk.start_time_s, 0
         for part in self.block_groups:
             there = slice(first, first + len(part))
-            t0, t1 = self.chunk.block_starts_s[there] + shift, self.chunk.block_ends_s[there] + shift
+            t0, t1 = (
+                self.planned_chunk.block_starts_s[there] + shift,
+                self.planned_chunk.block_ends_s[there] + shift,
+            )
             if isinstance(part, StraightMoveSeries):
                 yield TimedSeries(part, t0, t1)
             else:
@@ -180,9 +183,9 @@ class RestState(NamedTuple):
     """
 
     time_s: float
-    spindle: SpindleForecast
+    spindle_forecast: SpindleForecast
     is_speed_pending: bool
-    section_ends: SectionEndDetector
+    section_end_detector: SectionEndDetector
 
 
 class Timeline:
@@ -193,7 +196,7 @@ class Timeline:
     """
 
     def __init__(
-        self, interpreter: InterpreterPass, setup: Setup, machine: Machine, *, ideal: bool = False
+        self, interpreter: InterpreterPass, setup: InterpreterSetup, machine: Machine, *, ideal: bool = False
     ) -> None:
         self.interpreter = interpreter
         self.spindle = SpindleForecast(machine)
@@ -202,7 +205,7 @@ class Timeline:
         self._machine = machine
         self._ideal = ideal
         limits = MotionLimits.from_axes(
-            machine.axes, machine.timing.setpoint, machine.limits.corner_tolerance
+            machine.axes, machine.timing.setpoint_duration_s, machine.limits.corner_tolerance
         )
         if ideal:
             limits = replace(limits, amax=(_IDEAL_ACCELERATION,) * len(limits.amax))
@@ -218,7 +221,12 @@ class Timeline:
 
     @classmethod
     def from_program(
-        cls, program: ProgramSource | SharedProgram, setup: Setup, machine: Machine, *, is_ideal: bool = False
+        cls,
+        program: ProgramSource | SharedProgram,
+        setup: InterpreterSetup,
+        machine: Machine,
+        *,
+        is_ideal: bool = False,
     ) -> Timeline:
         """Return the timeline of a program, given as its source or in its parsed form."""
         reading = (
@@ -238,10 +246,10 @@ class Timeline:
         """
         self.time_s, self.spindle, self._speed_wanted = (
             rest_state.time_s,
-            copy(rest_state.spindle),
+            copy(rest_state.spindle_forecast),
             rest_state.is_speed_pending,
         )
-        self._ends = copy(rest_state.section_ends)
+        self._ends = copy(rest_state.section_end_detector)
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
@@ -271,7 +279,7 @@ class Timeline:
             self._ends.record_standstill(first)
         if not first.rapid:
             yield from self._wait_for_speed()
-        yield self._rest(self._wait_seconds(self._machine.timing.commit))
+        yield self._rest(self._wait_seconds(self._machine.timing.commit_time_s))
         if first.kind is BlockKind.THREAD and not self._ideal:
             yield self._make_index_wait(first)
         start = self.time_s - self._planner.planned_time_s
@@ -352,11 +360,11 @@ class Timeline:
 
         The corresponding rule of the executor is in docs/decisions/0016-threads-follow-the-spindle.md.
         """
-        turn = abs(self.spindle.speed_at(self.time_s)) / 60.0
+        turn = abs(self.spindle.calculate_speed_at(self.time_s)) / 60.0
         if not turn:
             return self._rest(0.0)
         ramp = block.feed * turn / (2.0 * self._machine.axes[1].max_acceleration)
-        ahead = abs(self.spindle.revolutions_at(self.time_s)) + turn * (ramp + THREAD_START_LEAD_S)
+        ahead = abs(self.spindle.calculate_revolutions_at(self.time_s)) + turn * (ramp + THREAD_START_LEAD_S)
         return self._rest(THREAD_START_LEAD_S + (math.ceil(ahead - 1e-9) - ahead) / turn)
 
     def _moved(self, start: float, chunk: PlannedChunk) -> MotionSpan:
@@ -424,11 +432,13 @@ class Timeline:
         if isinstance(action, SpindlePositioning):
             return self._until_still() + calculate_max_orientation_time_s(self._machine.spindle, action.sense)
         if isinstance(action, ColletSwitch):
-            return collet.close_time if action.closed else collet.open_time
+            return collet.close_time_s if action.closed else collet.open_time_s
         return 0.0
 
     def _until_still(self) -> float:
-        return max(0.0, self.spindle.calculate_slow_time_s(self._machine.spindle.stop_below) - self.time_s)
+        return max(
+            0.0, self.spindle.calculate_slowdown_time_s(self._machine.spindle.stop_below) - self.time_s
+        )
 
     def _refuse(self, why: str) -> None:
         line = self._moving.first_block.line if self._moving.first_block else 0

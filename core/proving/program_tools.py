@@ -20,7 +20,7 @@ from core.message import Message
 from core.part.cutter import CutSide, Cutter
 from core.part.stock import Clamping, Point, Stock
 from core.part.stock_spec import StockSpec
-from core.part.tool_outline import make_outline
+from core.part.tool_outline import make_tool_outline
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import DEFAULT_COLUMN_WIDTH_MM
 from core.proving.assumed_tools import (
@@ -91,7 +91,9 @@ class ProgramTools:
         self.assumed_tools: dict[int, AssumedTool] = {
             n: assume_tool(use, part_settings.shapes.get(n))
             for n, use in self.tool_uses.items()
-            if self._lacks_something(n) and (use.moves or use.live_steps) and (n or len(self.tool_uses) == 1)
+            if self._lacks_something(n)
+            and (use.moves or use.live_tool_steps)
+            and (n or len(self.tool_uses) == 1)
         }  # T0 counts as a tool only if the program names no other
         self._assume_sizes()
 
@@ -105,7 +107,7 @@ class ProgramTools:
                 use.is_bar_stop = use.is_bar_stop or (is_open and not step.is_fast)
                 cut = cut or not (step.is_fast or is_open or self._stop_to_come(use))
             elif isinstance(step, LiveToolStep):
-                use.live_steps.append(step)
+                use.live_tool_steps.append(step)
                 cut = True
             elif isinstance(step.action, ToolChange):
                 use = self._use(step.action.tool)
@@ -137,15 +139,17 @@ class ProgramTools:
         bore = [
             m
             for n, use in self.tool_uses.items()
-            if (s := self.find_shape(n)) and s.internal
+            if (s := self.find_tool_shape(n)) and s.internal
             for m in use.moves
         ]
-        threads = [m for use in self.tool_uses.values() for m in use.moves if m.kind is BlockKind.THREAD]
+        threads = [
+            m for use in self.tool_uses.values() for m in use.moves if m.block_kind is BlockKind.THREAD
+        ]
         for number, each in self.assumed_tools.items():
             use = self.tool_uses[number]
-            self.assumed_tools[number] = each.add_diameter(use, bore).add_width(use, threads)
+            self.assumed_tools[number] = each.add_assumed_diameter(use, bore).add_assumed_width(use, threads)
 
-    def find_shape(self, number: int) -> ToolShape | None:
+    def find_tool_shape(self, number: int) -> ToolShape | None:
         """Return the shape of a tool, or None for a bar stop or an unknown cutting shape."""
         if number in self.assumed_tools:
             return self.assumed_tools[number].tool_shape
@@ -160,11 +164,11 @@ class ProgramTools:
             if each.tool_shape is not None and each.tool_shape.kind in HOLE_TOOLS and each.is_diameter_assumed
         ]
 
-    def is_specified(self, number: int) -> bool:
+    def is_shape_specified(self, number: int) -> bool:
         """Return whether the shape of the tool is specified."""
         return number in self._setting.shapes
 
-    def has_releasing_holder(self, number: int) -> bool:
+    def has_releasing_tap_holder(self, number: int) -> bool:
         """Return whether a comment names a tap holder that reverses or releases the tap automatically."""
         return has_releasing_tap_holder(self.tool_uses[number]) if number in self.tool_uses else False
 
@@ -173,11 +177,11 @@ class ProgramTools:
 
         Without a specified holder, only the edges of the tool are used.
         """
-        shape = self.find_shape(number)
+        shape = self.find_tool_shape(number)
         if shape is None or (shape.is_rotating and shape.direction[0] == 0):
             return None  # a live tool across the spindle cannot turn
-        lines = make_outline(shape)
-        body = lines.body_outlines if self.is_specified(number) else ()
+        lines = make_tool_outline(shape)
+        body = lines.body_outlines if self.is_shape_specified(number) else ()
         return Cutter(
             lines.cutting_outlines, body, _side(shape), is_rear=shape.is_rear_tool, is_drill=shape.is_rotating
         )
@@ -185,7 +189,7 @@ class ProgramTools:
     @property
     def unit_mm(self) -> float:
         """Return the length unit of the program in mm, from its first move."""
-        metric = (use.is_metric for use in self.tool_uses.values() if use.moves or use.live_steps)
+        metric = (use.is_metric for use in self.tool_uses.values() if use.moves or use.live_tool_steps)
         return 1.0 if next(metric, False) else MM_PER_INCH
 
     @property
@@ -197,11 +201,11 @@ class ProgramTools:
         return min((z for move in moves for z, _ in move.points), default=0.0)
 
     @property
-    def part_off_z(self) -> float | None:
+    def part_off_z_mm(self) -> float | None:
         """Return the deepest Z of a parting tool that feeds toward the axis, or None if none does."""
         deepest: list[float] = []
         for number, use in self.tool_uses.items():
-            shape = self.find_shape(number)
+            shape = self.find_tool_shape(number)
             if shape is None or shape.kind is not ToolKind.PARTING:
                 continue
             edge_width_mm = (
@@ -211,13 +215,13 @@ class ProgramTools:
             deepest += [z1 - edge_width_mm for _, r0, z1, r1 in feed_moves if abs(r1) < abs(r0) - _PLUNGE]
         return min(deepest, default=None)
 
-    def find_uncut_feeds(self, stock: Stock | None) -> Iterator[tuple[int, int, str]]:
+    def find_feeds_without_cut(self, stock: Stock | None) -> Iterator[tuple[int, int, str]]:
         """Yield the line, block number and message for each tool or feed that cuts nothing.
 
-        These are tools that make no feed. If ``stock`` is None, they also include ``longest_feed_away`` and
-        the first feed of each live tool.
+        These are tools that make no feed. If ``stock`` is None, they also include
+        ``longest_feed_from_chuck`` and the first feed of each live tool.
         """
-        cutting = [use for n, use in self.tool_uses.items() if self.find_shape(n) is not None]
+        cutting = [use for n, use in self.tool_uses.items() if self.find_tool_shape(n) is not None]
         for use in cutting:
             if (move := use.first_rapid_position) is not None:
                 yield (
@@ -232,7 +236,7 @@ class ProgramTools:
                 )
         if stock is not None:
             return
-        if (lost := self.longest_feed_away) is not None:
+        if (lost := self.longest_feed_from_chuck) is not None:
             yield (
                 lost.line,
                 lost.n,
@@ -242,7 +246,7 @@ class ProgramTools:
                 ),
             )
         for use in cutting:
-            fed = [block for block in use.live_blocks if not block.rapid and block.feed < FAST_FEED_MM_S]
+            fed = [block for block in use.live_tool_blocks if not block.rapid and block.feed < FAST_FEED_MM_S]
             if fed:
                 yield (
                     fed[0].line,
@@ -256,16 +260,20 @@ class ProgramTools:
                 )
 
     @property
-    def longest_feed_away(self) -> TipMove | None:
+    def longest_feed_from_chuck(self) -> TipMove | None:
         """Return the longest feed away from the chuck, if all feeds in total lead away from it.
 
         The result is None otherwise, and if part zero is at the chuck.
         """
         feeds = [
-            m for n, use in self.tool_uses.items() if self.find_shape(n) for m in use.moves if not m.is_fast
+            m
+            for n, use in self.tool_uses.items()
+            if self.find_tool_shape(n)
+            for m in use.moves
+            if not m.is_fast
         ]
         along = [move.points[-1][0] - move.points[0][0] for move in feeds]
-        if sum(along) <= _FED_AWAY_MM or is_zero_at_chuck(feeds):
+        if sum(along) <= _FED_AWAY_MM or has_zero_at_chuck(feeds):
             return None
         return feeds[along.index(max(along))]
 
@@ -274,11 +282,13 @@ class ProgramTools:
         outside: list[TipMove] = []
         bore: list[TipMove] = []
         for number, use in self.tool_uses.items():
-            shape = self.find_shape(number)
+            shape = self.find_tool_shape(number)
             if shape is not None:
                 (outside if _side(shape) is CutSide.OUTSIDE else bore).extend(use.moves)
-        live = [step for use in self.tool_uses.values() for step in use.live_steps]
-        drills = [s.diameter for s in map(self.find_shape, self.tool_uses) if s is not None and s.is_rotating]
+        live = [step for use in self.tool_uses.values() for step in use.live_tool_steps]
+        drills = [
+            s.diameter for s in map(self.find_tool_shape, self.tool_uses) if s is not None and s.is_rotating
+        ]
         return assume_stock(outside, bore, self.bar_stop_z, max(drills, default=0.0), live)
 
 
@@ -305,7 +315,7 @@ def assume_stock(
     face.
     """
     cuts = [move for move in (*outside, *bore) if not move.is_fast]
-    if bar_stop_z is None and is_zero_at_chuck(cuts):
+    if bar_stop_z is None and has_zero_at_chuck(cuts):
         return None
     front = _find_face_z((*outside, *bore)) if bar_stop_z is None else bar_stop_z
     milled = [step for step in live_steps if not step.block.rapid and step.block.feed < FAST_FEED_MM_S]
@@ -321,7 +331,7 @@ def assume_stock(
     return Stock("", tuple((z, radius) for z in ends), inner)
 
 
-def is_zero_at_chuck(cuts: Sequence[TipMove]) -> bool:
+def has_zero_at_chuck(cuts: Sequence[TipMove]) -> bool:
     """Return whether part zero is at the chuck end of the part.
 
     This is assumed if most feeds are in front of Z0.
@@ -428,7 +438,7 @@ def _bar_radius_for_move(move: TipMove) -> float:
     An arc may bulge outward, and an outward line may leave the part.
     """
     radii = [abs(r) for _, r in move.points]
-    return max(radii) if move.kind is BlockKind.ARC else min(radii)
+    return max(radii) if move.block_kind is BlockKind.ARC else min(radii)
 
 
 def _bore_radius(bore: Iterable[TipMove], front: float) -> float:

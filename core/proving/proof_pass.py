@@ -89,7 +89,7 @@ class ProgramTotals:
         self.rapid_length_mm = 0.0
 
     @property
-    def ranges(self) -> ProgramRanges:
+    def program_ranges(self) -> ProgramRanges:
         """Return the ranges that the program uses."""
         return ProgramRanges(
             self.x_range.min_and_max,
@@ -239,7 +239,7 @@ class ProofPass:
         self._stops = self._optional_stops = 0
 
     @property
-    def checks(self) -> CuttingChecks:
+    def cutting_checks(self) -> CuttingChecks:
         """Return the cutting checks in their current state."""
         return self._checks
 
@@ -251,7 +251,7 @@ class ProofPass:
             self._rested(span)
 
     def _moved(self, span: MotionSpan) -> None:
-        spent = span.chunk.block_ends_s - span.chunk.block_starts_s
+        spent = span.planned_chunk.block_ends_s - span.planned_chunk.block_starts_s
         rapid = float(spent[_find_rapids(span.block_groups)].sum())
         self._rapid += rapid
         self._cutting += float(spent.sum()) - rapid
@@ -327,12 +327,12 @@ class ProofPass:
             block_count=interpreter.source_block_count,
             elementary_block_count=self.elementary_block_count,
             diagnostics=sort_findings(found),
-            times=ProgramTimes(self._cutting, self._rapid, self._dwell, self._wait),
+            program_times=ProgramTimes(self._cutting, self._rapid, self._dwell, self._wait),
             cutting_length_mm=tally.cutting_length_mm,
             rapid_length_mm=tally.rapid_length_mm,
             tool_numbers=tuple(sorted(interpreter.used_tools)),
-            missing_tools=tuple(sorted(interpreter.tools_without_offset)),
-            ranges=self._lathe_ranges(source),
+            missing_tool_numbers=tuple(sorted(interpreter.tools_without_offset)),
+            program_ranges=self._lathe_ranges(source),
             final_position=(end.x, end.z, _displayed_c(end))
             if end
             else _lathe_position(timeline.start_position),
@@ -349,9 +349,11 @@ class ProofPass:
 
         The C range of a SINUMERIK program follows the angle count of its C axis.
         """
-        reach = self._tally.ranges
+        reach = self._tally.program_ranges
         modulo = (
-            source.dialect is Dialect.SINUMERIK and self._machine.is_c_enabled and self._machine.is_c_modulo
+            source.dialect is Dialect.SINUMERIK
+            and self._machine.is_c_enabled
+            and self._machine.is_c_axis_modulo
         )
         return replace(reach, c_range=find_modulo_angle_range(*reach.c_range)) if modulo else reach
 
@@ -402,4 +404,4 @@ def _lathe_position(start: tuple[float, ...]) -> tuple[float, float, float]:
 
 def _displayed_c(block: Block) -> float:
     """Return the C angle at the end of a block as the program counts it, in degrees."""
-    return block.c % 360.0 if block.modal.is_c_modulo else block.c
+    return block.c % 360.0 if block.modal.is_c_axis_modulo else block.c

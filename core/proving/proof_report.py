@@ -24,21 +24,21 @@ ValueRange = tuple[float, float]
 class ProgramTimes:
     """Times in seconds whose sum is the cycle time.
 
-    ``wait_s`` is the time for the spindle, the collet and the start of each motion.
+    ``wait_time_s`` is the time for the spindle, the collet and the start of each motion.
     """
 
-    cutting_s: float = 0.0
-    rapid_s: float = 0.0
-    dwell_s: float = 0.0
-    wait_s: float = 0.0
+    cutting_time_s: float = 0.0
+    rapid_time_s: float = 0.0
+    dwell_time_s: float = 0.0
+    wait_time_s: float = 0.0
 
     @property
-    def cycle_s(self) -> float:
+    def cycle_time_s(self) -> float:
         """Return the cycle time in seconds.
 
         Waits for the operator at M00 and M01 are not included.
         """
-        return self.cutting_s + self.rapid_s + self.dwell_s + self.wait_s
+        return self.cutting_time_s + self.rapid_time_s + self.dwell_time_s + self.wait_time_s
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,12 +94,12 @@ class ProofReport:
     block_count: int
     elementary_block_count: int
     diagnostics: tuple[Diagnostic, ...]
-    times: ProgramTimes
+    program_times: ProgramTimes
     cutting_length_mm: float
     rapid_length_mm: float
     tool_numbers: tuple[int, ...]
-    missing_tools: tuple[int, ...]
-    ranges: ProgramRanges
+    missing_tool_numbers: tuple[int, ...]
+    program_ranges: ProgramRanges
     final_position: tuple[float, float, float]  # program frame
     machine_final_position: tuple[float, ...]
     mill_results: MillResults | None = None

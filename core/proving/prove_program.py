@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from core.interpreter.dialects import SharedProgram
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.language.diagnostics import Severity
 from core.language.source import Dialect, ProgramSource
 from core.machine.machine_model import Machine
@@ -39,7 +39,7 @@ def uses_block_delete(source: ProgramSource) -> bool:
     ) or any(map(uses_block_delete, source.subprograms))
 
 
-def add_other_block_delete(
+def add_block_delete_warnings(
     report: ProofReport, other_report: ProofReport, *, is_delete_on: bool
 ) -> ProofReport:
     """Return the report with warnings for faults that occur only in the other position of block delete."""
@@ -71,7 +71,7 @@ def add_other_block_delete(
 
 def prove(
     program: ProgramSource | SharedProgram,
-    setup: Setup,
+    setup: InterpreterSetup,
     machine: Machine,
     report_progress: ReportProgress | None = None,
     *,
@@ -94,12 +94,12 @@ def prove(
         return report
     flipped = replace(setup, block_delete=not setup.block_delete)
     other = _prove_branches(reading, flipped, machine, report_progress, None, ideal=is_ideal)
-    return add_other_block_delete(report, other, is_delete_on=flipped.block_delete)
+    return add_block_delete_warnings(report, other, is_delete_on=flipped.block_delete)
 
 
 def _prove_branches(
     reading: SharedProgram,
-    setup: Setup,
+    setup: InterpreterSetup,
     machine: Machine,
     progress: ReportProgress | None,
     on_span: Callable[[MotionSpan | RestSpan], None] | None,

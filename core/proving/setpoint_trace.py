@@ -55,16 +55,16 @@ class _SpanSampler:
 
     def sample_motion(self, span: MotionSpan) -> SetpointRows:
         """Return the rows of a span of motion."""
-        profile = span.chunk.profile
+        profile = span.planned_chunk.profile
         _, positions, numbers = sample_positions(
             profile, self._dt, max(0.0, self._row * self._dt - span.start_time_s)
         )
-        owners = np.searchsorted(span.chunk.block_numbers, numbers)
+        owners = np.searchsorted(span.planned_chunk.block_numbers, numbers)
         lines = np.concatenate([np.empty(0, np.int64), *map(_lines, span.block_groups)])[owners]
         led = _radius_following_blocks(span.block_groups)
         by_radius = {row: led[n] for row, n in enumerate(numbers.tolist()) if n in led} if led else {}
         self._line = int(lines[-1]) if len(lines) else self._line
-        self._at = tuple(profile.positions_at(profile.duration_s)[0].tolist())
+        self._at = tuple(profile.compute_positions(profile.duration_s)[0].tolist())
         return self._rows(positions, lines, by_radius)
 
     def sample_rest(self, span: RestSpan) -> Iterator[SetpointRows]:
@@ -105,7 +105,7 @@ class _SpanSampler:
         ``by_radius`` contains the blocks with constant surface speed. The timeline's own spindle forecast
         is not changed, because its waits must not depend on the sampling.
         """
-        speeds = self._spindle.speeds_at(t)
+        speeds = self._spindle.calculate_speeds_at(t)
         for row, block in by_radius.items():
             before = float(speeds[row - 1]) if row else self._rpm
             wanted = self._by_radius(block, float(machine_x[row]))

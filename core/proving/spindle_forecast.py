@@ -55,21 +55,23 @@ class SpindleForecast:
         """
         if rpm == self._to:
             return
-        self._turns, self._counted = self.revolutions_at(time_s), time_s
-        self._from, self._to, self._since = self.speed_at(time_s), rpm, time_s + DRIVE_LATENCY_S
+        self._turns, self._counted = self.calculate_revolutions_at(time_s), time_s
+        self._from, self._to, self._since = self.calculate_speed_at(time_s), rpm, time_s + DRIVE_LATENCY_S
 
     def calculate_ramp_speed(self, present_rpm: float, rpm: float, interval_s: float) -> float:
         """Return the speed after ``interval_s`` seconds on the ramp from ``present_rpm`` toward ``rpm``."""
-        rate = self._model.accel if abs(rpm) > abs(present_rpm) else self._model.decel
+        rate = (
+            self._model.acceleration_rpm_s if abs(rpm) > abs(present_rpm) else self._model.deceleration_rpm_s
+        )
         return present_rpm + max(-rate * interval_s, min(rate * interval_s, rpm - present_rpm))
 
     def set_speed(self, time_s: float, rpm: float) -> None:
         """Set the speed to ``rpm`` at ``time_s``, after a move with constant surface speed."""
-        self._turns, self._counted = self.revolutions_at(time_s), time_s
+        self._turns, self._counted = self.calculate_revolutions_at(time_s), time_s
         self._from = self._to = rpm
         self._since = time_s
 
-    def revolutions_at(self, time_s: float) -> float:
+    def calculate_revolutions_at(self, time_s: float) -> float:
         """Return the signed number of revolutions from the start of the program to ``time_s``.
 
         ``time_s`` must not be before the last command.
@@ -82,7 +84,7 @@ class SpindleForecast:
         joints = sorted(joint for joint in ends if self._counted <= joint <= time_s)
         turned = self._turns
         for a, b in pairwise(joints):  # the speed is linear between two joints
-            turned += (self.speed_at(a) + self.speed_at(b)) / 120.0 * (b - a)
+            turned += (self.calculate_speed_at(a) + self.calculate_speed_at(b)) / 120.0 * (b - a)
         return turned
 
     @property
@@ -90,7 +92,7 @@ class SpindleForecast:
         """Return the maximum speed of the machine, in rpm."""
         return self._model.max_rpm
 
-    def speed_at(self, time_s: float) -> float:
+    def calculate_speed_at(self, time_s: float) -> float:
         """Return the signed rpm at ``time_s``."""
         left = max(0.0, time_s - self._since)
         rpm = self._from
@@ -102,15 +104,17 @@ class SpindleForecast:
             rpm = goal
         return self._to
 
-    def speeds_at(self, times_s: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    def calculate_speeds_at(self, times_s: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         """Return the signed rpm at each of ``times_s`` (k,).
 
         Only the speeds within the ramp are calculated individually.
         """
-        ends = self._since + (abs(self._from) + abs(self._to)) / min(self._model.accel, self._model.decel)
+        ends = self._since + (abs(self._from) + abs(self._to)) / min(
+            self._model.acceleration_rpm_s, self._model.deceleration_rpm_s
+        )
         found = np.full(len(times_s), self._to)
         for at in np.flatnonzero(times_s <= ends).tolist():
-            found[at] = self.speed_at(float(times_s[at]))
+            found[at] = self.calculate_speed_at(float(times_s[at]))
         return found
 
     def _ramp_legs(self) -> list[tuple[float, float]]:
@@ -118,18 +122,18 @@ class SpindleForecast:
 
         A reversal first decelerates to rest.
         """
-        slow, fast = self._model.decel, self._model.accel
+        slow, fast = self._model.deceleration_rpm_s, self._model.acceleration_rpm_s
         if self._from * self._to < 0:
             return [(0.0, slow), (self._to, fast)]
         return [(self._to, fast if abs(self._to) > abs(self._from) else slow)]
 
-    def calculate_slow_time_s(self, threshold_rpm: float) -> float:
+    def calculate_slowdown_time_s(self, threshold_rpm: float) -> float:
         """Return the time in seconds at which a stopping spindle falls below ``threshold_rpm``.
 
         The time is in the past if the spindle is already slower.
         """
         over = abs(self._from) - threshold_rpm
-        return self._since + over / self._model.decel if over > 0.0 else 0.0
+        return self._since + over / self._model.deceleration_rpm_s if over > 0.0 else 0.0
 
     def calculate_at_speed_time_s(self) -> float:
         """Return the time in seconds at which the spindle counts as at speed.
@@ -137,9 +141,9 @@ class SpindleForecast:
         The spindle has then been within the at-speed band long enough.
         """
         rpm, t = self._from, self._since
-        band = self._model.at_speed * abs(self._to)
+        band = self._model.at_speed_tolerance * abs(self._to)
         for goal, rate in self._ramp_legs():
             inside = band if goal == self._to else 0.0
             t += max(0.0, abs(goal - rpm) - inside) / rate
             rpm = goal
-        return t + self._model.at_speed_time
+        return t + self._model.at_speed_time_s

@@ -16,7 +16,7 @@ from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import ToolOffset
 from core.part.cutter import SolidTool, make_solid_tool
 from core.part.swept_edge import FloatArray, Point
-from core.part.tool_outline import make_nose_circle, make_outline
+from core.part.tool_outline import make_nose_circle, make_tool_outline
 from core.part.turned_part import NO_CUT, Cut, TurnedPart
 from core.proving.part_history import CheckCanceled, PartHistory
 from core.proving.part_simulation import PartSimulation
@@ -58,7 +58,7 @@ class StartState:
     """
 
     axis_positions: tuple[float, ...]
-    active_tool: int
+    active_tool_number: int
     interrupted_block: tuple[int, Point] | None = None
     starts_at_first_line: bool = True
 
@@ -83,7 +83,7 @@ class FirstMove:
     hit_z_mm: float = 0.0
     is_inside_at_start: bool = False
     safe_jog_direction: str = ""
-    is_assumed: bool = False  # the part or the tool is assumed
+    has_assumed_data: bool = False  # the part or the tool is assumed
     is_part_known: bool = True  # the part is known
 
 
@@ -128,11 +128,11 @@ def _machine(point: Point, zero: Point) -> tuple[float, float]:
 class StartCheck:
     """A check of starts against the part of one program.
 
-    ``offsets`` are the tool offsets of the job, by T number.
+    ``tool_offsets`` are the tool offsets of the job, by T number.
     """
 
     part_history: PartHistory
-    offsets: dict[int, ToolOffset]
+    tool_offsets: dict[int, ToolOffset]
     is_stock_specified: bool
     silenced_checks: frozenset[str] = frozenset()
     _solids: dict[int, SolidTool] = field(default_factory=dict)
@@ -162,7 +162,7 @@ class StartCheck:
                     hit_z_mm=z,
                     is_inside_at_start=inside,
                     safe_jog_direction=self._find_safe_jog(making, start_state),
-                    is_assumed=self._is_assumed(body, tool, start_state),
+                    has_assumed_data=self._is_assumed(body, tool, start_state),
                 )
         return found
 
@@ -170,7 +170,7 @@ class StartCheck:
         if now.interrupted_block is None:
             return self.part_history.make_simulation_at(1, check_canceled=watch)
         block, where = now.interrupted_block
-        zero = self._part_zero_for_tool(now.active_tool)
+        zero = self._part_zero_for_tool(now.active_tool_number)
         return self.part_history.make_simulation_at(
             block, _tip_position(where, zero) if zero is not None else None, watch
         )
@@ -189,8 +189,9 @@ class StartCheck:
             and not self.is_stock_specified
         ):
             return True
-        return start_state.interrupted_block is None and not self.part_history.program_tools.is_specified(
-            tool
+        return (
+            start_state.interrupted_block is None
+            and not self.part_history.program_tools.is_shape_specified(tool)
         )
 
     def _metal(self, making: PartSimulation) -> Iterator[tuple[CollisionBody, TurnedPart]]:
@@ -208,15 +209,15 @@ class StartCheck:
         The result is None without a hit.
         """
         here = (start_state.axis_positions[0], start_state.axis_positions[1])
-        if start_state.active_tool == 0 and start_state.interrupted_block is None:
+        if start_state.active_tool_number == 0 and start_state.interrupted_block is None:
             start_state = replace(
                 start_state, starts_at_first_line=False
             )  # Without an active tool, the position of its tip is unknown.
-        standing = self._met(metal, start_state.active_tool, here, here)
+        standing = self._met(metal, start_state.active_tool_number, here, here)
         if standing and start_state.starts_at_first_line:
-            return start_state.active_tool, standing.front_z_mm, True
+            return start_state.active_tool_number, standing.front_z_mm, True
         for move in moves:
-            for number in dict.fromkeys((start_state.active_tool, move.modal.tool)):
+            for number in dict.fromkeys((start_state.active_tool_number, move.modal.tool)):
                 for a, b in pairwise(move.points):
                     met = self._met(metal, number, _machine(a, move.part_zero), _machine(b, move.part_zero))
                     if (
@@ -238,7 +239,7 @@ class StartCheck:
 
         Although the first move may remain in the bore, later moves would move this tool through the wall.
         """
-        zero = self._part_zero_for_tool(start_state.active_tool)
+        zero = self._part_zero_for_tool(start_state.active_tool_number)
         if zero is None:
             return None
         z, r = _tip_position((start_state.axis_positions[0], start_state.axis_positions[1]), zero)
@@ -246,7 +247,7 @@ class StartCheck:
             abs(metal.columns.column_centers - z) <= max(2 * TOUCH_TOLERANCE_MM, metal.columns.step_mm)
         ]
         if len(around) and float(around.min()) > abs(r) + TOUCH_TOLERANCE_MM:
-            return start_state.active_tool, z, True
+            return start_state.active_tool_number, z, True
         return None
 
     def _is_intended_cut(self, body: CollisionBody, move: TipMove, start_state: StartState) -> bool:
@@ -273,7 +274,7 @@ class StartCheck:
 
     def _find_safe_jog(self, simulation: PartSimulation, start_state: StartState) -> str:
         """Return the direction of a jog along one axis that retracts the active tool without a collision."""
-        tool, (x, z) = start_state.active_tool, start_state.axis_positions[:2]
+        tool, (x, z) = start_state.active_tool_number, start_state.axis_positions[:2]
         zero = self._part_zero_for_tool(tool) or (0.0, 0.0)
         side = 1.0 if x >= zero[0] else -1.0
         across = (
@@ -304,7 +305,7 @@ class StartCheck:
 
         The result is None if they are unknown, as for T0.
         """
-        zero, offset = self.part_history.find_part_zero(tool), self.offsets.get(tool)
+        zero, offset = self.part_history.find_part_zero(tool), self.tool_offsets.get(tool)
         if zero is None and offset is not None:
             return offset.x, offset.z
         return zero
@@ -320,11 +321,11 @@ class StartCheck:
         For other tools, return only the parts that are certain: the nose, or the flutes of a drill.
         """
         tools = self.part_history.program_tools
-        shape = tools.find_shape(tool)
+        shape = tools.find_tool_shape(tool)
         if shape is None:
             return make_nose_circle(_NOSE, 0).cutting_outlines
-        lines = make_outline(shape)
-        if tools.is_specified(tool):
+        lines = make_tool_outline(shape)
+        if tools.is_shape_specified(tool):
             return (*lines.cutting_outlines, *lines.body_outlines)
         if shape.is_rotating:
             return lines.cutting_outlines

@@ -35,7 +35,7 @@ class TipMove(NamedTuple):
 
     n: int
     line: int
-    kind: BlockKind
+    block_kind: BlockKind
     points: tuple[Point, ...]
     speed_mm_s: float
     is_fast: bool
@@ -127,7 +127,7 @@ class StepConverter:
         Presets that only specify part zero are not included.
         """
         modal = block.modal
-        x, z = self._tips.get(modal.tool, (modal.tool_x, modal.tool_z))
+        x, z = self._tips.get(modal.tool, (modal.tool_offset_x, modal.tool_offset_z))
         if modal.settable:
             zero_x, zero_z = self._tips.get(modal.settable, (modal.zero_offset_x, modal.zero_offset_z))
             x, z = x + zero_x, z + zero_z
@@ -155,12 +155,12 @@ def find_step_end_points(step: LiveToolStep) -> tuple[Point, Point]:
     return (block.z0 + dz, block.x0 + dx), (block.z + dz, block.x + dx)
 
 
-def axis_position_at(step: LiveToolStep, fraction: float) -> Point:
+def find_axis_position(step: LiveToolStep, fraction: float) -> Point:
     """Return the position of the axes after a fraction of a live tool's block."""
     plane = step.block.plane
     if plane is not None:
         x, z, _ = plane.compute_machine_positions(np.array([fraction]))[0].tolist()
-        return z + step.part_zero[1] + step.block.modal.secondary_z, x
+        return z + step.part_zero[1] + step.block.modal.secondary_offset_z, x
     start, end = find_step_end_points(step)
     return start[0] + (end[0] - start[0]) * fraction, start[1] + (end[1] - start[1]) * fraction
 
@@ -168,7 +168,7 @@ def axis_position_at(step: LiveToolStep, fraction: float) -> Point:
 def make_live_tool_move(step: LiveToolStep) -> TipMove:
     """Return the move of the axes during a block of a live tool, for drawing."""
     pieces = _MOVE_PIECES if step.block.plane is not None else 1
-    points = tuple(axis_position_at(step, k / pieces) for k in range(pieces + 1))
+    points = tuple(find_axis_position(step, k / pieces) for k in range(pieces + 1))
     return _move(step.block, step.block.n, step.block.line, points, step.part_zero)
 
 

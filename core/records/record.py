@@ -100,7 +100,7 @@ class ScopeRecord:
     sampling_rate_hz: float
     about: Mapping[str, str] = field(default_factory=dict)  # machine, program and alarm as text
 
-    def select_between(self, start_time_s: float, end_time_s: float) -> ScopeRecord:
+    def select_time_range(self, start_time_s: float, end_time_s: float) -> ScopeRecord:
         """Return the samples between two times, inclusive.
 
         ``start_time_s`` and ``end_time_s`` are in seconds of the monotonic clock.
@@ -232,7 +232,7 @@ def calculate_acceleration(
     return found
 
 
-def calculate_ripple(times: FloatArray, speed: FloatArray, span_s: float = RIPPLE_SPAN_S) -> FloatArray:
+def calculate_speed_ripple(times: FloatArray, speed: FloatArray, span_s: float = RIPPLE_SPAN_S) -> FloatArray:
     """Return the speed ripple: the speed minus its mean over ``span_s`` seconds.
 
     If a whole number of ripple waves fits into the span, the mean contains no ripple. The values of the

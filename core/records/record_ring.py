@@ -47,8 +47,8 @@ class RingLayout:
     """
 
     is_rotary_by_axis: Mapping[str, bool]
-    inputs: tuple[str, ...] = ()
-    outputs: tuple[str, ...] = ()
+    input_names: tuple[str, ...] = ()
+    output_names: tuple[str, ...] = ()
     sampling_rate_hz: float = TICK_RATE_HZ
     clock_zero_utc_s: float = 0.0
     machine_name: str = ""
@@ -58,7 +58,7 @@ class RingLayout:
     @property
     def channels(self) -> tuple[Channel, ...]:
         """Return the channels of a record from this ring."""
-        return list_machine_channels(self.is_rotary_by_axis, self.inputs, self.outputs)
+        return list_machine_channels(self.is_rotary_by_axis, self.input_names, self.output_names)
 
     @property
     def sample_width(self) -> int:
@@ -74,7 +74,7 @@ class RingLayout:
 
         The values are the time, TICK_CHANNELS, and the inputs and outputs as bits.
         """
-        return 1 + len(TICK_CHANNELS) + _words(self.inputs) + _words(self.outputs)
+        return 1 + len(TICK_CHANNELS) + _words(self.input_names) + _words(self.output_names)
 
     @property
     def row_capacities(self) -> tuple[int, int]:
@@ -305,8 +305,8 @@ class _Source:
         if letter in axes and what in {"demand", "actual", "following error", "load"}:
             return self._of_axis(axes.index(letter), len(axes), what)
         if letter in {"input", "output"}:
-            names = recorded.inputs if letter == "input" else recorded.outputs
-            first = 1 + len(TICK_CHANNELS) + (0 if letter == "input" else _words(recorded.inputs))
+            names = recorded.input_names if letter == "input" else recorded.output_names
+            first = 1 + len(TICK_CHANNELS) + (0 if letter == "input" else _words(recorded.input_names))
             return self._bit(first, names.index(what))
         return self._of_machine(name, 1 + 3 * len(axes))
 

@@ -39,7 +39,7 @@ class ScopeRecordings:
         """
         return self.ring.get_record_between(start_time_s, end_time_s, names)
 
-    def is_saving(self, _name: str) -> bool:
+    def is_saving_record(self, _name: str) -> bool:
         """Return whether the record of this alarm is still being written."""
         return False
 
@@ -49,7 +49,7 @@ class ScopeRecordings:
         Do not call this function in the thread of the operator screen. Raises RecordError while the record
         is being written, if the record has been deleted, and if its file cannot be read or is damaged.
         """
-        if self.is_saving(name):
+        if self.is_saving_record(name):
             raise RecordError("the record of this alarm is still being saved; try again in 2 s")
         if self.folder is None or Path(name).name != name or not (self.folder / name).exists():
             raise RecordError(

@@ -45,8 +45,8 @@ _CHUNK = 1 << 20
 def _head(recorded: RingLayout, ring: ScopeRing) -> bytes:
     description = {
         "axes": dict(recorded.is_rotary_by_axis),
-        "inputs": recorded.inputs,
-        "outputs": recorded.outputs,
+        "inputs": recorded.input_names,
+        "outputs": recorded.output_names,
         "rate": recorded.sampling_rate_hz,
         "began": recorded.clock_zero_utc_s,
         "machine": recorded.machine_name,
@@ -194,7 +194,7 @@ def is_ring_file(path: Path) -> bool:
 
 
 @dataclass(frozen=True, slots=True)
-class _Found:
+class _RingHeader:
     """The data in the header of a ring file that was opened for reading."""
 
     ring_layout: RingLayout
@@ -230,7 +230,7 @@ def _read_ring(path: Path, begin: float, end: float) -> ScopeRecord:
     return make_record(found.ring_layout, samples[(times >= begin) & (times <= end)], ticks)
 
 
-def _described(path: Path, start: bytes, read: Callable[[int], bytes]) -> _Found:
+def _described(path: Path, start: bytes, read: Callable[[int], bytes]) -> _RingHeader:
     if len(start) < _START.size or not start.startswith(_MAGIC):
         raise RecordError(
             Message("{path} is not a TurnDesk record; choose a file in the records folder", path=path),
@@ -266,10 +266,10 @@ def _described(path: Path, start: bytes, read: Callable[[int], bytes]) -> _Found
         raise RecordError(
             Message("{path} is damaged at the start and cannot be read", path=path), "damaged"
         ) from error
-    return _Found(recorded, (samples, ticks), head)
+    return _RingHeader(recorded, (samples, ticks), head)
 
 
-def _rings(path: Path, found: _Found, read: Callable[[int], bytes]) -> Iterator[FloatArray]:
+def _rings(path: Path, found: _RingHeader, read: Callable[[int], bytes]) -> Iterator[FloatArray]:
     widths = (found.ring_layout.sample_width, found.ring_layout.tick_width)
     for room, width in zip(found.row_capacities, widths, strict=True):
         size = room * (width + 1) * 8

@@ -17,7 +17,13 @@ from core.message import Message
 from core.store import damaged_rows, database, log_damage, program_records, row_checksums, user_records
 from core.store.database import create_store_folder
 from core.store.store_connection import WriterLock, connect_store, get_log_and_index_paths, read_store_version
-from core.store.store_errors import StoreError, StoreErrorCause, find_cause, get_system_error_text, why
+from core.store.store_errors import (
+    StoreError,
+    StoreErrorCause,
+    find_store_error_cause,
+    get_system_error_text,
+    why,
+)
 from core.store.store_file import STORE_FILE_NAME, has_store, resolve_link
 from core.store.user_records import UserRow
 
@@ -42,7 +48,7 @@ _NEWEST_VERSION_QUERY = (
 Found = dict[tuple[str, object], str]
 
 
-def find_problems(path: Path) -> tuple[str, ...]:
+def find_store_problems(path: Path) -> tuple[str, ...]:
     """Return the problems that are found in the store file ``path``, without writing to the file.
 
     The check includes database pages, references between tables, program texts and row checksums. Raises
@@ -52,17 +58,17 @@ def find_problems(path: Path) -> tuple[str, ...]:
     return _looked_through(path, _found)
 
 
-def find_all_problems(path: Path) -> tuple[str, ...]:
+def find_all_store_problems(path: Path) -> tuple[str, ...]:
     """Return the problems of a store file, including damaged history entries.
 
-    History entries are checked only if ``find_problems`` finds no problem. A backup with damaged history
-    entries is still usable.
+    History entries are checked only if ``find_store_problems`` finds no problem. A backup with damaged
+    history entries is still usable.
     """
-    return find_problems(path) or _looked_through(path, _of_histories)
+    return find_store_problems(path) or _looked_through(path, _of_histories)
 
 
 def _looked_through(path: Path, look: Callable[[sqlite3.Connection], tuple[str, ...]]) -> tuple[str, ...]:
-    database.check_file(path, is_thorough=False)
+    database.check_store_file(path, is_thorough=False)
     try:
         with closing(connect_store(path, is_read_only=True)) as connection:
             log_damage.check_log_is_readable(path, connection)
@@ -120,8 +126,8 @@ def back_up_store(folder: Path, target: Path) -> None:
                 ),
                 "store-itself",
             )
-        database.check_header(target)
-    found = find_problems(path)
+        database.check_store_header(target)
+    found = find_store_problems(path)
     if found:
         raise StoreError(
             Message(
@@ -142,7 +148,7 @@ def restore_store(folder: Path, source: Path) -> Path | None:
     the restored store has no users, so the caller must require a service reset first. Raises StoreError if
     the backup is damaged or is the store itself, if the store is in use, or if a file cannot be written.
     """
-    found = find_problems(source)
+    found = find_store_problems(source)
     if found:
         raise StoreError(
             Message(
@@ -175,7 +181,7 @@ def restore_store(folder: Path, source: Path) -> Path | None:
 def _read_users(path: Path) -> tuple[UserRow, ...]:
     """Return the users of the store that is about to be replaced, or () if they cannot be read."""
     try:
-        database.check_header(path)
+        database.check_store_header(path)
         with closing(connect_store(path, is_read_only=True)) as connection:
             return user_records.read_user_list(connection).rows
     except (StoreError, sqlite3.Error):
@@ -276,7 +282,7 @@ def _copy(source: Path, target: Path, change: Callable[[sqlite3.Connection], Non
 
 
 def _unwritable(target: Path, error: Exception) -> StoreError:
-    if isinstance(error, OSError | sqlite3.Error) and find_cause(target, error) in {
+    if isinstance(error, OSError | sqlite3.Error) and find_store_error_cause(target, error) in {
         StoreErrorCause.FULL,
         StoreErrorCause.LOCKED,
     }:
@@ -291,35 +297,35 @@ def _unwritable(target: Path, error: Exception) -> StoreError:
     )
 
 
-class BackupVerdict(NamedTuple):
+class BackupCheckResult(NamedTuple):
     """The result of checking a backup: its first problem, and its differences from the store.
 
     ``first_problem`` is an empty string if the backup is intact. ``difference_counts`` contains the number
-    of changed, missing or new items for each table. ``is_older`` means that the backup has an older store
-    version without comparable checksums, so only its programs are compared.
+    of changed, missing or new items for each table. ``has_older_version`` means that the backup has an older
+    store version without comparable checksums, so only its programs are compared.
     """
 
     first_problem: str = ""
     difference_counts: tuple[tuple[str, int], ...] = ()
-    is_older: bool = False
+    has_older_version: bool = False
 
 
-def check_backup(connection: sqlite3.Connection, path: Path) -> BackupVerdict:
+def check_backup(connection: sqlite3.Connection, path: Path) -> BackupCheckResult:
     """Check a backup page by page and compare it with the open store.
 
     Neither the backup nor the store is changed. Reading the whole file may take some time.
     """
     try:
-        found = find_problems(path)
+        found = find_store_problems(path)
         if found:
-            return BackupVerdict(found[0])
+            return BackupCheckResult(found[0])
         with closing(connect_store(path, is_read_only=True)) as then:
             older = read_store_version(then) != read_store_version(connection)
-            return BackupVerdict("", _count_differences(connection, then, has_checksums=not older), older)
+            return BackupCheckResult("", _count_differences(connection, then, has_checksums=not older), older)
     except StoreError as error:
-        return BackupVerdict(str(error))
+        return BackupCheckResult(str(error))
     except sqlite3.Error as error:
-        return BackupVerdict(str(why(path, error)))
+        return BackupCheckResult(str(why(path, error)))
 
 
 def _count_differences(

@@ -13,7 +13,7 @@ from core.message import Message
 from core.store import row_checksums
 from core.store.offsets.offset_tables import HISTORY_TABLES, OFFSET_TABLES
 from core.store.row_checksums import HISTORY_KEY_COLUMNS, KEY_COLUMNS, RowKey
-from core.store.store_rows import ShapeRow
+from core.store.store_rows import ToolShapeRow
 from core.tool_edges import format_edge_name
 
 SCHEMA_CHANGED_MESSAGE = "the database schema differs from the schema that TurnDesk created"
@@ -46,7 +46,7 @@ _OTHERS = {
 }
 
 
-def repair_rows(connection: sqlite3.Connection) -> tuple[str, ...]:
+def repair_damaged_rows(connection: sqlite3.Connection) -> tuple[str, ...]:
     """Repair damaged rows, and return one message for each of them.
 
     A row is restored if its last history entry matches the saved checksum. It is also restored if this
@@ -192,7 +192,7 @@ def make_row_label(name: str, key: row_checksums.RowKey) -> str:
         return f"{table.letter}{key}"
     return (
         Message("the tool shape of {key}", key=format_edge_name(key))
-        if table.row_type is ShapeRow
+        if table.row_type is ToolShapeRow
         else format_edge_name(key)
     )
 
@@ -209,7 +209,7 @@ def find_last_entered_values(
         return None
     log = OFFSET_TABLES[kind].history_table
     sides = ", ".join(log.key_column if column == log.key_column else f"new_{column}" for column in columns)
-    last = f"WHERE {log.key_column} = ? AND {log.kind_expression} = ? ORDER BY id DESC LIMIT 1"
+    last = f"WHERE {log.key_column} = ? AND {log.kind_sql_expression} = ? ORDER BY id DESC LIMIT 1"
     found = row_checksums.query_raw_rows(
         connection, f"SELECT {sides} FROM {log.name} {last}", (key, kind.value)
     )

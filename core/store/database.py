@@ -26,7 +26,7 @@ from core.store.store_connection import (
     has_write_ahead_log,
     read_store_version,
 )
-from core.store.store_errors import StoreError, StoreErrorCause, find_cause, why
+from core.store.store_errors import StoreError, StoreErrorCause, find_store_error_cause, why
 from core.store.store_file import STORE_FILE_NAME, has_store
 
 APPLICATION_ID = 0x5475724E  # "TurN": identifies a SQLite file as a TurnDesk store
@@ -57,7 +57,7 @@ def load_migrations() -> tuple[str, ...]:
     return tuple(script.read_text(encoding="utf-8") for script in scripts)
 
 
-def check_header(path: Path) -> None:
+def check_store_header(path: Path) -> None:
     """Raise StoreError if the file ``path`` does not begin like a TurnDesk store.
 
     The function reads 100 bytes and does not open the database. It skips a store that this process has open
@@ -123,7 +123,7 @@ def check_is_file(path: Path) -> None:
         )
 
 
-def check_file(path: Path, *, is_thorough: bool) -> int:
+def check_store_file(path: Path, *, is_thorough: bool) -> int:
     """Return the version of the store in ``path``, without writing to the file.
 
     If ``is_thorough`` is True, every page is checked. Raises StoreError if the file cannot be opened, is
@@ -138,7 +138,7 @@ def _checked(path: Path, *, thorough: bool) -> tuple[int, list[str]]:
 
     Opening the store repairs this damage.
     """
-    check_header(path)
+    check_store_header(path)
     newest = len(load_migrations())
     try:
         with closing(connect_store(path, is_read_only=True)) as connection:
@@ -269,7 +269,7 @@ def create_empty_store() -> sqlite3.Connection:
 
 
 @dataclass(frozen=True, slots=True)
-class OpenedStore:
+class StoreConnections:
     """The connections of an open store.
 
     ``writer`` is None if the store is open read-only.
@@ -293,7 +293,7 @@ class OpenedStore:
             self.writer_lock.close()
 
 
-def open_read_only(folder: Path) -> OpenedStore:
+def open_store_read_only(folder: Path) -> StoreConnections:
     """Open the store read-only, or an empty store in memory if the file does not exist.
 
     Raises StoreError if the file is damaged or has another version. Also raises StoreError if the log has
@@ -301,8 +301,8 @@ def open_read_only(folder: Path) -> OpenedStore:
     """
     path = folder / STORE_FILE_NAME
     if not has_store(folder):
-        return OpenedStore(path, create_empty_store())
-    version = check_file(path, is_thorough=False)
+        return StoreConnections(path, create_empty_store())
+    version = check_store_file(path, is_thorough=False)
     if version < len(load_migrations()):
         raise StoreError(
             Message("{path} is from an older TurnDesk; upgrade it: turndesk store upgrade", path=path),
@@ -314,10 +314,10 @@ def open_read_only(folder: Path) -> OpenedStore:
     except StoreError:
         reader.close()
         raise
-    return OpenedStore(path, reader)
+    return StoreConnections(path, reader)
 
 
-def open_for_writing(folder: Path) -> OpenedStore:
+def open_store_for_writing(folder: Path) -> StoreConnections:
     """Lock the store and open it for writing, and create or upgrade it if necessary.
 
     Raises StoreError if the store is in use, damaged or of a newer version, if its file is missing but its
@@ -339,7 +339,7 @@ def open_for_writing(folder: Path) -> OpenedStore:
         undo.callback(writer.close)
         reader = connect_store(path, is_read_only=True)
         undo.pop_all()
-        return OpenedStore(path, reader, writer, lock, put_aside + mended)
+        return StoreConnections(path, reader, writer, lock, put_aside + mended)
 
 
 def create_store_folder(folder: Path) -> None:
@@ -351,7 +351,7 @@ def create_store_folder(folder: Path) -> None:
     try:
         file_replacement.create_synced_folder(folder)
     except OSError as error:
-        if find_cause(folder, error) is StoreErrorCause.FULL:
+        if find_store_error_cause(folder, error) is StoreErrorCause.FULL:
             raise why(folder, error) from error
         raise StoreError(
             Message(

@@ -83,8 +83,8 @@ class EventLog:
         """Log several events with their own times. The events are not lost if the disk is full."""
         rows = tuple(events)
 
-        def keeping(unwritten: WaitingEntries) -> None:
+        def add_event_entries(unwritten: WaitingEntries) -> None:
             for row in rows:
                 unwritten.add_event(row)
 
-        return self._store.keep(keeping)
+        return self._store.keep(add_event_entries)

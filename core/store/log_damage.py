@@ -36,7 +36,7 @@ _WORD = 0xFFFFFFFF
 Pair = tuple[int, int]
 
 
-class _Frame(NamedTuple):
+class _LogFrame(NamedTuple):
     """An entry (frame) of the write-ahead log, with the data from which its checksum is calculated.
 
     ``is_commit`` is True for the last entry of a change.
@@ -76,13 +76,13 @@ def count_lost_changes(log: Path, index: Path) -> int:
     return len(ends)
 
 
-def _frames(content: bytes, page: int) -> list[_Frame]:
+def _frames(content: bytes, page: int) -> list[_LogFrame]:
     step = _FRAME.size + page
     found = []
     for at in range(0, len(content) - step + 1, step):
         _, size, *rest = _FRAME.unpack_from(content, at)
         summed = content[at : at + 8] + content[at + _FRAME.size : at + step]
-        found.append(_Frame(bool(size), (rest[0], rest[1]), (rest[2], rest[3]), summed))
+        found.append(_LogFrame(bool(size), (rest[0], rest[1]), (rest[2], rest[3]), summed))
     return found
 
 
@@ -99,7 +99,7 @@ def _has_equal_salt(its: Pair, salts: tuple[int, ...]) -> bool:
 # damage.
 
 
-def _is_torn(frames: list[_Frame], previous_sums: Pair, salts: tuple[int, ...], order: str) -> bool:
+def _is_torn(frames: list[_LogFrame], previous_sums: Pair, salts: tuple[int, ...], order: str) -> bool:
     """Return whether parts of the last change were never written to the disk.
 
     The result is False if a single damaged word explains the wrong checksums. A disk writes whole sectors,
@@ -158,7 +158,7 @@ def check_log_is_readable(path: Path, reader: sqlite3.Connection) -> None:
     """Raise StoreError if changes in the log cannot be read and TurnDesk is not running.
 
     A running TurnDesk has already reported the damage. The check is then skipped, because it opens and
-    closes SQLite's index (see ``database.check_header``).
+    closes SQLite's index (see ``database.check_store_header``).
     """
     if is_open_for_writing(path.parent):
         return

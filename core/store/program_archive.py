@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from core.store import program_records
 from core.store.production import job_queue
-from core.store.production.run_records import LoadedTexts
+from core.store.production.run_records import LoadedProgramTexts
 from core.store.store_access import StoreAccess
-from core.store.store_rows import ProgramRow, VersionRow
+from core.store.store_rows import ProgramRow, ProgramVersionRow
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
@@ -21,14 +21,14 @@ class ProgramArchive:
     Methods raise StoreError as described in ``StoreAccess``.
     """
 
-    def __init__(self, store: StoreAccess, loaded: LoadedTexts) -> None:
+    def __init__(self, store: StoreAccess, loaded: LoadedProgramTexts) -> None:
         self._store, self._loaded = store, loaded
 
     def list_programs(self) -> tuple[ProgramRow, ...]:
         """Return all programs with their newest version, sorted by name."""
         return self._store.run_query(program_records.read_programs)
 
-    def list_versions(self, name: str) -> tuple[VersionRow, ...]:
+    def list_versions(self, name: str) -> tuple[ProgramVersionRow, ...]:
         """Return every version of a program, newest first, or () for an unknown program."""
         return self._store.run_query(program_records.read_versions, name)
 
@@ -54,14 +54,14 @@ class ProgramArchive:
 
         Later runs under this name are recorded for this text.
         """
-        key = program_records.make_bytes_key(text)
+        key = program_records.make_bytes_record_key(text)
         self._loaded.record_loaded_text(name, key)
 
-        def operation(connection: sqlite3.Connection) -> None:
+        def write_loaded_version(connection: sqlite3.Connection) -> None:
             job_queue.record_loaded_text(connection, name, key)
             program_records.save_program_version(connection, name, text, reason)
 
-        return self._store.store_latest_durably(("text", name), operation)
+        return self._store.store_latest_operation(("text", name), write_loaded_version)
 
     def rename_program(self, old_name: str, new_name: str) -> Future[None]:
         """Rename a program together with its versions, run record and notes."""

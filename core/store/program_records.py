@@ -20,7 +20,7 @@ from core.store.store_file import (
     make_part_setting_key,
     make_stock_setting_key,
 )
-from core.store.store_rows import ProgramRow, RunRow, VersionRow, get_utc_now_text
+from core.store.store_rows import ProgramRow, ProgramVersionRow, RunRow, get_utc_now_text
 
 _NAME_BYTES = 200
 _FORBIDDEN = frozenset('/\\:*?"<>|')
@@ -106,14 +106,14 @@ def read_programs(connection: sqlite3.Connection) -> tuple[ProgramRow, ...]:
     return tuple(ProgramRow(*row) for row in rows)
 
 
-def read_versions(connection: sqlite3.Connection, name: str) -> tuple[VersionRow, ...]:
+def read_versions(connection: sqlite3.Connection, name: str) -> tuple[ProgramVersionRow, ...]:
     """Return every version of a program, newest first, or () for an unknown program."""
     rows = connection.execute(
         "SELECT number, sha256, saved, why, length(text), who FROM program_versions"
         " JOIN programs ON program = programs.id WHERE name = ? ORDER BY number DESC",
         (name,),
     )
-    return tuple(VersionRow(*row) for row in rows)
+    return tuple(ProgramVersionRow(*row) for row in rows)
 
 
 def load_version(connection: sqlite3.Connection, name: str, version: int | None) -> bytes:
@@ -174,7 +174,7 @@ def _matches_checksum(text: object, digest: object) -> bool:
 
 def read_part_count(connection: sqlite3.Connection, program: str) -> int:
     """Return the number of parts made since the last reset of the count, or 0 if the row is damaged."""
-    row = row_checksums.read_intact_row(connection, "part_counts", find_loaded_key(connection, program))
+    row = row_checksums.read_intact_row(connection, "part_counts", find_loaded_text_key(connection, program))
     return _count(row[1]) if row else 0
 
 
@@ -187,7 +187,7 @@ def add_parts(connection: sqlite3.Connection, program: str, added_count: int, co
 
     A negative ``added_count`` subtracts parts, down to zero.
     """
-    program = find_loaded_key(connection, program)
+    program = find_loaded_text_key(connection, program)
     count = max(0, read_part_count(connection, program) + added_count)
     connection.execute(
         "INSERT INTO part_counts VALUES (?1, ?2, ?3)"
@@ -198,7 +198,7 @@ def add_parts(connection: sqlite3.Connection, program: str, added_count: int, co
 
 def reset_parts(connection: sqlite3.Connection, program: str) -> None:
     """Reset the part count of a program to zero."""
-    key = find_loaded_key(connection, program)
+    key = find_loaded_text_key(connection, program)
     connection.execute("DELETE FROM part_counts WHERE program = ?", (key,))
 
 
@@ -228,13 +228,13 @@ def _run(program: str, run: row_checksums.RowValues | None, count: row_checksums
     )
 
 
-def record_start(connection: sqlite3.Connection, program: str, started_at: str) -> None:
+def record_run_start(connection: sqlite3.Connection, program: str, started_at: str) -> None:
     """Record that a run of the program started at ``started_at``."""
     key = _row(connection, program)
     connection.execute("UPDATE runs SET started = ?, outcome = '' WHERE program = ?", (started_at, key))
 
 
-def record_outcome(connection: sqlite3.Connection, program: str, outcome: str) -> None:
+def record_run_outcome(connection: sqlite3.Connection, program: str, outcome: str) -> None:
     """Record the outcome of the last run of a program."""
     key = _row(connection, program)
     connection.execute("UPDATE runs SET outcome = ? WHERE program = ?", (outcome, key))
@@ -311,22 +311,22 @@ def transfer_records(connection: sqlite3.Connection, old_name: str, new_name: st
 
 def _row(connection: sqlite3.Connection, program: str) -> str:
     """Return the record key of a program, and create its row in the table ``runs`` if it is missing."""
-    key = find_loaded_key(connection, program)
+    key = find_loaded_text_key(connection, program)
     connection.execute("INSERT INTO runs (program) VALUES (?) ON CONFLICT DO NOTHING", (key,))
     return key
 
 
-def make_text_key(text: str) -> str:
+def make_text_record_key(text: str) -> str:
     """Return the record key of a program text."""
-    return make_bytes_key(text.encode("utf-8", "surrogateescape"))
+    return make_bytes_record_key(text.encode("utf-8", "surrogateescape"))
 
 
-def make_bytes_key(data: bytes) -> str:
+def make_bytes_record_key(data: bytes) -> str:
     """Return the record key of a stored version that is given as bytes."""
     return RECORD_KEY_PREFIX + sha256(data).hexdigest()
 
 
-def find_loaded_key(connection: sqlite3.Connection, program: str) -> str:
+def find_loaded_text_key(connection: sqlite3.Connection, program: str) -> str:
     """Return the record key of the text that was last loaded under a name.
 
     If ``program`` is a record key, it is returned unchanged.

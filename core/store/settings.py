@@ -68,4 +68,4 @@ class Settings:
         Raises StoreError if JSON cannot represent the value.
         """
         encode_setting(key, value)
-        return self._store.store_latest_durably(("setting", key), lambda c: save_setting(c, key, value))
+        return self._store.store_latest_operation(("setting", key), lambda c: save_setting(c, key, value))

@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Concatenate, ParamSpec, TypeVar
 
 from core.message import Message
 from core.store import damaged_rows, event_log
-from core.store.database import OpenedStore, open_for_writing, open_read_only
+from core.store.database import StoreConnections, open_store_for_writing, open_store_read_only
 from core.store.event_log import EventLog
 from core.store.offsets.offset_repository import OffsetTables
 from core.store.production.job_queue import JobQueue
 from core.store.production.part_cycles import CycleRecords
-from core.store.production.run_records import LoadedTexts, RunRecords
+from core.store.production.run_records import LoadedProgramTexts, RunRecords
 from core.store.program_archive import ProgramArchive
 from core.store.row_checksums import KEY_COLUMNS
 from core.store.settings import Settings
@@ -44,14 +44,14 @@ class Store:
     message for each damaged row that was restored when the store was opened.
     """
 
-    def __init__(self, opened: OpenedStore) -> None:
+    def __init__(self, opened: StoreConnections) -> None:
         self.path = opened.path
         self._reader = opened.reader
         self._reading = threading.Lock()
         self._opened = opened
         self.repair_messages = _repair_damage(opened.writer, opened.repair_messages) if opened.writer else ()
         self._writer = _writer(opened.writer, opened.path) if opened.writer else None
-        loaded = LoadedTexts()
+        loaded = LoadedProgramTexts()
         self.offsets = OffsetTables(self)
         self.programs = ProgramArchive(self, loaded)
         self.runs = RunRecords(self, loaded)
@@ -72,7 +72,7 @@ class Store:
         missing although its log exists. For reading only, raises StoreError if the file is of an older
         version or its log has lost changes.
         """
-        return cls(open_read_only(folder) if read_only else open_for_writing(folder))
+        return cls(open_store_read_only(folder) if read_only else open_store_for_writing(folder))
 
     def close(self) -> None:
         """Write all queued changes, and then release the store.
@@ -165,7 +165,7 @@ class Store:
             )
         return self._writer
 
-    def store_latest_durably(self, key: tuple[str, str], operation: Operation[object]) -> Future[None]:
+    def store_latest_operation(self, key: tuple[str, str], operation: Operation[object]) -> Future[None]:
         """Store an operation as ``keep`` does, replacing a pending operation with the same ``key``."""
         return self.keep(lambda unwritten: unwritten.replace_operation(key, operation))
 
@@ -194,7 +194,7 @@ def _repair_damage(connection: sqlite3.Connection, repair_messages: tuple[str, .
     """
     try:
         connection.execute("BEGIN IMMEDIATE")
-        messages = (*repair_messages, *damaged_rows.repair_rows(connection))
+        messages = (*repair_messages, *damaged_rows.repair_damaged_rows(connection))
         event_log.add_events(connection, (EventRow(get_utc_now_text(), "warning", text) for text in messages))
         connection.execute("COMMIT")
     except sqlite3.Error:

@@ -108,5 +108,5 @@ class StoreAccess(Protocol):
         StoreError while the entry is only in memory.
         """
 
-    def store_latest_durably(self, key: tuple[str, str], operation: Operation[object]) -> Future[None]:
+    def store_latest_operation(self, key: tuple[str, str], operation: Operation[object]) -> Future[None]:
         """Store an operation as ``keep`` does, replacing a pending operation with the same ``key``."""

@@ -12,7 +12,7 @@ from pathlib import Path
 from core.file_lock import is_locked, lock_file, mark_locked
 from core.file_replacement import PRIVATE_FILE_MODE
 from core.message import Message
-from core.store.store_errors import StoreError, StoreErrorCause, find_cause, why
+from core.store.store_errors import StoreError, StoreErrorCause, find_store_error_cause, why
 from core.store.store_file import resolve_link
 
 _BUSY_SECONDS = 5.0
@@ -32,7 +32,11 @@ def connect_store(path: Path, *, is_read_only: bool) -> sqlite3.Connection:
     try:
         return _connection(path, "mode=ro" if is_read_only else "mode=rw")
     except sqlite3.Error as error:
-        if not is_read_only or find_cause(path, error) not in _UNWRITABLE_CAUSES or has_write_ahead_log(path):
+        if (
+            not is_read_only
+            or find_store_error_cause(path, error) not in _UNWRITABLE_CAUSES
+            or has_write_ahead_log(path)
+        ):
             raise why(path, error) from error
     try:
         return _connection(path, "mode=ro&immutable=1")

@@ -84,7 +84,7 @@ _BY_CODE = {
 _DAMAGED_WORDS = ("Could not decode to UTF-8", "unsupported file format")
 
 
-def find_cause(path: Path, error: sqlite3.Error | OSError) -> StoreErrorCause:
+def find_store_error_cause(path: Path, error: sqlite3.Error | OSError) -> StoreErrorCause:
     """Return the cause of an error that SQLite or the system reported.
 
     If SQLite's code is ambiguous, a trial file is written to the folder to find the system's error.
@@ -107,7 +107,7 @@ def find_cause(path: Path, error: sqlite3.Error | OSError) -> StoreErrorCause:
 
 def why(path: Path, error: sqlite3.Error | OSError) -> StoreError:
     """Return a StoreError that explains an SQLite or system error with the store in ``path``."""
-    return find_cause(path, error).make_error(path, get_system_error_text(error))
+    return find_store_error_cause(path, error).make_error(path, get_system_error_text(error))
 
 
 def get_system_error_text(error: Exception) -> str:

@@ -10,14 +10,20 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from core.file_lock import create_unfinished_folder
-from core.file_replacement import place_folder
+from core.file_replacement import move_folder_into_place
 from core.input_file import BYTES_PER_MB, read_input_bytes
 from core.message import Message
 from core.store import program_records
 from core.store.offsets import offset_tables
 from core.store.offsets.offset_tables import ChangeReason
 from core.store.store import Store
-from core.store.store_errors import StoreError, StoreErrorCause, find_cause, get_system_error_text, why
+from core.store.store_errors import (
+    StoreError,
+    StoreErrorCause,
+    find_store_error_cause,
+    get_system_error_text,
+    why,
+)
 from core.store.store_rows import (
     FIELDS_BY_KIND,
     EventRow,
@@ -64,9 +70,9 @@ def export_store(store: Store, folder: Path) -> int:
         with create_unfinished_folder(folder) as scratch:
             unfinished = scratch / folder.name
             count = _write_all(store, unfinished)
-            place_folder(unfinished, folder)
+            move_folder_into_place(unfinished, folder)
     except OSError as error:
-        if find_cause(folder, error) is StoreErrorCause.FULL:
+        if find_store_error_cause(folder, error) is StoreErrorCause.FULL:
             raise why(folder, error) from error
         raise StoreError(
             Message(
@@ -86,7 +92,7 @@ def _write_all(store: Store, folder: Path) -> int:
         (folder / PROGRAMS / _file_name(name)).write_bytes(store.programs.load_version(name))
     (folder / OFFSETS).write_text("\n".join(_offset_lines(store)) + "\n", encoding="utf-8")
     _write_table(folder / EVENTS, EventRow._fields, reversed(store.events.read_events(limit=_ALL)))
-    _write_table(folder / RUNS, _run_columns(), store.runs.read_records())
+    _write_table(folder / RUNS, _run_columns(), store.runs.read_run_records())
     with store.read() as connection:
         for name, table in TABLES_BY_FILE_NAME.items():
             rows = connection.execute(f"SELECT * FROM {table}")

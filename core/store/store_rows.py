@@ -13,7 +13,7 @@ from math import isfinite
 from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_type_hints
 
 from core.message import Message
-from core.tool_edges import EDGE_NUMBERS, make_row_number
+from core.tool_edges import EDGE_NUMBERS, make_edge_row_number
 
 MM_PER_INCH = 25.4
 TOOL_OFFSET_LIMIT_MM = 1270.0  # mm, 50 in, more than the travel of any such lathe
@@ -35,7 +35,9 @@ TOOL_KINDS = (
 TOOL_HANDS = ("right", "left", "neutral")
 _ROUNDING = 1e-9  # in
 OFFSET_NUMBERS = range(1, 33)
-TOOL_ROW_NUMBERS = frozenset(make_row_number(tool, edge) for tool in OFFSET_NUMBERS for edge in EDGE_NUMBERS)
+TOOL_ROW_NUMBERS = frozenset(
+    make_edge_row_number(tool, edge) for tool in OFFSET_NUMBERS for edge in EDGE_NUMBERS
+)
 """Row numbers of the tool tables: the T numbers and their further cutting edges."""
 ZERO_CODES = range(54, 60)
 MILL_TOOL_NUMBERS = range(1, 1000)
@@ -152,7 +154,7 @@ def _size(word: str) -> RowField:
     return RowField(word, 0.0, MAX_SHAPE_DIMENSION_MM)
 
 
-class ToolRow(NamedTuple):
+class ToolOffsetRow(NamedTuple):
     """A tool offset: the machine position of the tip at part zero at touch-off, and the wear since then.
 
     Lengths are in mm, with X as a radius. ``quadrant`` is the direction of the tip from the nose center, 0
@@ -174,7 +176,7 @@ class ToolRow(NamedTuple):
         return self.x + self.wear_x, self.z + self.wear_z
 
 
-class SecondaryRow(NamedTuple):
+class SecondaryOffsetRow(NamedTuple):
     """A secondary offset (D) in mm, with X as a radius; ``r`` is the nose radius."""
 
     x: Annotated[float, _reach("X", SECONDARY_OFFSET_LIMIT_MM)] = 0.0
@@ -182,7 +184,7 @@ class SecondaryRow(NamedTuple):
     r: Annotated[float, RowField("nose radius", 0.0, MAX_NOSE_RADIUS_MM)] = 0.0
 
 
-class ZeroRow(NamedTuple):
+class ZeroOffsetRow(NamedTuple):
     """A zero offset: the machine position of program zero, in mm and degrees, with X as a radius."""
 
     x: Annotated[float, _reach("X", ZERO_OFFSET_LIMIT_MM, FieldType.METRIC_LENGTH)] = 0.0
@@ -190,7 +192,7 @@ class ZeroRow(NamedTuple):
     c: Annotated[float, _reach("C", ANGLE_LIMIT_DEG, FieldType.ANGLE)] = 0.0
 
 
-class ShapeRow(NamedTuple):
+class ToolShapeRow(NamedTuple):
     """The shape of a tool, in mm and degrees, in which 0 or an empty string means not specified.
 
     The nose radius and the tip quadrant are in the tool offset. ``length`` is the cutting length,
@@ -217,7 +219,7 @@ class ShapeRow(NamedTuple):
     profile: Annotated[str, RowField("profile", 0, MAX_OUTLINE_LENGTH, FieldType.TEXT)] = ""
 
 
-class MillRow(NamedTuple):
+class MillToolRow(NamedTuple):
     """A tool of a mill: length L, radius R and corner radius R2 with their oversizes, in mm.
 
     ``life`` is the tool life in minutes. ``stops`` prevents the start of another part when the tool life is
@@ -254,15 +256,17 @@ class PresetRow(NamedTuple):
 
 
 FIELDS_BY_KIND: Mapping[OffsetKind, Mapping[str, RowField]] = {
-    OffsetKind.TOOL: read_row_fields(ToolRow),
-    OffsetKind.SECONDARY: read_row_fields(SecondaryRow),
-    OffsetKind.ZERO: read_row_fields(ZeroRow),
-    OffsetKind.SHAPE: read_row_fields(ShapeRow),
-    OffsetKind.MILL_TOOL: read_row_fields(MillRow),
+    OffsetKind.TOOL: read_row_fields(ToolOffsetRow),
+    OffsetKind.SECONDARY: read_row_fields(SecondaryOffsetRow),
+    OffsetKind.ZERO: read_row_fields(ZeroOffsetRow),
+    OffsetKind.SHAPE: read_row_fields(ToolShapeRow),
+    OffsetKind.MILL_TOOL: read_row_fields(MillToolRow),
     OffsetKind.PRESET: read_row_fields(PresetRow),
 }
-OffsetRow = ToolRow | SecondaryRow | ZeroRow | ShapeRow | MillRow | PresetRow
-ConcreteRowT = TypeVar("ConcreteRowT", ToolRow, SecondaryRow, ZeroRow, ShapeRow, MillRow, PresetRow)
+OffsetRow = ToolOffsetRow | SecondaryOffsetRow | ZeroOffsetRow | ToolShapeRow | MillToolRow | PresetRow
+ConcreteRowT = TypeVar(
+    "ConcreteRowT", ToolOffsetRow, SecondaryOffsetRow, ZeroOffsetRow, ToolShapeRow, MillToolRow, PresetRow
+)
 RowT = TypeVar("RowT", bound=OffsetRow)  # also for rows whose type is known only at run time
 
 
@@ -297,12 +301,12 @@ class ProgramRow(NamedTuple):
     """The name of a program and its newest version."""
 
     name: str
-    created: str
-    version: int
+    created_at: str
+    newest_version: int
     saved: str
 
 
-class VersionRow(NamedTuple):
+class ProgramVersionRow(NamedTuple):
     """One saved version of a program, without its text."""
 
     number: int
@@ -316,7 +320,7 @@ class VersionRow(NamedTuple):
 class EventOrigin(NamedTuple):
     """The identity of the control process that reported an event, and the event's number in that process."""
 
-    control: str
+    control_id: str
     number: int
 
 

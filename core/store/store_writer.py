@@ -18,7 +18,7 @@ from core.message import Message
 from core.store import event_log, program_records
 from core.store.production import job_queue
 from core.store.store_access import EntryWriter, Operation, PendingEntries
-from core.store.store_errors import StoreError, StoreErrorCause, find_cause, why
+from core.store.store_errors import StoreError, StoreErrorCause, find_store_error_cause, why
 from core.store.store_rows import EventRow, get_utc_now_text
 
 # --- Entries to be written: events, part counts, runs and settings, buffered until the disk accepts them.
@@ -28,7 +28,7 @@ from core.store.store_rows import EventRow, get_utc_now_text
 MAX_PENDING_EVENTS = 20_000
 
 
-class _Parts(NamedTuple):
+class _PendingParts(NamedTuple):
     """A pending change of a program's part count: an optional reset, followed by the parts to add."""
 
     resets_count: bool = False
@@ -36,7 +36,7 @@ class _Parts(NamedTuple):
     last_part_time: str = ""
 
 
-class _Cycles(NamedTuple):
+class _PendingCycles(NamedTuple):
     """The complete cycles of a program that are not written to disk yet, with their times in seconds."""
 
     cycle_count: int
@@ -54,8 +54,8 @@ class UnwrittenEntries:
     def __init__(self) -> None:
         self._events: deque[EventRow] = deque()
         self._dropped = 0
-        self._parts: dict[str, _Parts] = {}
-        self._cycles: dict[str, _Cycles] = {}
+        self._parts: dict[str, _PendingParts] = {}
+        self._cycles: dict[str, _PendingCycles] = {}
         self._latest: dict[tuple[str, str], Operation[object]] = {}
 
     def __bool__(self) -> bool:
@@ -70,19 +70,21 @@ class UnwrittenEntries:
 
     def add_parts(self, program: str, count: int) -> None:
         """Add parts to a part count, or subtract them if ``count`` is negative."""
-        before = self._parts.get(program, _Parts())
+        before = self._parts.get(program, _PendingParts())
         self._parts[program] = before._replace(
             added_part_count=before.added_part_count + count, last_part_time=get_utc_now_text()
         )
 
     def reset_parts(self, program: str) -> None:
         """Set a part count to zero."""
-        self._parts[program] = _Parts(resets_count=True, last_part_time=get_utc_now_text())
+        self._parts[program] = _PendingParts(resets_count=True, last_part_time=get_utc_now_text())
 
     def add_cycle(self, program: str, seconds: float) -> None:
         """Add a complete cycle and its time in seconds."""
-        before = self._cycles.get(program, _Cycles(0, seconds, seconds))
-        self._cycles[program] = _Cycles(before.cycle_count + 1, min(before.best_time_s, seconds), seconds)
+        before = self._cycles.get(program, _PendingCycles(0, seconds, seconds))
+        self._cycles[program] = _PendingCycles(
+            before.cycle_count + 1, min(before.best_time_s, seconds), seconds
+        )
 
     def replace_operation(self, name: tuple[str, str], operation: Operation[object]) -> None:
         """Add an operation, replacing a pending operation with the same name."""
@@ -142,18 +144,18 @@ def _done(operation: Operation[object], connection: sqlite3.Connection) -> str:
     return ""
 
 
-def _writing_parts(program: str, parts: _Parts) -> Operation[object]:
-    def write(connection: sqlite3.Connection) -> None:
+def _writing_parts(program: str, parts: _PendingParts) -> Operation[object]:
+    def write_parts(connection: sqlite3.Connection) -> None:
         if parts.resets_count:
             job_queue.save_count_before_reset(connection, program)
             program_records.reset_parts(connection, program)
         if parts.added_part_count:
             program_records.add_parts(connection, program, parts.added_part_count, parts.last_part_time)
 
-    return write
+    return write_parts
 
 
-def _writing_cycles(program: str, cycles: _Cycles) -> Operation[object]:
+def _writing_cycles(program: str, cycles: _PendingCycles) -> Operation[object]:
     return lambda connection: program_records.record_complete_cycles(
         connection, program, cycles.latest_time_s, cycles.cycle_count, cycles.best_time_s
     )
@@ -235,13 +237,13 @@ class StoreWriter:
         """
         future: Future[None] = Future()
 
-        def add_to(unwritten: UnwrittenEntries) -> None:
+        def add_entry_and_future(unwritten: UnwrittenEntries) -> None:
             add_entry(unwritten)
             self._waiting.append(future)
             if self._queue.empty():
                 self._write_waiting()
 
-        self._put(add_to)
+        self._put(add_entry_and_future)
         return future
 
     def _put(self, task: _Task) -> None:
@@ -330,7 +332,7 @@ class StoreWriter:
                 Message("nothing was stored ({error})", error=error), "constraint"
             )  # the disk has no fault
         self._trouble = str(why(self._path, error))
-        cause = find_cause(self._path, error)
+        cause = find_store_error_cause(self._path, error)
         failure = StoreError(
             Message("nothing was stored: {problem}. Then make the entry again", problem=self._trouble),
             cause.error_code,

@@ -6,9 +6,17 @@ from typing import NamedTuple
 
 from core.json_keys import JsonKey, declare_keys, declare_row_keys
 from core.store.production.measured_parts import FeatureRow, ReadingRow
-from core.store.production.part_cycles import CorrectionRow, CycleRow, StopRow
+from core.store.production.part_cycles import CorrectionRow, CycleRow, ProductionStopRow
 from core.store.production.tool_lives import InsertChange, ToolLifeRow
-from core.store.store_rows import EventRow, MillRow, PresetRow, SecondaryRow, ShapeRow, ToolRow, ZeroRow
+from core.store.store_rows import (
+    EventRow,
+    MillToolRow,
+    PresetRow,
+    SecondaryOffsetRow,
+    ToolOffsetRow,
+    ToolShapeRow,
+    ZeroOffsetRow,
+)
 
 
 class TableColumns(NamedTuple):
@@ -260,25 +268,25 @@ planned | number or null | s | Cycle time that the last proof calculated.
         "",
         "Tool offsets of a lathe. The export contains them in inches in `offsets.toml`, "
         "together with the secondary and zero offsets and the tool shapes.",
-        (*_NUMBER, *_columns(ToolRow, TOOL_OFFSET_COLUMNS, {"nose_radius": "r"})),
+        (*_NUMBER, *_columns(ToolOffsetRow, TOOL_OFFSET_COLUMNS, {"nose_radius": "r"})),
     ),
     TableColumns(
         "secondary_offsets",
         "",
         "Secondary offsets, D1 to D32.",
-        (*_NUMBER, *_columns(SecondaryRow, SECONDARY_OFFSET_COLUMNS)),
+        (*_NUMBER, *_columns(SecondaryOffsetRow, SECONDARY_OFFSET_COLUMNS)),
     ),
     TableColumns(
         "zero_offsets",
         "",
         "Zero offsets G54 to G59.",
-        (*declare_keys("code | integer | | 54 to 59."), *_columns(ZeroRow, ZERO_OFFSET_COLUMNS)),
+        (*declare_keys("code | integer | | 54 to 59."), *_columns(ZeroOffsetRow, ZERO_OFFSET_COLUMNS)),
     ),
     TableColumns(
         "tool_shapes",
         "",
         "Shapes of the tools of a lathe.",
-        (*_NUMBER, *_columns(ShapeRow, TOOL_SHAPE_COLUMNS, {"insert": "insert_code"})),
+        (*_NUMBER, *_columns(ToolShapeRow, TOOL_SHAPE_COLUMNS, {"insert": "insert_code"})),
     ),
     TableColumns(
         "part_features",
@@ -313,7 +321,7 @@ planned | number or null | s | Cycle time that the last proof calculated.
         "production_stops",
         "stops.csv",
         "One row for each stop of production.",
-        (*_ID, *_columns(StopRow, STOP_COLUMNS)),
+        (*_ID, *_columns(ProductionStopRow, STOP_COLUMNS)),
     ),
     TableColumns(
         "tool_lives",
@@ -340,7 +348,10 @@ seconds | number | s | Time at feed since the tool was changed.
         ),
     ),
     TableColumns(
-        "mill_tools", "mill_tools.csv", "Tools of a mill.", (*_NUMBER, *_columns(MillRow, MILL_TOOL_COLUMNS))
+        "mill_tools",
+        "mill_tools.csv",
+        "Tools of a mill.",
+        (*_NUMBER, *_columns(MillToolRow, MILL_TOOL_COLUMNS)),
     ),
     TableColumns(
         "datum_presets",

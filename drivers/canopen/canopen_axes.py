@@ -11,30 +11,35 @@ from drivers.canopen.canopen_homing import CanopenHoming
 from drivers.canopen.canopen_objects import DriveState
 from drivers.canopen.canopen_setup import build_travel_limit_objects
 from drivers.canopen.drive_set import MOTION_MODES, DriveSet
-from drivers.canopen.position_modes import CyclicFollower, ProfiledFollower, SetpointFollower, SyncSchedule
+from drivers.canopen.position_modes import (
+    CyclicSetpointFollower,
+    ProfilePositionFollower,
+    SetpointFollower,
+    SyncSchedule,
+)
 from drivers.canopen.pvt_mode import PvtFollower
 from drivers.port_checks import (
-    require_axis,
+    require_drive_power,
+    require_existing_axis,
     require_no_fault,
     require_no_homing,
-    require_power,
     require_standstill,
 )
-from drivers.setpoint_queue import JunctionTolerance, SetpointQueue, check_limits
+from drivers.setpoint_queue import JunctionTolerance, SetpointQueue, check_setpoint_limits
 
 
-def create_follower(
+def create_setpoint_follower(
     config: CanopenConfig, drives: DriveSet, queue: SetpointQueue, schedule: SyncSchedule
 ) -> SetpointFollower:
     """Create the setpoint follower for the motion mode ``config.bus.mode``."""
     if config.bus_settings.mode == "pp":
-        return ProfiledFollower(drives.axes, drives.axis_indices, queue)
+        return ProfilePositionFollower(drives.axes, drives.axis_indices, queue)
     if MOTION_MODES[config.bus_settings.mode].is_cyclic:
-        return CyclicFollower(
+        return CyclicSetpointFollower(
             drives.axes,
             drives.axis_indices,
             queue,
-            MOTION_MODES[config.bus_settings.mode].drive_mode,
+            MOTION_MODES[config.bus_settings.mode].cia402_mode,
             schedule,
         )
     return PvtFollower(
@@ -63,7 +68,7 @@ class CanopenAxes:
         tolerance = JunctionTolerance.from_axes(config.axes)
         self.queue = SetpointQueue(self.axes, (0.0,) * len(self.axes), config.commit_time_s, tolerance)
         self.sync_schedule = SyncSchedule(config.bus_settings.sync, bus.clock.now())
-        self.follower = create_follower(config, self.drives, self.queue, self.sync_schedule)
+        self.follower = create_setpoint_follower(config, self.drives, self.queue, self.sync_schedule)
         self.is_cyclic = MOTION_MODES[config.bus_settings.mode].is_cyclic
         self.active_homing: CanopenHoming | None = None
         self.fault = ""
@@ -83,7 +88,7 @@ class CanopenAxes:
         Raises DriverError if a drive does not respond or does not match the machine file.
         """
         self.drives.configure_drives()
-        self.queue.reset_to(self._actual_positions())
+        self.queue.reset_to_position(self._actual_positions())
 
     def run_cycle(self, now: float) -> None:
         """Supervise the drives, continue a homing, and feed setpoints; this method raises no exceptions.
@@ -92,12 +97,12 @@ class CanopenAxes:
         """
         self._supervise()
         if not self.is_cyclic:
-            self.advance(now)
+            self.advance_motion(now)
         self._check_braking_time(now)
         self.drives.update_moving_axes(now)
         self.queue.discard_pieces_before(now - _HISTORY_S)
 
-    def advance(self, now: float) -> None:
+    def advance_motion(self, now: float) -> None:
         """Execute the next step of a homing, or feed the next setpoints.
 
         An error sets a fault and stops all axes.
@@ -131,7 +136,7 @@ class CanopenAxes:
         self._need_power()
         homing = self.active_homing or self._given_up
         require_no_homing(homing.config.name if homing is not None else "")
-        check_limits(segments, self.config.axes, self._homed())
+        check_setpoint_limits(segments, self.config.axes, self._homed())
         self.follower.check_segments(segments)
         self.queue.splice_segments(segments, self.now())
 
@@ -173,7 +178,7 @@ class CanopenAxes:
             return
         self.follower.prepare_targets()
         self.drives.power_on()
-        self.queue.reset_to(self._actual_positions())
+        self.queue.reset_to_position(self._actual_positions())
         self._on = True
 
     def stop(self, mode: StopMode) -> None:
@@ -183,7 +188,7 @@ class CanopenAxes:
             return
         self._off(DriveState.SWITCH_ON_DISABLED if mode is StopMode.OFF else DriveState.QUICK_STOP_ACTIVE)
         if not self._bus.failure and not self.is_cyclic:  # Otherwise with the next SYNC at its regular time.
-            self.drives.exchange_sync()
+            self.drives.send_commands_and_sync()
 
     def home(self, axis: str) -> None:
         """Start homing an axis with the homing function of its drive.
@@ -192,14 +197,14 @@ class CanopenAxes:
         does not exist. Also raises DriverError if a fault is active, the power is off, an axis is moving,
         or the drive rejects the homing parameters.
         """
-        require_axis(axis, self.axes)
+        require_existing_axis(axis, self.axes)
         driven = next((a for a in self.drives.axes if a.config.name == axis), None)
         if driven is None or driven.config.absolute:
             return
         self._need_power()
         require_standstill(axis, self.sample().moving)
         self.follower.abort_transfer()
-        self.active_homing = CanopenHoming(driven, self.follower.drive_mode, self.now())
+        self.active_homing = CanopenHoming(driven, self.follower.cia402_mode, self.now())
 
     def clear_fault(self) -> None:
         """Clear the fault and reset the drives, which remain without power.
@@ -221,20 +226,23 @@ class CanopenAxes:
 
     def reset_queue(self) -> None:
         """Restart the setpoint queue at the measured positions."""
-        self.queue.reset_to(self._actual_positions())
+        self.queue.reset_to_position(self._actual_positions())
 
     # --- inside -------------------------------------------------------------------------------------------
 
     def _supervise(self) -> None:
         fault_text = (
-            self._bus.failure or self.other_device_fault or self.follower.failure or self.drives.supervise()
+            self._bus.failure
+            or self.other_device_fault
+            or self.follower.failure
+            or self.drives.supervise_drives()
         )
         fault_text = fault_text or (self.active_homing.failure if self.active_homing is not None else "")
         if fault_text and not self.fault:
             self._trip(fault_text)
         elif self._on and not self._powered() and not fault_text:
             self._off(DriveState.SWITCH_ON_DISABLED)  # The power was removed by E-stop or STO.
-            self.drives.mark_not_homed()
+            self.drives.mark_axes_not_homed()
 
     def _trip(self, fault: str) -> None:
         """Record a fault, unless another fault is already active, and stop all axes."""
@@ -251,7 +259,7 @@ class CanopenAxes:
         self.drives.set_goal_state(goal)
         self.follower.abort_transfer()
         self.follower.must_send_now = True
-        self.queue.reset_to(self._actual_positions())
+        self.queue.reset_to_position(self._actual_positions())
 
     def _check_braking_time(self, now: float) -> None:
         """Switch the drives off if a quick stop takes too long.
@@ -268,7 +276,7 @@ class CanopenAxes:
         A homing axis brakes with the ramp of its drive.
         """
         if self.active_homing is not None:
-            self.active_homing.cancel()
+            self.active_homing.cancel_homing()
             self.active_homing, self._given_up = None, self.active_homing
         elif self._given_up is None:
             at = self.now() + self.commit
@@ -276,27 +284,27 @@ class CanopenAxes:
                 self.queue.brake_to_rest(at, [axis.amax for axis in self.config.axes])
             else:
                 place, _ = self.queue.get_commanded_state(at)  # Setpoints until then remain.
-                self.queue.splice_segments(MotionSegments.make_rest(at, place), at - self.commit)
+                self.queue.splice_segments(MotionSegments.make_standstill(at, place), at - self.commit)
             self.follower.handle_braking(at)
 
     def _go_on(self, now: float) -> None:
         homing = self.active_homing or self._given_up
         if homing is None:
-            self.follower.feed_setpoints(now)
+            self.follower.transfer_setpoints(now)
             return
-        homing.advance(now)
+        homing.advance_homing(now)
         if homing.is_done:
             if self.active_homing is not None:
                 homing.axis.is_homed = True
                 for index, sub, value in build_travel_limit_objects(homing.config):
                     homing.axis.drive.setup.write_optional_object(index, sub, value)
             self.active_homing = self._given_up = None
-            self.queue.reset_to(
+            self.queue.reset_to_position(
                 self._actual_positions()
             )  # The path continues from the stop position of the drive.
 
     def _need_power(self) -> None:
-        require_power(self.fault, self._powered())
+        require_drive_power(self.fault, self._powered())
 
     def _powered(self) -> bool:
         return self._on and self.drives.is_powered

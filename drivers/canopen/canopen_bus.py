@@ -41,7 +41,7 @@ class CanBus(canopen.Network):
     def __init__(
         self, config: CanopenTable, clock: Clock, advance_time: Callable[[], None] | None = None
     ) -> None:
-        super().__init__(open_interface(config))
+        super().__init__(open_can_interface(config))
         self.config = config
         self.clock = clock
         self.garbled_frame_count = 0
@@ -67,7 +67,7 @@ class CanBus(canopen.Network):
         """
         self.close()
         try:
-            self.bus = open_interface(self.config)
+            self.bus = open_can_interface(self.config)
         except DriverError as error:
             raise DriverError(f"{self.failure}; {error}", "bus") from error
         self.failure, self.garbled_frame_count = "", 0
@@ -146,7 +146,7 @@ class CanBus(canopen.Network):
         return True
 
     @property
-    def has_stepped_time(self) -> bool:
+    def has_simulated_time(self) -> bool:
         """Return whether time advances only when the bus calls ``advance_time``, as in tests."""
         return self._idle is not None
 
@@ -250,7 +250,7 @@ _OPEN_ERRORS = (
 )
 
 
-def open_interface(config: CanopenTable) -> can.BusABC:
+def open_can_interface(config: CanopenTable) -> can.BusABC:
     """Open the CAN interface.
 
     With the interface ``udp_multicast``, the channel may end in ``:port``. On one computer, multicast

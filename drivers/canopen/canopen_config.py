@@ -46,12 +46,12 @@ class AxisConfig(AxisProperties):
             )
         return round(counts)
 
-    def convert_speed(self, speed: float) -> float:
+    def convert_to_drive_speed(self, speed: float) -> float:
         """Convert a speed in mm/s or degrees/s into the unit of the drive, counts/s or rpm."""
         counts = speed / self.count
         return counts * 60.0 / self.counts_per_rev if self.counts_per_rev else counts
 
-    def convert_acceleration(self, accel: float) -> int:
+    def convert_to_drive_acceleration(self, accel: float) -> int:
         """Convert an acceleration in mm/s² or degrees/s² into the unit of the drive, counts/s² or rpm/s.
 
         The result is at least 1.
@@ -85,7 +85,7 @@ class EncoderConfig:
     name: str
     node: CanNode | None
     index: int
-    subindex: int
+    object_subindex: int
     counts_per_rev: int  # Negative: counts down with M03.
     max_rpm: float
 

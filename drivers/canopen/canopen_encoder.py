@@ -58,7 +58,7 @@ class CanEncoder:
             self._check_counts()
             self.node.nmt.add_heartbeat_callback(self._heartbeat)
             self.node.emcy.add_callback(self._emergency)
-        entry = config.index | config.subindex << 16
+        entry = config.index | config.object_subindex << 16
         every = self._bus.config.slow_reply_divisor
         setup.map_sent_objects(1 if self._drive is None else 3, self._told, (entry, 32), every=every)
         self._raw, self.missing_reply_count, self.failure = None, 0, ""
@@ -80,7 +80,7 @@ class CanEncoder:
         """
         self.missing_reply_count, self._asked = self.missing_reply_count + reply_expected, now_s
 
-    def supervise(self) -> None:
+    def supervise_encoder(self) -> None:
         """Set a fault if heartbeats or replies are missing."""
         silent = self._bus.clock.now() - self._heard
         if self._drive is None and silent > 3.0 * self._bus.config.heartbeat:
@@ -208,7 +208,7 @@ class CanEncoder:
 
 def _setup_of(config: EncoderConfig, bus: CanBus) -> NodeSetup:
     assert config.node is not None  # Otherwise the encoder is the second input of a drive.
-    objects = od.load_dictionary(config.name, config.node.eds, od.build_encoder_dictionary)
+    objects = od.load_object_dictionary(config.name, config.node.eds, od.build_encoder_dictionary)
     return NodeSetup(bus, config.name, config.node.id, objects)
 
 

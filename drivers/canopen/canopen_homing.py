@@ -33,7 +33,7 @@ class _Step(Enum):
 class CanopenHoming:
     """Homing of one axis by its drive.
 
-    ``advance`` must be called once per tick until ``is_done`` is true or ``failure`` is set.
+    ``advance_homing`` must be called once per tick until ``is_done`` is true or ``failure`` is set.
     """
 
     def __init__(self, axis: DrivenAxis, previous_mode: int, now: float) -> None:
@@ -52,7 +52,7 @@ class CanopenHoming:
         """Return whether the homing has ended and the drive has returned to its previous mode."""
         return self._step is _Step.DONE
 
-    def advance(self, now: float) -> None:
+    def advance_homing(self, now: float) -> None:
         """Evaluate the status word of the drive and execute the next step of the homing."""
         drive, waited = self._drive, now - self._since
         if self._step is _Step.MODE and drive.reported_mode == HM:
@@ -69,7 +69,7 @@ class CanopenHoming:
         elif self._step in {_Step.MODE, _Step.RESTORE_MODE} and waited > _MODE_CHANGE_S:
             self._fail("the drive stays in mode {shown_mode}", shown_mode=drive.reported_mode)
 
-    def cancel(self) -> None:
+    def cancel_homing(self) -> None:
         """Cancel the homing, so that the drive brakes.
 
         The drive returns to its previous mode at standstill, because some drives reject a mode change
@@ -122,9 +122,9 @@ class CanopenHoming:
         slow = config.home_latch_speed or config.home_speed / 10.0
         setup.write(od.HOME_METHOD, 0, config.home_method)
         for index, sub, value in (
-            (od.HOME_SPEEDS, 1, max(round(config.convert_speed(config.home_speed)), 1)),
-            (od.HOME_SPEEDS, 2, max(round(config.convert_speed(slow)), 1)),
-            (od.HOME_ACCEL, 0, config.convert_acceleration(config.amax)),
+            (od.HOME_SPEEDS, 1, max(round(config.convert_to_drive_speed(config.home_speed)), 1)),
+            (od.HOME_SPEEDS, 2, max(round(config.convert_to_drive_speed(slow)), 1)),
+            (od.HOME_ACCEL, 0, config.convert_to_drive_acceleration(config.amax)),
         ):
             setup.write_optional_object(index, sub, value)
         place = config.convert_position(config.home_offset)
@@ -198,7 +198,7 @@ class SpindleHoming:
                 raise DriverError(
                     "C: the spindle drive remains in state {state}, mode {shown_mode}",
                     "c-coupling",
-                    state=drive.state,
+                    state=drive.reported_state,
                     shown_mode=drive.reported_mode,
                 )
             return False

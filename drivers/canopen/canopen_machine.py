@@ -21,11 +21,11 @@ from drivers.canopen.canopen_bus import CanBus
 from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_encoder import CanEncoder, MeasuredSpindle
 from drivers.canopen.canopen_objects import DriveState
-from drivers.canopen.canopen_spindle import CanopenSpindle, CanopenSpindleC
+from drivers.canopen.canopen_spindle import CanopenCAxis, CanopenSpindle
 from drivers.canopen.canopen_terminals import CanopenIO, CanopenProbe
 from drivers.canopen.cia402_drives import Cia402Drive
-from drivers.canopen.position_modes import CyclicFollower
-from drivers.port_checks import LOG_ROWS, SampleLog
+from drivers.canopen.position_modes import CyclicSetpointFollower
+from drivers.port_checks import LOG_ROWS, SampleRingBuffer
 
 _NAN = float("nan")
 _UNTRACED_REASON = (
@@ -50,7 +50,7 @@ class CanopenSamples:
         self.sample_rate_hz = 1.0 / sync_period_s
         self._axes, self._spindle, self._spindle_drive = axes, spindle, spindle_drive
         self._drives = {axis.config.name: axis.drive for axis in axes.drives.axes}
-        self._log = SampleLog(len(axes.axes))
+        self._log = SampleRingBuffer(len(axes.axes))
 
     def record_replies(self, now: float) -> None:
         """Store the replies to the last SYNC, unless they are already stored."""
@@ -67,7 +67,7 @@ class CanopenSamples:
             sample.t, *sample.demand, *sample.actual, *load, self._spindle.speed(), turns, turning, left
         )
 
-    def take(self, max_rows: int = LOG_ROWS) -> FloatArray:
+    def take_samples(self, max_rows: int = LOG_ROWS) -> FloatArray:
         """Return at most ``max_rows`` samples that were stored since the last call, oldest first."""
         return self._log.pop_rows(max_rows)
 
@@ -128,10 +128,10 @@ class CanopenMachine:
         self.axes.fault_clearers.append(encoder.clear_fault)
         return encoder
 
-    def _spindle_c(self) -> CanopenSpindleC | None:
+    def _spindle_c(self) -> CanopenCAxis | None:
         if self.spindle is None or self.config.spindle is None or not self.config.spindle.is_c_axis:
             return None
-        found = CanopenSpindleC(self.axes, self.spindle, "C")
+        found = CanopenCAxis(self.axes, self.spindle, "C")
         self.axes.fault_clearers.append(found.clear_fault)
         return found
 
@@ -205,7 +205,7 @@ class CanopenMachine:
         """Return a warning if setpoints were late since the last warning, at most once per second."""
         follower, now = self.axes.follower, self.clock.now()
         if (
-            not isinstance(follower, CyclicFollower)
+            not isinstance(follower, CyclicSetpointFollower)
             or not follower.gap_count
             or now < self._told + _WARNING_PERIOD_S
         ):
@@ -237,9 +237,9 @@ class CanopenMachine:
             self._record_sync(now, reply_expected=counted)
             if not self._feeding:  # Otherwise a homing is waiting for a node.
                 self._feeding = True
-                if waited and isinstance(self.axes.follower, CyclicFollower):
+                if waited and isinstance(self.axes.follower, CyclicSetpointFollower):
                     self.axes.follower.delay_path(waited)
-                self.axes.advance(now)
+                self.axes.advance_motion(now)
                 self._feeding = False
             self.axes.drives.send_commands()
             if counted:
@@ -290,7 +290,7 @@ class CanopenMachine:
             if self.spindle_c is not None:
                 self.spindle_c.advance_mode_change(now)
             if self.encoder is not None:
-                self.encoder.supervise()
+                self.encoder.supervise_encoder()
             early = _EPSILON if self._waits else self._early
             if exchange and (now >= self._next - early or self.axes.follower.must_send_now):
                 self._next = (

@@ -13,7 +13,7 @@ from core.secret_values import format_toml_value
 from core.table_schema import (
     FileFinding,
     MachineFileReading,
-    TableReference,
+    TableDescription,
     find_unknown_keys,
     make_table_finding,
     read_named_tables,
@@ -32,7 +32,7 @@ _SLOW_VALUE_PERIOD_S = 0.01  # s
 
 CYCLIC_MODES = ("csp", "ip")  # Modes with one setpoint per SYNC.
 MAX_SYNC_DELAY_FRACTION = 0.25  # Fraction of a period by which a SYNC may be late.
-SDO_REFERENCE = TableReference(
+SDO_REFERENCE = TableDescription(
     "canopen.sdo.…",
     "Objects that TurnDesk writes to a node at each start and reads back; the last word "
     "of the heading is the node, or `all` for every drive. The key is index:sub-index, "
@@ -77,7 +77,7 @@ class CanNode:
     sdo: ObjectValues = ()  # First the objects for all nodes of its profile, then its own.
 
 
-NODE_REFERENCE = TableReference(
+NODE_REFERENCE = TableDescription(
     "canopen.nodes.…",
     "A device on the bus. A drive must be named after its axis or be named "
     "`spindle`; other devices can have any name.",
@@ -94,7 +94,7 @@ class CanTerminal:
 
     node_name: str
     index: int
-    subindex: int
+    object_subindex: int
     bit_number: int = -1
     is_active_low: bool = False
 
@@ -152,7 +152,7 @@ def generate_input_addresses() -> Iterator[str]:
 def read_nodes(file: MachineFileReading) -> Iterator[FileFinding]:
     """Read [canopen.nodes], and yield the findings about this table and about [canopen.sdo]."""
     nodes, objects = file.raw(NODES), file.raw(SDO)
-    yield from read_named_tables({} if nodes is None else nodes, CanNode, NODES, file.values)
+    yield from read_named_tables({} if nodes is None else nodes, CanNode, NODES, file.file_values)
     if objects is None:
         return
     if not isinstance(objects, dict):
@@ -204,7 +204,7 @@ def format_object_path(node: str, index: int, subindex: int) -> str:
 def build_node(file: MachineFileReading, name: str) -> CanNode:
     """Build a node from a valid machine file, including all objects that TurnDesk writes to the node."""
     shared = read_sdo_objects(file, "all") if read_node_profile(file, name) == DRIVE else ()
-    return file.values.make_model(
+    return file.file_values.make_model(
         CanNode,
         f"{NODES}.{name}",
         name=name,
@@ -221,18 +221,18 @@ def read_drive_family(file: MachineFileReading, name: str) -> str:
     if read_node_profile(file, name) != DRIVE:
         return ""
     paths = (f"{NODES}.{name}.drive", "canopen.drive")
-    return next((found for path in paths if (found := read_text(file, path))), "")
+    return next((found for path in paths if (found := read_key_text(file, path))), "")
 
 
-def read_text(file: MachineFileReading, path: str) -> str:
+def read_key_text(file: MachineFileReading, path: str) -> str:
     """Return the text of a key, or an empty string if the key is missing or its value is invalid."""
-    return file.values.text(path) if file.values.has_values(path) else ""
+    return file.file_values.text(path) if file.file_values.has_values(path) else ""
 
 
 def read_node_profile(file: MachineFileReading, node: str) -> int:
     """Return the CiA profile of a node, or 0 if the machine file does not specify a profile."""
     path = f"{NODES}.{node}.profile"
-    return file.values.read_integer(path) if file.values.has_values(path) else 0
+    return file.file_values.read_integer(path) if file.file_values.has_values(path) else 0
 
 
 def list_module_names(file: MachineFileReading) -> list[str]:

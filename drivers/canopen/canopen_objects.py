@@ -18,7 +18,7 @@ from core.input_file import BYTES_PER_MB, read_input_text
 from core.message import Message
 from core.ports import DriverError
 from drivers.canopen.canopen_nodes import CanNode
-from drivers.canopen.drive_profiles import CIA402_PROFILE, DriveProfile, find_profile
+from drivers.canopen.drive_profiles import CIA402_PROFILE, DriveProfile, find_drive_profile
 
 U8, U16, U32, U64 = kind.UNSIGNED8, kind.UNSIGNED16, kind.UNSIGNED32, kind.UNSIGNED64
 I8, I16, I32 = kind.INTEGER8, kind.INTEGER16, kind.INTEGER32
@@ -81,7 +81,7 @@ def build_drive_dictionary(profile: DriveProfile = CIA402_PROFILE) -> ObjectDict
     found.add_object(_record(BUFFER, _BUFFER))
     for index in {"epos2": _EPOS2_MISSING, "epos4": _EPOS4_MISSING}.get(profile.name, ()):
         del found[index]
-    if profile.product_words:  # The maxon drives have no timeout for received PDOs.
+    if profile.product_name_words:  # The maxon drives have no timeout for received PDOs.
         for number in range(4):
             record = found[COMMANDED + number]
             assert isinstance(record, ODRecord)
@@ -90,9 +90,12 @@ def build_drive_dictionary(profile: DriveProfile = CIA402_PROFILE) -> ObjectDict
         found.add_object(_variable(index, 0, U32))
     if profile.home_offset_object not in found:
         found.add_object(_variable(profile.home_offset_object, 0, I32))
-    if profile.input_entry.object_index not in found:
+    if profile.digital_input_entry.object_index not in found:
         found.add_object(
-            _record(profile.input_entry.object_index, ((profile.input_entry.object_subindex, U16, "ro"),))
+            _record(
+                profile.digital_input_entry.object_index,
+                ((profile.digital_input_entry.object_subindex, U16, "ro"),),
+            )
         )
     if profile.record_queue is not None:
         order = _variable(profile.record_queue.object_index, 0, U64)
@@ -117,14 +120,16 @@ def load_drive_dictionary(node: CanNode) -> tuple[ObjectDictionary, DriveProfile
     Raises DriverError if the EDS file of the drive is unreadable or incomplete.
     """
     if not node.eds:
-        profile = find_profile(node.drive, None, None)
+        profile = find_drive_profile(node.drive, None, None)
         return build_drive_dictionary(profile), profile
-    found = load_dictionary(node.name, node.eds, build_drive_dictionary)
+    found = load_object_dictionary(node.name, node.eds, build_drive_dictionary)
     device_info = found.device_information
-    return found, find_profile(node.drive, device_info.vendor_number, device_info.product_name)
+    return found, find_drive_profile(node.drive, device_info.vendor_number, device_info.product_name)
 
 
-def load_dictionary(name: str, eds: str, build_standard: Callable[[], ObjectDictionary]) -> ObjectDictionary:
+def load_object_dictionary(
+    name: str, eds: str, build_standard: Callable[[], ObjectDictionary]
+) -> ObjectDictionary:
     """Load the dictionary from the EDS file, or build the standard dictionary if ``eds`` is empty.
 
     Raises DriverError with the node and the file if the file is unreadable or incomplete.
@@ -261,7 +266,7 @@ _NEXT_CONTROL_WORDS = {
 }
 
 
-def decode_state(status_word: int) -> DriveState:
+def decode_drive_state(status_word: int) -> DriveState:
     """Return the drive state that a status word encodes.
 
     If the status word matches no mask, return "not ready to switch on".
@@ -272,7 +277,7 @@ def decode_state(status_word: int) -> DriveState:
     return DriveState.NOT_READY_TO_SWITCH_ON
 
 
-def get_enabling_word(state: DriveState) -> int:
+def get_enabling_control_word(state: DriveState) -> int:
     """Return the control word for the next step from ``state`` toward "operation enabled".
 
     The control word never clears a fault.
@@ -280,7 +285,7 @@ def get_enabling_word(state: DriveState) -> int:
     return _NEXT_CONTROL_WORDS.get(state, DISABLE)
 
 
-def get_fault_reset_word(state: DriveState, last_word: int) -> int:
+def get_reset_control_word(state: DriveState, last_word: int) -> int:
     """Return the control word that clears a fault by a rising edge of bit 7.
 
     The control word does not switch the power on.

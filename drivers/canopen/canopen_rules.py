@@ -28,9 +28,9 @@ from drivers.canopen.canopen_nodes import (
     list_module_names,
     parse_terminal,
     read_drive_family,
+    read_key_text,
     read_node_profile,
     read_sdo_objects,
-    read_text,
 )
 from drivers.canopen.drive_profiles import PROFILES, QUEUE_PROFILE_NAMES, RPM_PROFILE_NAMES
 
@@ -64,7 +64,7 @@ def get_max_frame_bits(data_bytes: int) -> int:
     return 47 + 8 * data_bytes + (34 + 8 * data_bytes - 1) // 4
 
 
-def calculate_cyclic_load(
+def calculate_cyclic_bus_load(
     axis_count: int, other_count: int, bitrate: int, sync_period_s: float, slow_divisor: int
 ) -> BusLoad:
     """Return the bus load in cyclic modes.
@@ -88,15 +88,15 @@ _PVT_RESTART_S = 0.04  # Seconds that a drive needs between two PVT motions.
 _MIN_RECORDS = 3  # A drive treats a queue with fewer than two records as empty.
 
 
-def check_bus(file: MachineFileReading) -> Iterator[FileFinding]:
+def check_bus_settings(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield the findings about [canopen], and about the axes and terminals on the bus."""
     yield from _check_travel(file)
     if "canopen" not in file.tables:
         return
-    yield from _times(file.values)
+    yield from _times(file.file_values)
     yield from _check_node_numbers(file)
     yield from _check_heartbeat(file)
-    if file.values.has_text("machine.backend", "canopen"):
+    if file.file_values.has_text("machine.backend", "canopen"):
         yield from _check_drives(file)
         yield from _check_families(file)
         yield from _check_cyclic_load(file)
@@ -138,14 +138,14 @@ def _queue(record: float, commit: float, values: FileValues) -> Iterator[FileFin
 
 def _check_families(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield findings if drives lack a position queue or counts per revolution that they require."""
-    values, moved = file.values, file.axes
+    values, moved = file.file_values, file.axes
     queued = " or ".join(format_toml_value(name) for name in QUEUE_PROFILE_NAMES)
     for name in file.list_table_keys(NODES):
         family, path = read_drive_family(file, name), f"{NODES}.{name}"
         unknown = {f"{path}.drive", "canopen.drive"} & values.invalid_paths
         if name not in moved or read_node_profile(file, name) != DRIVE or unknown:
             continue
-        known = family or read_text(file, f"{path}.eds")
+        known = family or read_key_text(file, f"{path}.eds")
         if values.has_text("canopen.mode", "pvt") and (
             not known or (family and family not in QUEUE_PROFILE_NAMES)
         ):
@@ -157,7 +157,7 @@ def _check_families(file: MachineFileReading) -> Iterator[FileFinding]:
             yield FileFinding(f"{path}.drive", format_toml_value(family) if family else "", why)
         counts = f"{path}.counts_per_rev"
         if family in RPM_PROFILE_NAMES and values.has_values(counts) and values.read_number(counts) == 0:
-            title = PROFILES[family].title
+            title = PROFILES[family].display_name
             why = Message(
                 "this entry is missing; {title} reports speeds in rpm, so enter 4 × the "
                 "encoder pulses per revolution",
@@ -172,8 +172,8 @@ def _check_cyclic_load(file: MachineFileReading) -> Iterator[FileFinding]:
     The rules concern the SYNC period, which must be a whole number of milliseconds, the bus load and the
     commit time.
     """
-    values = file.values
-    if read_text(file, "canopen.mode") not in CYCLIC_MODES or not values.has_values(
+    values = file.file_values
+    if read_key_text(file, "canopen.mode") not in CYCLIC_MODES or not values.has_values(
         "canopen.sync_ms", "canopen.bitrate"
     ):
         return
@@ -194,7 +194,7 @@ def _check_cyclic_load(file: MachineFileReading) -> Iterator[FileFinding]:
             yield FileFinding("machine.commit_ms", f"{1000 * commit:g}", expected)
     nodes = file.list_table_keys(NODES)
     slides = sum(name in file.axes for name in nodes)
-    load = calculate_cyclic_load(slides, len(nodes) - slides, bitrate, sync, get_slow_reply_divisor(sync))
+    load = calculate_cyclic_bus_load(slides, len(nodes) - slides, bitrate, sync, get_slow_reply_divisor(sync))
     if not load.has_reserve:
         fits = next((ms for ms in range(1, 101) if _fits(slides, len(nodes) - slides, bitrate, ms)), 0)
         expected = Message(
@@ -208,14 +208,14 @@ def _check_cyclic_load(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _fits(slides: int, others: int, bitrate: int, ms: int) -> bool:
-    return calculate_cyclic_load(
+    return calculate_cyclic_bus_load(
         slides, others, bitrate, 0.001 * ms, get_slow_reply_divisor(0.001 * ms)
     ).has_reserve
 
 
 def _check_node_numbers(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield findings about the numbers, names and profiles of the nodes."""
-    values, moved = file.values, (*file.axes, SPINDLE)
+    values, moved = file.file_values, (*file.axes, SPINDLE)
     taken: dict[int, str] = {}
     if values.has_values("canopen.host_id"):
         taken[values.read_integer("canopen.host_id")] = "canopen.host_id"
@@ -244,7 +244,7 @@ def _check_node_numbers(file: MachineFileReading) -> Iterator[FileFinding]:
 
 def _check_heartbeat(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield findings if object 1016h does not monitor this computer, or if its timeout is too short."""
-    values = file.values
+    values = file.file_values
     if not values.has_values("canopen.host_id", "canopen.heartbeat_ms"):
         return
     host, beat = values.read_integer("canopen.host_id"), values.read_number("canopen.heartbeat_ms")
@@ -273,7 +273,7 @@ _C_REMEDY_TEXT = (
 
 def _check_drives(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield findings about axes that lack a drive or a homing method."""
-    values, nodes = file.values, file.list_table_keys(NODES)
+    values, nodes = file.file_values, file.list_table_keys(NODES)
     for axis in file.axes:
         if axis == "C" and not (values.has_values("axis.C.enabled") and values.read_flag("axis.C.enabled")):
             continue
@@ -303,7 +303,7 @@ def _is_c_on_spindle(file: MachineFileReading) -> bool:
 
     For this, the drive needs counts per revolution and a position queue.
     """
-    values, counts = file.values, f"{NODES}.{SPINDLE}.counts_per_rev"
+    values, counts = file.file_values, f"{NODES}.{SPINDLE}.counts_per_rev"
     own = values.has_values("axis.C.own_drive") and values.read_flag("axis.C.own_drive")
     drives = values.has_text("spindle.driver", "cia402") and values.has_text("canopen.mode", "pvt")
     return drives and not own and values.has_values(counts) and values.read_number(counts) > 0
@@ -314,7 +314,7 @@ def _check_travel(file: MachineFileReading) -> Iterator[FileFinding]:
 
     The travel must not exceed the counting range or the software limits of the drive.
     """
-    values = file.values
+    values = file.file_values
     for axis in file.axes:
         path, counted = f"axis.{axis}.travel", f"axis.{axis}.count"
         if axis not in file.list_table_keys(NODES) or not values.has_values(path, counted):
@@ -354,7 +354,7 @@ def _check_travel(file: MachineFileReading) -> Iterator[FileFinding]:
 
 def _check_terminals(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield a finding for every signal or pot whose terminal is not an address on the bus."""
-    if any(path.endswith(".profile") for path in file.values.invalid_paths):
+    if any(path.endswith(".profile") for path in file.file_values.invalid_paths):
         return  # The nodes that are modules are not known.
     for path, terminal in file.terminals.items():
         if why := _wrong_terminal(file, terminal, output=path.startswith("io.out."), analog=False):
@@ -391,7 +391,7 @@ def _wrong_terminal(file: MachineFileReading, text: str, *, output: bool, analog
         )
     wanted = _ANALOG if analog else _OUTPUT if output else INPUT
     most = _WORDS if analog else _BYTES
-    if terminal.index != wanted or not 1 <= terminal.subindex <= most:
+    if terminal.index != wanted or not 1 <= terminal.object_subindex <= most:
         return Message(
             "the address must contain object {expected} with sub-index 1…{maximum}",
             expected=f"{wanted:04X}",

@@ -168,7 +168,7 @@ class NodeSetup:
         self.missing_objects[index] = MISSING_OBJECT_EFFECTS.get(index, "")
         return False
 
-    def monitor_setpoints(self, period_s: float) -> None:
+    def enable_setpoint_monitoring(self, period_s: float) -> None:
         """Make the node detect a missing SYNC or setpoint, as far as its objects support this."""
         longest = max(round(1000 * _SYNCS_AWAY * period_s), _LEAST_AWAY)
         watched = False
@@ -226,7 +226,9 @@ class NodeSetup:
 
         A drive without this list, or with an empty list, is assumed to support the method.
         """
-        listed = [self.read(od.HOME_METHODS, sub + 1) for sub in range(self.count_entries(od.HOME_METHODS))]
+        listed = [
+            self.read(od.HOME_METHODS, sub + 1) for sub in range(self.count_array_entries(od.HOME_METHODS))
+        ]
         offered = sorted({each for each in listed if each})
         if offered and method not in offered:
             known = ", ".join(map(str, offered))
@@ -260,7 +262,7 @@ class NodeSetup:
                 counts=counts,
             )
 
-    def count_entries(self, index: int) -> int:
+    def count_array_entries(self, index: int) -> int:
         """Return the number of entries of an array, or 0 if the node does not have the object."""
         return self.read(index, 0) if self.has_object(index, 0) else 0
 
@@ -449,7 +451,7 @@ def build_axis_objects(config: AxisConfig, bus: CanopenTable) -> ObjectValues:
         *build_stop_objects(bus),
         (od.WINDOW, 0, round(config.following_window / config.count)),
         (od.WINDOW_TIME, 0, round(1000 * config.following_time)),
-        (od.QUICK_DECEL, 0, config.convert_acceleration(config.amax)),
+        (od.QUICK_DECEL, 0, config.convert_to_drive_acceleration(config.amax)),
         *(build_travel_limit_objects(config) if config.absolute else ()),
     )
 

@@ -22,7 +22,7 @@ from drivers.canopen.canopen_objects import HM, IP, MODE_BITS, PV, DriveState
 from drivers.canopen.canopen_setup import build_stop_objects
 from drivers.canopen.cia402_drives import SPEED, SPEED_TARGET, Cia402Drive, DriveSetupData
 from drivers.canopen.drive_set import DrivenAxis
-from drivers.port_checks import require_free_drive, require_spindle_ready
+from drivers.port_checks import require_free_spindle_drive, require_spindle_ready
 from drivers.setpoint_queue import plan_axis_move
 
 _STANDSTILL_RPM = 2.0  # rpm
@@ -70,7 +70,7 @@ class CanopenSpindle:
                 default_objects=standing,
                 file_objects=config.node.sdo,
                 required_objects=_SPINDLE_STOP_OBJECTS,
-                record_object=queue.object_index if queue is not None else 0,
+                record_object_index=queue.object_index if queue is not None else 0,
                 is_axis=False,
             )
         )
@@ -82,7 +82,7 @@ class CanopenSpindle:
         This method never switches the drive on.
         """
         drive = self.drive
-        drive.supervise(3.0 * self._bus.config.heartbeat)
+        drive.supervise_drive(3.0 * self._bus.config.heartbeat)
         lost = self._came_on and not drive.is_enabled
         self._came_on = drive.is_enabled and drive.goal_state is DriveState.OPERATION_ENABLED
         if drive.failure:
@@ -160,7 +160,7 @@ class CanopenSpindle:
         if self.drive.has_restarted or self.drive.missing_reply_count:
             self.connect()
             self.drive.start_node()
-        self.drive.clear_failure()
+        self.drive.clear_stored_fault()
         self.drive.reset_fault()
 
     def speed(self) -> float:
@@ -199,7 +199,7 @@ _MODE_CHANGE_S = 2.0  # Seconds for a change of mode with power.
 _DEGREES_PER_REV = 360.0
 
 
-class CanopenCStep(Enum):
+class CAxisModeStep(Enum):
     """Step of the change between spindle mode and C axis mode."""
 
     SPINDLE_MODE = "the drive is running as the spindle drive"
@@ -213,7 +213,7 @@ class CanopenCStep(Enum):
     RESTORE_SPEED_MODE = "changing the spindle drive to speed mode"
 
 
-class CanopenSpindleC:
+class CanopenCAxis:
     """Port that runs the spindle drive as the C axis (``core.ports.SpindleCAxis``).
 
     A fault stops all axes. ``advance_mode_change`` must be called once per bus cycle.
@@ -228,7 +228,7 @@ class CanopenSpindleC:
             config, count=_DEGREES_PER_REV / per_turn, counts_per_rev=per_turn, profile=spindle.drive.profile
         )
         self._axis = DrivenAxis(config, spindle.drive, is_homed=True)
-        self.step = CanopenCStep.SPINDLE_MODE
+        self.step = CAxisModeStep.SPINDLE_MODE
         self.failure: Fault | str = ""
         self._wanted = self._orient = False
         self._since = 0.0
@@ -250,15 +250,15 @@ class CanopenSpindleC:
             raise DriverError(self.failure)
         if is_enabled and not self._wanted:
             turning = self._spindle.has_speed_command or abs(self._drive.measured_speed) >= _STANDSTILL_RPM
-            require_free_drive(
-                self._axes.sample().enabled, self.step is CanopenCStep.SPINDLE_MODE and turning
+            require_free_spindle_drive(
+                self._axes.sample().enabled, self.step is CAxisModeStep.SPINDLE_MODE and turning
             )
             self._orient = should_orient
         self._want(is_enabled)
 
     def is_c_ready(self) -> bool:
         """Return whether C is engaged and may move."""
-        return self.step is CanopenCStep.ENGAGED and self._wanted
+        return self.step is CAxisModeStep.ENGAGED and self._wanted
 
     # --- each cycle --------------------------------------------------------------------------------------
 
@@ -266,24 +266,24 @@ class CanopenSpindleC:
         """Continue the change between spindle mode and C axis mode, if a change is in progress."""
         self._phase.track_position(
             self._drive.position,
-            ignore_jumps=self.step in {CanopenCStep.FIND_INDEX, CanopenCStep.SET_POSITION},
+            ignore_jumps=self.step in {CAxisModeStep.FIND_INDEX, CAxisModeStep.SET_POSITION},
         )
         if self._drive.has_restarted:
             self._phase.counts = None
-        if self.step is not CanopenCStep.SPINDLE_MODE and (
+        if self.step is not CAxisModeStep.SPINDLE_MODE and (
             self._drive.failure or not self._axes.sample().enabled
         ):
             self._want(False)  # Without power, C ends.
-        steps: dict[CanopenCStep, Callable[[float], None]] = {
-            CanopenCStep.SPINDLE_MODE: self._free,
-            CanopenCStep.WAIT_FOR_REST: self._rest,
-            CanopenCStep.FIND_INDEX: self._search,
-            CanopenCStep.SET_POSITION: self._here,
-            CanopenCStep.POWER_ON: self._power,
-            CanopenCStep.TURN_TO_POSITION: self._turn,
-            CanopenCStep.ENGAGED: self._held,
-            CanopenCStep.DISENGAGE: self._disengage,
-            CanopenCStep.RESTORE_SPEED_MODE: self._back,
+        steps: dict[CAxisModeStep, Callable[[float], None]] = {
+            CAxisModeStep.SPINDLE_MODE: self._free,
+            CAxisModeStep.WAIT_FOR_REST: self._rest,
+            CAxisModeStep.FIND_INDEX: self._search,
+            CAxisModeStep.SET_POSITION: self._here,
+            CAxisModeStep.POWER_ON: self._power,
+            CAxisModeStep.TURN_TO_POSITION: self._turn,
+            CAxisModeStep.ENGAGED: self._held,
+            CAxisModeStep.DISENGAGE: self._disengage,
+            CAxisModeStep.RESTORE_SPEED_MODE: self._back,
         }
         try:
             steps[self.step](now)
@@ -299,17 +299,17 @@ class CanopenSpindleC:
         if self._wanted:
             self._spindle.is_used_as_c = True
             self._goal = self._demand() if self._goal is None else self._goal
-            self._enter(CanopenCStep.WAIT_FOR_REST, now)
+            self._enter(CAxisModeStep.WAIT_FOR_REST, now)
 
     def _rest(self, now: float) -> None:
         if not self._wanted:
-            self._enter(CanopenCStep.RESTORE_SPEED_MODE, now)
+            self._enter(CAxisModeStep.RESTORE_SPEED_MODE, now)
         elif not self._axes.is_follower_idle(now):
             self._since = now
         elif self._orient and self._phase.counts is None:
             self._spindle.is_counter_ignored = True
             self._homing.start_index_search(now)
-            self._enter(CanopenCStep.FIND_INDEX, now)
+            self._enter(CAxisModeStep.FIND_INDEX, now)
         else:
             self._set_drive_position(now)
 
@@ -324,7 +324,7 @@ class CanopenSpindleC:
         place = self._place() - self._off
         self._spindle.is_counter_ignored = True
         self._homing.start_position_setting(self._axis.config.convert_position(place), now)
-        self._enter(CanopenCStep.SET_POSITION, now)
+        self._enter(CAxisModeStep.SET_POSITION, now)
 
     def _here(self, now: float) -> None:
         if self._is_homing_done(now):
@@ -334,10 +334,10 @@ class CanopenSpindleC:
                 raise DriverError(
                     "C axis not available: {title} does not have a position queue",
                     "c-coupling",
-                    title=self._drive.profile.title,
+                    title=self._drive.profile.display_name,
                 )
             self._axis.record_queue.clear_records()
-            self._enter(CanopenCStep.POWER_ON, now)
+            self._enter(CAxisModeStep.POWER_ON, now)
 
     def _is_homing_done(self, now: float) -> bool:
         """Return whether the homing is complete; raise DriverError if it has failed.
@@ -347,36 +347,36 @@ class CanopenSpindleC:
         if self._wanted:
             return self._homing.is_done(now)
         self._drive.mode_bits = 0
-        self._enter(CanopenCStep.RESTORE_SPEED_MODE, now)
+        self._enter(CAxisModeStep.RESTORE_SPEED_MODE, now)
         return False
 
     def _power(self, now: float) -> None:
         if not self._wanted:
-            self._enter(CanopenCStep.RESTORE_SPEED_MODE, now)
+            self._enter(CAxisModeStep.RESTORE_SPEED_MODE, now)
         elif self._drive.is_enabled and self._drive.reported_mode == IP:
             self._add_to_axes()
             self._begin_turn()
-            self._enter(CanopenCStep.TURN_TO_POSITION, now)
+            self._enter(CAxisModeStep.TURN_TO_POSITION, now)
         elif now - self._since > _MODE_CHANGE_S:
             self._fail("the spindle drive remains in mode {shown_mode}", shown_mode=self._drive.reported_mode)
 
     def _turn(self, now: float) -> None:
         if not self._wanted:
             self._axes.stop(StopMode.RAMP_HOLD)
-            self._enter(CanopenCStep.DISENGAGE, now)
+            self._enter(CAxisModeStep.DISENGAGE, now)
         elif is_queue_finished(self._axes.queue.get_end_time(now), now) and not self._axes.drives.is_moving:
             self._goal = None
-            self._enter(CanopenCStep.ENGAGED, now)
+            self._enter(CAxisModeStep.ENGAGED, now)
 
     def _held(self, now: float) -> None:
         if not self._wanted:
-            self._enter(CanopenCStep.DISENGAGE, now)
+            self._enter(CAxisModeStep.DISENGAGE, now)
 
     def _disengage(self, now: float) -> None:
         """Release the drive when the axes are at rest and the queues of the drives are empty."""
         if self._axes.is_follower_idle(now):
             self._part()
-            self._enter(CanopenCStep.RESTORE_SPEED_MODE, now)
+            self._enter(CAxisModeStep.RESTORE_SPEED_MODE, now)
 
     def _back(self, now: float) -> None:
         drive = self._drive
@@ -384,7 +384,7 @@ class CanopenSpindleC:
         if drive.reported_mode == PV and not drive.is_enabled:
             self._spindle.is_used_as_c = False
             self._spindle.accept_counter_jump()
-            self.step = CanopenCStep.SPINDLE_MODE
+            self.step = CAxisModeStep.SPINDLE_MODE
             self._spindle.apply_stored_speed()
         elif now - self._since > _MODE_CHANGE_S and not self.failure:
             self._fail("the spindle drive remains in mode {shown_mode}", shown_mode=drive.reported_mode)
@@ -409,7 +409,7 @@ class CanopenSpindleC:
         drives = self._axes.drives
         drives.axes.append(self._axis)
         drives.axis_indices.append(self._number)
-        self._axis.last_counts, self._axis.is_homed = self._drive.position, True
+        self._axis.last_position_counts, self._axis.is_homed = self._drive.position, True
         self._axes.reset_queue()
 
     def _part(self) -> None:
@@ -434,7 +434,7 @@ class CanopenSpindleC:
     def _want(self, on: bool) -> None:
         self._wanted = self._spindle.is_c_requested = on
 
-    def _enter(self, step: CanopenCStep, now: float) -> None:
+    def _enter(self, step: CAxisModeStep, now: float) -> None:
         self.step, self._since = step, now
 
     def _fail(self, why: str, **values: object) -> None:
@@ -442,4 +442,4 @@ class CanopenSpindleC:
         self._want(False)
         self._part()
         self._drive.mode_bits = 0
-        self._enter(CanopenCStep.RESTORE_SPEED_MODE, self._axes.now())
+        self._enter(CAxisModeStep.RESTORE_SPEED_MODE, self._axes.now())

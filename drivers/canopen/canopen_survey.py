@@ -90,7 +90,7 @@ def _asked(bus: CanBus, config: CanNode, axis: AxisConfig | None, mode: str) -> 
         )
     except DriverError as error:
         return SurveyResult(name, number, str(error), "")
-    title = family.title if family is not None else f"CiA {profile}"
+    title = family.display_name if family is not None else f"CiA {profile}"
     return SurveyResult(name, number, "", ", ".join([title, *filter(None, said), *more]))
 
 
@@ -105,7 +105,7 @@ def _list_mismatches(
     if axis is None:
         return
     work = build_drive_setup(replace(axis, profile=family), bus.config, MOTION_MODES[mode])
-    setup.require_modes(work.mode_bits, family.mode_bits)
+    setup.require_modes(work.mode_bits, family.supported_mode_bits)
     setup.require_objects(MOTION_MODES[mode].target_entry)
     yield f"runs {mode}"
     watched = ((od.SYNC_PERIOD, 0), (od.COMMANDED, 5)) if work.setpoint_period_s else ()
@@ -124,7 +124,7 @@ def _shown(word: str, setup: NodeSetup, sub: int) -> str:
 
 
 def _modes(setup: NodeSetup, family: DriveProfile) -> Iterator[str]:
-    offered = _read_object(setup, od.SUPPORTED, 0) | family.mode_bits
+    offered = _read_object(setup, od.SUPPORTED, 0) | family.supported_mode_bits
     if offered:
         yield "modes " + " ".join(_SHORT_MODE_NAMES[mode] for mode, bit in MODE_BITS.items() if offered & bit)
 

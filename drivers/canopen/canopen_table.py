@@ -25,7 +25,7 @@ from drivers.canopen.canopen_nodes import (
     read_nodes,
     resolve_terminal,
 )
-from drivers.canopen.canopen_rules import check_bus
+from drivers.canopen.canopen_rules import check_bus_settings
 from drivers.canopen.drive_profiles import PROFILES
 
 _ANSWERS, _ANSWER_TIME = 3, 0.02  # SYNCs, s
@@ -129,7 +129,7 @@ class EncoderTable:
 
 
 def _encoder_rules(file: MachineFileReading) -> Iterator[FileFinding]:
-    values = file.values
+    values = file.file_values
     if ENCODER in file.tables:
         yield from _beside(values)
         yield from _counts(file)
@@ -175,7 +175,7 @@ def _beside(values: FileValues) -> Iterator[FileFinding]:
 
 
 def _counts(file: MachineFileReading) -> Iterator[FileFinding]:
-    values = file.values
+    values = file.file_values
     if not values.has_values(f"{ENCODER}.node", f"{ENCODER}.object"):
         return
     node, counted = values.text(f"{ENCODER}.node"), values.text(f"{ENCODER}.object")
@@ -222,7 +222,7 @@ DRIVER = DriverDeclaration(
             lambda file: {"nodes": tuple(build_node(file, name) for name in file.list_table_keys(NODES))},
             ("nodes", "sdo"),
             read_nodes,
-            check_bus,
+            check_bus_settings,
             purpose='The CANopen bus and its drives (`backend = "canopen"`).',
             sub_tables=(NODE_REFERENCE, SDO_REFERENCE),
         ),

@@ -15,7 +15,7 @@ from drivers.canopen.canopen_nodes import CanNode, CanTerminal
 from drivers.canopen.canopen_setup import NodeSetup, build_monitoring_objects
 from drivers.canopen.cia402_drives import Cia402Drive
 from drivers.operator_station import build_station_state
-from drivers.port_checks import FirstTouchInput, find_output, require_output_allowed
+from drivers.port_checks import FirstTouchLatch, find_output, require_output_allowed
 
 # --- A CiA 401 module: inputs, outputs with safe states, and analog words.
 
@@ -37,7 +37,7 @@ class Cia401Module:
     def __init__(self, config: CanNode, bus: CanBus) -> None:
         self.config = config
         self._bus = bus
-        objects = od.load_dictionary(config.name, config.eds, od.build_module_dictionary)
+        objects = od.load_object_dictionary(config.name, config.eds, od.build_module_dictionary)
         self.setup = NodeSetup(bus, config.name, config.id, objects)
         self.node = self.setup.node
         self.inputs = bytearray(PDO_BYTE_COUNT)
@@ -59,9 +59,11 @@ class Cia401Module:
         self.setup.enter_pre_operational()
         self.setup.require_profile(401)
         most = {od.DIGITAL_IN: PDO_BYTE_COUNT, od.DIGITAL_OUT: PDO_BYTE_COUNT, od.ANALOG_IN: _PDO_WORDS}
-        self.terminal_counts = {index: min(self.setup.count_entries(index), most[index]) for index in most}
+        self.terminal_counts = {
+            index: min(self.setup.count_array_entries(index), most[index]) for index in most
+        }
         for where in required_terminals:
-            if where.subindex > self.terminal_counts[where.index]:
+            if where.object_subindex > self.terminal_counts[where.index]:
                 has = ", ".join(f"{self.terminal_counts[index]} {what}" for index, what in _TERMINAL_KINDS)
                 raise DriverError(
                     "{name}: the module has {has}, so object {index}.{sub} does not exist; check the "
@@ -69,7 +71,7 @@ class Cia401Module:
                     name=self.config.name,
                     has=has,
                     index=f"{where.index:04X}",
-                    sub=where.subindex,
+                    sub=where.object_subindex,
                 )
 
     def connect(self, safe_values: bytes, retained_bits: bytes) -> None:
@@ -129,7 +131,7 @@ class Cia401Module:
     def _without_beat(self) -> float:
         return self._bus.clock.now() - self.last_heartbeat_s
 
-    def supervise(self) -> None:
+    def supervise_module(self) -> None:
         """Set a fault if heartbeats or replies are missing.
 
         The fault remains active until ``connect`` is called.
@@ -182,7 +184,7 @@ _ANALOG_FULL_SCALE = 32767.0  # Full scale of an analog word.
 class CanopenIO:
     """Inputs, outputs and operator station on the I/O modules, with the names of the machine file.
 
-    The class implements ``core.ports.DigitalIO`` and ``core.ports.Station``.
+    The class implements ``core.ports.DigitalIO`` and ``core.ports.OperatorStation``.
     """
 
     def __init__(self, config: CanopenConfig, bus: CanBus, drives: Mapping[str, Cia402Drive]) -> None:
@@ -192,7 +194,7 @@ class CanopenIO:
         self.modules = {module.name: Cia401Module(module, bus) for module in config.io_modules}
         wheel = config.pots.get("handwheel")
         if wheel is not None:
-            self._module(wheel.terminal).counter_subindices.add(wheel.terminal.subindex)
+            self._module(wheel.terminal).counter_subindices.add(wheel.terminal.object_subindex)
         self._written: dict[str, bool] = {}
         self._heard: tuple[object, ...] = ()  # Last received words of the inputs.
         self._inputs: Mapping[str, bool] = {}
@@ -221,7 +223,7 @@ class CanopenIO:
                 where = output.terminal
                 if where.node_name == name:
                     table = keep if output.safe_state is None else safe
-                    table[where.subindex - 1] |= (output.safe_state is not False) << where.bit_number
+                    table[where.object_subindex - 1] |= (output.safe_state is not False) << where.bit_number
             module.connect(bytes(safe), bytes(keep))
         for name, output in self._config.outputs.items():
             self._written[name] = self._bit(self._module(output.terminal).outputs, output.terminal)
@@ -245,7 +247,7 @@ class CanopenIO:
         """
         fault_text: str = ""
         for module in self.modules.values():
-            module.supervise()
+            module.supervise_module()
             fault_text = fault_text or module.failure
             module.send_outputs(now)
         return fault_text
@@ -287,8 +289,8 @@ class CanopenIO:
     def _switch(self, name: str, where: CanTerminal, on: bool) -> None:
         module = self._module(where)
         raw = on is not where.is_active_low
-        byte = module.outputs[where.subindex - 1] & ~(1 << where.bit_number)
-        module.outputs[where.subindex - 1] = byte | raw << where.bit_number
+        byte = module.outputs[where.object_subindex - 1] & ~(1 << where.bit_number)
+        module.outputs[where.object_subindex - 1] = byte | raw << where.bit_number
         self._written[name] = on
 
     def switch_to_safe_state(self) -> None:
@@ -330,7 +332,7 @@ class CanopenIO:
     def _read_analog(self, name: str) -> int:
         """Return the analog word of a pot or handwheel."""
         where = self._config.pots[name].terminal
-        return self._module(where).analog[where.subindex - 1]
+        return self._module(where).analog[where.object_subindex - 1]
 
     def _read(self, where: CanTerminal) -> bool:
         if where.node_name in self.modules:
@@ -344,7 +346,7 @@ class CanopenIO:
 
     @staticmethod
     def _bit(data: bytearray, where: CanTerminal) -> bool:
-        return bool(data[where.subindex - 1] >> where.bit_number & 1)
+        return bool(data[where.object_subindex - 1] >> where.bit_number & 1)
 
 
 # --- Probe.
@@ -353,7 +355,7 @@ class CanopenIO:
 _INPUT_DELAY_SYNCS = 2  # SYNCs: a module replies with its inputs of the previous SYNC.
 
 
-class CanopenProbe(FirstTouchInput):
+class CanopenProbe(FirstTouchLatch):
     """Probe input of an I/O module, which the module reports after each SYNC.
 
     The position latch of the drives (object 60B8h) is not used, because its input is usually occupied.

@@ -17,9 +17,9 @@ from drivers.canopen.canopen_nodes import CanNode, ObjectValues
 from drivers.canopen.canopen_objects import (
     QUICK,
     DriveState,
-    decode_state,
-    get_enabling_word,
-    get_fault_reset_word,
+    decode_drive_state,
+    get_enabling_control_word,
+    get_reset_control_word,
 )
 from drivers.canopen.canopen_setup import NodeSetup
 from drivers.canopen.drive_profiles import PdoEntry
@@ -59,7 +59,7 @@ class Cia402Drive:
         self.setup = NodeSetup(bus, self.name, self.node_id, objects)
         self.node = self.setup.node
         self._target_object = target_entry
-        self._asked_for = (*optional_entries, self.profile.input_entry)
+        self._asked_for = (*optional_entries, self.profile.digital_input_entry)
         self._told_as: tuple[PdoEntry, ...] = ()  # Optional objects that the drive has.
         self.reported_values: dict[int, int] = {}  # By object index.
         self.setpoint_mode: int | None = None  # In all other modes, the target is the present position.
@@ -82,14 +82,14 @@ class Cia402Drive:
         self._beats = True  # The drive has a heartbeat.
 
     @property
-    def state(self) -> DriveState:
+    def reported_state(self) -> DriveState:
         """Return the drive state that the last status word reports."""
-        return decode_state(self.status_word)
+        return decode_drive_state(self.status_word)
 
     @property
     def is_enabled(self) -> bool:
         """Return whether the drive has power and follows commands."""
-        return self.state is DriveState.OPERATION_ENABLED
+        return self.reported_state is DriveState.OPERATION_ENABLED
 
     @property
     def is_silent(self) -> bool:
@@ -99,12 +99,12 @@ class Cia402Drive:
     @property
     def reports_inputs(self) -> bool:
         """Return whether the drive reports digital inputs."""
-        return self.profile.input_entry in self._told_as
+        return self.profile.digital_input_entry in self._told_as
 
     @property
     def digital_inputs(self) -> int:
         """Return the digital inputs as bits, or 0 if the drive does not report its inputs."""
-        return self.reported_values.get(self.profile.input_entry.object_index, 0)
+        return self.reported_values.get(self.profile.digital_input_entry.object_index, 0)
 
     @property
     def measured_speed(self) -> int:
@@ -124,16 +124,16 @@ class Cia402Drive:
 
         Raises DriverError if the drive does not respond or does not match the machine file.
         """
-        setup, records = self.setup, setup_data.record_object
+        setup, records = self.setup, setup_data.record_object_index
         setup.enter_pre_operational()
         setup.require_profile(402)
-        setup.require_modes(setup_data.mode_bits, self.profile.mode_bits)
+        setup.require_modes(setup_data.mode_bits, self.profile.supported_mode_bits)
         setup.configure_objects(
             setup_data.default_objects, setup_data.file_objects, setup_data.required_objects
         )
         setup.require_objects(*_REQUIRED_OBJECTS, self._target_object)
         if setup_data.setpoint_period_s:
-            setup.monitor_setpoints(setup_data.setpoint_period_s)
+            setup.enable_setpoint_monitoring(setup_data.setpoint_period_s)
         setup.map_received_objects(1, (od.CONTROL, 16), (od.MODE, 8), _to_object_address(self._target_object))
         if records:
             setup.map_received_objects(2, (records, 64), event_driven=True)
@@ -192,7 +192,7 @@ class Cia402Drive:
         """
         self.missing_reply_count, self.last_request_s = self.missing_reply_count + reply_expected, now
 
-    def send_record(self, record: bytes) -> None:
+    def send_setpoint_record(self, record: bytes) -> None:
         """Send one record to the queue in the drive."""
         self.bus.send_message(0x300 + self.node_id, record)
 
@@ -200,10 +200,11 @@ class Cia402Drive:
         """Start to reset a fault, and switch off the power of the drive."""
         self.goal_state, self.mode_bits, self._resetting = DriveState.SWITCH_ON_DISABLED, 0, True
 
-    def supervise(self, heartbeat_timeout_s: float) -> None:
+    def supervise_drive(self, heartbeat_timeout_s: float) -> None:
         """Set a fault if heartbeats or replies are missing, or if the drive reports a fault.
 
-        The fault remains active until ``clear_failure`` is called. ``heartbeat_timeout_s`` is in seconds.
+        The fault remains active until ``clear_stored_fault`` is called. ``heartbeat_timeout_s`` is in
+        seconds.
         """
         now = self.bus.clock.now()
         if self._beats and now - self.last_heartbeat_s > heartbeat_timeout_s:
@@ -219,20 +220,23 @@ class Cia402Drive:
                 "drive-silent",
                 name=self.name,
             )
-        elif self.state in {DriveState.FAULT, DriveState.FAULT_REACTION_ACTIVE} and not self._resetting:
+        elif (
+            self.reported_state in {DriveState.FAULT, DriveState.FAULT_REACTION_ACTIVE}
+            and not self._resetting
+        ):
             self._wrong("{name}: drive fault", "axis", name=self.name)
 
-    def clear_failure(self) -> None:
+    def clear_stored_fault(self) -> None:
         """Clear the stored fault."""
         self.failure = ""
 
     def _next_word(self) -> int:
-        state = self.state
+        state = self.reported_state
         if self._resetting:
             self._resetting = state in {DriveState.FAULT, DriveState.FAULT_REACTION_ACTIVE}
-            return get_fault_reset_word(state, self.control_word)
+            return get_reset_control_word(state, self.control_word)
         if self.goal_state is DriveState.OPERATION_ENABLED:
-            word = get_enabling_word(state)
+            word = get_enabling_control_word(state)
             return word | self.mode_bits if state is DriveState.OPERATION_ENABLED else word
         if self.goal_state is DriveState.QUICK_STOP_ACTIVE and state in {
             DriveState.OPERATION_ENABLED,
@@ -292,7 +296,7 @@ class DriveSetupData:
 
     ``mode_bits`` are the required modes as bits of object 6502h. ``default_objects`` and ``file_objects``
     are the values to write; those of the machine file replace the defaults. A drive that lacks an object in
-    ``required_objects`` cannot be used. ``record_object`` is the queue for motion records.
+    ``required_objects`` cannot be used. ``record_object_index`` is the queue for motion records.
     ``setpoint_period_s`` is the setpoint period in seconds that the drive must monitor.
     """
 
@@ -300,6 +304,6 @@ class DriveSetupData:
     default_objects: ObjectValues
     file_objects: ObjectValues = ()
     required_objects: tuple[int, ...] = ()
-    record_object: int = 0
+    record_object_index: int = 0
     setpoint_period_s: float = 0.0
     is_axis: bool = True  # Replies to each SYNC; a spindle replies every 10 ms.

@@ -53,15 +53,15 @@ class DriveProfile:
     """
 
     name: str
-    title: str
+    display_name: str
     uses_rpm: bool = False
-    mode_bits: int = 0  # Bits of 0x6502 that apply even if not reported.
-    input_entry: PdoEntry = INPUT_ENTRY  # digital inputs
+    supported_mode_bits: int = 0  # Bits of 0x6502 that apply even if not reported.
+    digital_input_entry: PdoEntry = INPUT_ENTRY  # digital inputs
     home_offset_object: int = 0x607C  # Object of the home offset.
     record_queue: DriveQueue | None = None
     unit_objects: tuple[tuple[int, int, int], ...] = ()  # Written first to select these units.
     vendor_id: int = 0  # Vendor in the EDS file; `words` are parts of the product name.
-    product_words: tuple[str, ...] = ()
+    product_name_words: tuple[str, ...] = ()
 
 
 _MAXON, _COPLEY = 0x000000FB, 0x000000AB
@@ -74,21 +74,21 @@ PROFILES = {
             "epos2",
             "maxon EPOS2",
             uses_rpm=True,
-            input_entry=PdoEntry(0x2071, 1, 16),
+            digital_input_entry=PdoEntry(0x2071, 1, 16),
             record_queue=DriveQueue(RecordFormat.EPOS2, 0x20C1, -1, 56),  # The drive accepts 64.
             vendor_id=_MAXON,
-            product_words=("EPOS2",),
+            product_name_words=("EPOS2",),
         ),
         DriveProfile(
             "epos4",
             "maxon EPOS4",
             uses_rpm=True,
-            mode_bits=0x01 | 0x04 | 0x20 | 0x80,  # PP, PV, homing, CSP
+            supported_mode_bits=0x01 | 0x04 | 0x20 | 0x80,  # PP, PV, homing, CSP
             home_offset_object=0x30B0,
             # SI unit codes: positions in increments, speeds in rpm, accelerations in rpm/s.
             unit_objects=((0x60A8, 0, 0x00B50000), (0x60A9, 0, 0x00B44700), (0x60AA, 0, 0x00C00300)),
             vendor_id=_MAXON,
-            product_words=("EPOS4",),
+            product_name_words=("EPOS4",),
         ),
         DriveProfile(
             "copley",
@@ -102,7 +102,7 @@ QUEUE_PROFILE_NAMES = tuple(name for name, profile in PROFILES.items() if profil
 RPM_PROFILE_NAMES = tuple(name for name, profile in PROFILES.items() if profile.uses_rpm)
 
 
-def find_profile(name: str, vendor_id: int | None, product_name: str | None) -> DriveProfile:
+def find_drive_profile(name: str, vendor_id: int | None, product_name: str | None) -> DriveProfile:
     """Return the profile of the drive family with this name.
 
     If ``name`` is empty, the vendor and product in the EDS file determine the family.
@@ -110,8 +110,8 @@ def find_profile(name: str, vendor_id: int | None, product_name: str | None) -> 
     if name:
         return PROFILES[name]
     for profile in PROFILES.values():
-        named = not profile.product_words or any(
-            word in (product_name or "").upper() for word in profile.product_words
+        named = not profile.product_name_words or any(
+            word in (product_name or "").upper() for word in profile.product_name_words
         )
         if profile.vendor_id and profile.vendor_id == vendor_id and named:
             return profile

@@ -84,7 +84,7 @@ def _check_record(duration_ms: int, velocity: float, position: float, max_positi
         )
 
 
-class RecordQueue:
+class PvtRecordQueue:
     """Queue of records with position, velocity and time (PVT) in one drive."""
 
     def __init__(
@@ -135,7 +135,7 @@ class RecordQueue:
         config = self._config
         if self.drive_queue.record_format is RecordFormat.COPLEY:
             return pack_copley_segment(self._pushed, duration_ms, velocity / config.count, place)
-        return pack_epos2_record(duration_ms, config.convert_speed(velocity), place)
+        return pack_epos2_record(duration_ms, config.convert_to_drive_speed(velocity), place)
 
 
 def _low(value: int) -> bytes:
@@ -153,7 +153,7 @@ class MotionMode:
     If ``is_cyclic`` is true, one setpoint is sent per SYNC.
     """
 
-    drive_mode: int
+    cia402_mode: int
     target_entry: PdoEntry = POSITION_TARGET
     is_cyclic: bool = False
 
@@ -176,16 +176,18 @@ class DrivenAxis:
     config: AxisConfig
     drive: Cia402Drive
     is_homed: bool = False
-    last_counts: int = 0  # Counts at the previous reply.
+    last_position_counts: int = 0  # Counts at the previous reply.
     is_moving: bool = False
-    record_queue: RecordQueue | None = None  # Queue of the drive if its family has one.
+    record_queue: PvtRecordQueue | None = None  # Queue of the drive if its family has one.
 
     def __post_init__(self) -> None:
         """Create the record queue if the drive family has one."""
         queue = self.config.profile.record_queue
         self.record_queue = None
         if queue is not None:
-            self.record_queue = RecordQueue(self.config, queue, self.drive.setup, self.drive.send_record)
+            self.record_queue = PvtRecordQueue(
+                self.config, queue, self.drive.setup, self.drive.send_setpoint_record
+            )
 
     @property
     def is_ready(self) -> bool:
@@ -206,7 +208,7 @@ class DriveSet:
             if axis.node is not None
         ]
         for axis in self.axes:
-            axis.drive.setpoint_mode = motion_mode.drive_mode if motion_mode.is_cyclic else None
+            axis.drive.setpoint_mode = motion_mode.cia402_mode if motion_mode.is_cyclic else None
         # Times of the SYNC of the last replies and of the last exchange.
         self.last_reply_s = self._sent = bus.clock.now()
         self._compared = self.last_reply_s  # Time of the last comparison of positions.
@@ -249,7 +251,7 @@ class DriveSet:
         for axis in self.axes:
             axis.drive.record_sync(now)
 
-    def exchange_sync(self) -> None:
+    def send_commands_and_sync(self) -> None:
         """Immediately send the commands to all drives, and then a SYNC."""
         self._sent = self._bus.clock.now()
         self.send_commands()
@@ -262,11 +264,11 @@ class DriveSet:
         The next commands and a SYNC are sent if all drives have replied to the last SYNC, or if a reply is
         overdue. In cyclic modes, the SYNC is sent independently of this method.
         """
-        if self._how.is_cyclic and not self._bus.has_stepped_time:
+        if self._how.is_cyclic and not self._bus.has_simulated_time:
             return self.axes  # The wait of the bus continues the SYNC.
         waiting = any(axis.drive.missing_reply_count for axis in self.axes)
         if not waiting or self._bus.clock.now() - self._sent >= 2 * self._bus.config.sync:
-            self.exchange_sync()
+            self.send_commands_and_sync()
         self._bus.process_frames()
         return self.axes
 
@@ -283,12 +285,12 @@ class DriveSet:
         """
         for axis in self.axes:
             axis.drive.commanded_mode, axis.drive.goal_state = (
-                self._how.drive_mode,
+                self._how.cia402_mode,
                 DriveState.OPERATION_ENABLED,
             )
         if not self._bus.wait_until(lambda: all(axis.is_ready for axis in self.poll_axes()), _POWER_ON_S):
             slow = [
-                Message("{name} is {state}", name=axis.config.name, state=axis.drive.state)
+                Message("{name} is {state}", name=axis.config.name, state=axis.drive.reported_state)
                 for axis in self.axes
                 if not axis.is_ready
             ]
@@ -315,28 +317,28 @@ class DriveSet:
             if axis.drive.has_restarted or axis.drive.missing_reply_count:
                 self._connect(axis)
                 axis.drive.start_node()
-            axis.drive.clear_failure()
+            axis.drive.clear_stored_fault()
             axis.drive.reset_fault()
         if not self._bus.wait_until(
-            lambda: not any(a.drive.state in _FAULT_STATES for a in self.poll_axes()), _POWER_ON_S
+            lambda: not any(a.drive.reported_state in _FAULT_STATES for a in self.poll_axes()), _POWER_ON_S
         ):
-            names = [axis.config.name for axis in self.axes if axis.drive.state in _FAULT_STATES]
+            names = [axis.config.name for axis in self.axes if axis.drive.reported_state in _FAULT_STATES]
             why = Message(
                 "{names}: the drive fault cannot be cleared; check the drive's display",
                 names=", ".join(names),
             )
             raise DriverError(why, "drive-keeps-fault")
 
-    def mark_not_homed(self) -> None:
+    def mark_axes_not_homed(self) -> None:
         """Mark all axes without an absolute encoder as not homed, as required after an E-stop."""
         for axis in self.axes:
             axis.is_homed = axis.config.absolute
 
-    def supervise(self) -> str:
+    def supervise_drives(self) -> str:
         """Supervise the drives, and return the first fault, or an empty string if there is no fault."""
         fault_text: str = ""
         for axis in self.axes:
-            axis.drive.supervise(3.0 * self._bus.config.heartbeat)
+            axis.drive.supervise_drive(3.0 * self._bus.config.heartbeat)
             fault_text = fault_text or axis.drive.failure
             if axis.drive.has_restarted:
                 axis.is_homed = axis.config.absolute
@@ -359,8 +361,8 @@ class DriveSet:
             return
         self._compared = seen
         for axis in speaking:
-            axis.is_moving = abs(axis.drive.position - axis.last_counts) > _REST
-            axis.last_counts = axis.drive.position
+            axis.is_moving = abs(axis.drive.position - axis.last_position_counts) > _REST
+            axis.last_position_counts = axis.drive.position
 
     def _connect(self, axis: DrivenAxis) -> None:
         config = axis.config
@@ -369,25 +371,25 @@ class DriveSet:
             axis.drive.setup.require_counts_per_rev(config.counts_per_rev)
         if not config.absolute:
             axis.drive.setup.require_homing_method(config.home_method)
-        axis.is_homed, axis.last_counts = config.absolute, axis.drive.position
-        axis.drive.commanded_mode = self._how.drive_mode
+        axis.is_homed, axis.last_position_counts = config.absolute, axis.drive.position
+        axis.drive.commanded_mode = self._how.cia402_mode
 
 
 def build_drive_setup(config: AxisConfig, bus: CanopenTable, motion_mode: MotionMode) -> DriveSetupData:
     """Return the configuration for an axis drive."""
     queue = (
-        config.profile.record_queue if motion_mode.drive_mode == IP and not motion_mode.is_cyclic else None
+        config.profile.record_queue if motion_mode.cia402_mode == IP and not motion_mode.is_cyclic else None
     )
     submode: ObjectValues = ((od.IP_SUBMODE, 0, queue.submode if queue is not None else 0),)
     return DriveSetupData(
-        mode_bits=MODE_BITS[motion_mode.drive_mode] | (0 if config.absolute else MODE_BITS[HM]),
+        mode_bits=MODE_BITS[motion_mode.cia402_mode] | (0 if config.absolute else MODE_BITS[HM]),
         default_objects=(
             *build_axis_objects(config, bus),
-            *(submode if motion_mode.drive_mode == IP else ()),
-            *(build_period_objects(bus.sync) if motion_mode.is_cyclic else ()),
+            *(submode if motion_mode.cia402_mode == IP else ()),
+            *(build_setpoint_period_objects(bus.sync) if motion_mode.is_cyclic else ()),
         ),
         file_objects=config.node.sdo if config.node is not None else (),
-        record_object=queue.object_index if queue is not None else 0,
+        record_object_index=queue.object_index if queue is not None else 0,
         setpoint_period_s=bus.sync if motion_mode.is_cyclic else 0.0,
     )
 
@@ -405,12 +407,12 @@ def _create_axis(config: AxisConfig, drive: Cia402Drive) -> DrivenAxis:
             "encoder pulses per revolution",
             "drive-setup",
             name=config.name,
-            title=profile.title,
+            title=profile.display_name,
             place=where,
         )
     return DrivenAxis(replace(config, profile=profile), drive)
 
 
-def build_period_objects(period_s: float) -> ObjectValues:
+def build_setpoint_period_objects(period_s: float) -> ObjectValues:
     """Return the objects that set the setpoint period (object 60C2h)."""
     return ((od.IP_TIME, 1, round(1000 * period_s)), (od.IP_TIME, 2, -3))

@@ -30,7 +30,7 @@ class SetpointFollower(ABC):
     The drives start from their current positions.
     """
 
-    drive_mode: int  # Mode of CiA 402.
+    cia402_mode: int  # Mode of CiA 402.
 
     def __init__(self, axes: Sequence[DrivenAxis], axis_indices: Sequence[int], queue: SetpointQueue) -> None:
         """Create the follower; ``axis_indices`` are the indices of the axes in the queue."""
@@ -59,12 +59,12 @@ class SetpointFollower(ABC):
     def handle_braking(self, brake_time_s: float) -> None:
         """Adapt to a braking ramp that replaced the queued setpoints from ``brake_time_s`` on.
 
-        This default implementation does nothing, because the next call of ``feed_setpoints`` transfers the
-        braking setpoints.
+        This default implementation does nothing, because the next call of ``transfer_setpoints`` transfers
+        the braking setpoints.
         """
 
     @abstractmethod
-    def feed_setpoints(self, now: float) -> None:
+    def transfer_setpoints(self, now: float) -> None:
         """Transfer setpoints; call this method once per tick before the commands are sent."""
 
     def prepare_targets(self) -> None:
@@ -83,14 +83,14 @@ class SetpointFollower(ABC):
 _ACKNOWLEDGE_TIMEOUT_S = 0.2  # Seconds in which a drive must acknowledge a target.
 
 
-class ProfiledFollower(SetpointFollower):
+class ProfilePositionFollower(SetpointFollower):
     """Follower that sends the end position of the queue to each drive as its target.
 
     Each drive also receives the speed of the path. Only straight moves are possible, because each drive
     plans its own motion.
     """
 
-    drive_mode = PP
+    cia402_mode = PP
 
     def __init__(self, axes: Sequence[DrivenAxis], axis_indices: Sequence[int], queue: SetpointQueue) -> None:
         super().__init__(axes, axis_indices, queue)
@@ -139,7 +139,7 @@ class ProfiledFollower(SetpointFollower):
         for axis in self._axes:
             axis.drive.mode_bits &= ~(NEW | AT_ONCE)
 
-    def feed_setpoints(self, now: float) -> None:
+    def transfer_setpoints(self, now: float) -> None:
         """Send the pending target when it is due, and then wait for the acknowledgment."""
         if self._told >= 0.0:
             self._await_acknowledgment(now)
@@ -155,11 +155,15 @@ class ProfiledFollower(SetpointFollower):
             config, drive = axis.config, axis.drive
             accel = config.amax
             if segments is not None:
-                speed = config.convert_speed(float(np.abs(segments.velocities[:, i]).max()))
+                speed = config.convert_to_drive_speed(float(np.abs(segments.velocities[:, i]).max()))
                 accel = float(np.abs(segments.accelerations[:, i]).max())
                 drive.setup.write(od.PROFILE_SPEED, 0, max(round(speed), 1))
-            drive.setup.write_optional_object(od.PROFILE_ACCEL, 0, config.convert_acceleration(accel))
-            drive.setup.write_optional_object(od.PROFILE_DECEL, 0, config.convert_acceleration(accel))
+            drive.setup.write_optional_object(
+                od.PROFILE_ACCEL, 0, config.convert_to_drive_acceleration(accel)
+            )
+            drive.setup.write_optional_object(
+                od.PROFILE_DECEL, 0, config.convert_to_drive_acceleration(accel)
+            )
             drive.target_value = config.convert_position(rest[i])
             drive.mode_bits |= NEW | AT_ONCE
 
@@ -210,7 +214,7 @@ class SyncSchedule:
         return max(longer, 0.0)
 
 
-class CyclicFollower(SetpointFollower):
+class CyclicSetpointFollower(SetpointFollower):
     """Follower that sends one setpoint per SYNC in mode CSP or IP.
 
     Mode IP must be started by bit 4 of the control word and is confirmed by bit 12 of the status word.
@@ -225,7 +229,7 @@ class CyclicFollower(SetpointFollower):
         schedule: SyncSchedule,
     ) -> None:
         super().__init__(axes, axis_indices, queue)
-        self.drive_mode = mode
+        self.cia402_mode = mode
         self.schedule = schedule
         self.lag_s = 0.0  # Delay of the path relative to the clock in s.
         self._fed = -math.inf  # Time in the queue up to which the drives have setpoints.
@@ -269,7 +273,7 @@ class CyclicFollower(SetpointFollower):
                 lag=f"{1000 * self.lag_s:.0f}",
             )
 
-    def feed_setpoints(self, now: float) -> None:
+    def transfer_setpoints(self, now: float) -> None:
         """Set the targets for the next SYNC; the drives reach these targets one SYNC later."""
         standing = is_queue_finished(self._queue.get_end_time(-1e9), self.get_path_time(now))
         self.lag_s = 0.0 if standing else max(self.lag_s - _RECOVERY_FRACTION * self.schedule.period_s, 0.0)
@@ -277,7 +281,7 @@ class CyclicFollower(SetpointFollower):
         p, _ = self._queue.get_commanded_state(self._fed)
         for axis, index in zip(self._axes, self._indices, strict=True):
             axis.drive.target_value = axis.config.convert_position(p[index])
-        if self.drive_mode == IP:
+        if self.cia402_mode == IP:
             self._interpolate(now)
 
     def _interpolate(self, now: float) -> None:

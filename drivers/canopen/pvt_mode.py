@@ -12,7 +12,7 @@ from core.message import Message
 from core.ports import DriverError, Fault, is_queue_finished
 from drivers.canopen.canopen_objects import BIT_12, IP, NEW
 from drivers.canopen.drive_profiles import QUEUE_PROFILE_NAMES
-from drivers.canopen.drive_set import DrivenAxis, RecordQueue
+from drivers.canopen.drive_set import DrivenAxis, PvtRecordQueue
 from drivers.canopen.position_modes import SetpointFollower
 from drivers.setpoint_queue import SetpointQueue
 
@@ -33,11 +33,11 @@ _CHECK_FRACTIONS = (0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875)
 class PathPiece(NamedTuple):
     """Piece of the path that is sent as one record.
 
-    ``deviation_counts`` is the deviation of the drive's cubic curve from the path in counts.
+    ``max_deviation_counts`` is the deviation of the drive's cubic curve from the path in counts.
     """
 
     duration_ms: int
-    deviation_counts: float
+    max_deviation_counts: float
 
 
 def fit_longest_piece(
@@ -117,7 +117,7 @@ class PvtFollower(SetpointFollower):
     milliseconds.
     """
 
-    drive_mode = IP
+    cia402_mode = IP
 
     def __init__(
         self,
@@ -154,7 +154,7 @@ class PvtFollower(SetpointFollower):
         for axis in self._axes:
             axis.drive.mode_bits &= ~NEW
 
-    def feed_setpoints(self, now: float) -> None:
+    def transfer_setpoints(self, now: float) -> None:
         """Start or fill the record queues; after the end of the path, let them run out."""
         if self._phase is _Phase.REST and not is_queue_finished(self._queue.get_end_time(now), now):
             self._start_queues(now)
@@ -206,7 +206,7 @@ class PvtFollower(SetpointFollower):
             )
             if self.next_point_time_s + 0.001 * piece.duration_ms > now + self._ahead:
                 return
-            self.max_deviation_counts = max(self.max_deviation_counts, piece.deviation_counts)
+            self.max_deviation_counts = max(self.max_deviation_counts, piece.max_deviation_counts)
             self._push(piece.duration_ms)
 
     def _queued_record_count(self, now: float) -> int:
@@ -235,7 +235,7 @@ class PvtFollower(SetpointFollower):
         return all(active) if some is all else any(active)
 
 
-def _get_record_queue(axis: DrivenAxis) -> RecordQueue:
+def _get_record_queue(axis: DrivenAxis) -> PvtRecordQueue:
     """Return the record queue of a drive.
 
     Raises DriverError if the drive family does not have a queue.
@@ -246,7 +246,7 @@ def _get_record_queue(axis: DrivenAxis) -> RecordQueue:
             "set drive = {by_name}",
             "drive-setup",
             name=axis.config.name,
-            title=axis.config.profile.title,
+            title=axis.config.profile.display_name,
             by_name=_QUEUE_PROFILES_TEXT,
         )
     return axis.record_queue

@@ -23,7 +23,7 @@ from drivers.driver_host.host_messages import (
     Message,
     convert_messages,
     encode_message,
-    parse_texts,
+    parse_strings,
     read_fault,
 )
 from drivers.driver_host.host_server import DriverHost
@@ -40,11 +40,11 @@ _MAX_BATCHES = 200  # Maximum number of sample batches waiting for the recorder.
 class HostLink(Protocol):
     """A connection that transports requests and replies.
 
-    ``end_signals`` are file descriptors that become readable when the connection ends.
+    ``disconnect_file_descriptors`` are file descriptors that become readable when the connection ends.
     """
 
     @property
-    def end_signals(self) -> Sequence[int]:
+    def disconnect_file_descriptors(self) -> Sequence[int]:
         """Return the file descriptors that become readable when the connection ends."""
         ...
 
@@ -64,7 +64,7 @@ class HostLink(Protocol):
         ...
 
 
-def clear_host_faults(link: HostLink) -> HostLink:
+def clear_drive_faults(link: HostLink) -> HostLink:
     """Clear the drive faults after a restart of the driver host, and return the connection to it.
 
     Raises DriverError if the faults cannot be cleared.
@@ -135,7 +135,7 @@ class HostConnection:
         """
         self._posted.put(message)
         if self.wakeup_bell is not None:
-            self.wakeup_bell.wake()
+            self.wakeup_bell.send_wakeup()
 
     def enter_sleep(self) -> None:
         """Let the driver host send a wake-up for each change, until the control sends another request.
@@ -151,9 +151,9 @@ class HostConnection:
         self._sleeps, self._at = False, -1.0
 
     @property
-    def end_signals(self) -> Sequence[int]:
+    def disconnect_file_descriptors(self) -> Sequence[int]:
         """Return the file descriptors that become readable only when the connection ends."""
-        return self._link.end_signals
+        return self._link.disconnect_file_descriptors
 
     def poll_state(self, *, is_forced: bool = False) -> Mapping[str, object]:
         """Poll the state, at most once per tick unless ``is_forced`` is True, and return it.
@@ -164,7 +164,7 @@ class HostConnection:
             self._reopen(self._opening)
         now = self.clock.now()
         fresh = _SLEEP_POLL_VALIDITY_S if self._asleep else _POLL_VALIDITY_S
-        if not self.is_lost and (is_forced or not 0.0 <= now - self._at < fresh):
+        if not self.is_host_unavailable and (is_forced or not 0.0 <= now - self._at < fresh):
             try:
                 while not self._posted.empty():
                     self.send_request(self._posted.get())
@@ -177,12 +177,12 @@ class HostConnection:
             except DriverError as error:
                 self.fault = self.fault or error.fault
             self._at = now
-            for note in parse_texts(self._state.get("notes")):
+            for note in parse_strings(self._state.get("notes")):
                 _log.warning("driver host: %s", note)
         return self._state
 
     @property
-    def is_lost(self) -> bool:
+    def is_host_unavailable(self) -> bool:
         """Return whether no driver host is available."""
         return self.fault != "" or self._opening is not None
 
@@ -197,7 +197,7 @@ class HostConnection:
             raise DriverError(words, get_fault_code(self.fault, "feeder-gone"))
         self.fault, self._opening = "", self._again()
 
-    def read_properties(self) -> Mapping[str, object]:
+    def read_host_properties(self) -> Mapping[str, object]:
         """Return the properties of the driver host.
 
         Raises DriverError if the driver host is lost or does not reply, or uses another version of the
@@ -220,18 +220,18 @@ class HostConnection:
                 return
             self._link, self._opening, self._at = link, None, -1.0
             self._state = {}
-            self.read_properties()
+            self.read_host_properties()
         except DriverError as error:
             self._opening, self.fault = None, error.fault
 
-    def find_unknown_items(self) -> frozenset[UnknownPart]:
+    def find_unknown_parts(self) -> frozenset[UnknownPart]:
         """Return the parts of the machine state that are unknown.
 
         All parts are unknown if the driver host is lost.
         """
-        if self.is_lost:
+        if self.is_host_unavailable:
             return ALL_UNKNOWN_PARTS
-        return frozenset(map(UnknownPart, parse_texts(self.poll_state().get("unknown"))))
+        return frozenset(map(UnknownPart, parse_strings(self.poll_state().get("unknown"))))
 
     def disconnect(self) -> None:
         """End the connection; any thread may call this method.
@@ -258,7 +258,7 @@ class InProcessLink:
     It exchanges the same bytes as a link to a separate process.
     """
 
-    end_signals = ()  # Its end is always detected.
+    disconnect_file_descriptors = ()  # Its end is always detected.
 
     def __init__(self, host: DriverHost) -> None:
         self._host = host
@@ -292,7 +292,7 @@ class SocketLink:
         self._socket = MessageSocket(sock)
 
     @property
-    def end_signals(self) -> tuple[int, ...]:
+    def disconnect_file_descriptors(self) -> tuple[int, ...]:
         """Return the socket's file descriptor, which becomes readable when the driver host ends."""
         return (self._socket.fileno(),)
 

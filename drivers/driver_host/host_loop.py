@@ -15,7 +15,7 @@ from core.ports import Clock, DriverError
 from drivers.driver_host.host_messages import convert_messages, encode_message
 from drivers.driver_host.host_server import DriverBundle, DriverHost
 from drivers.process_messages import MessageSocket
-from drivers.process_rights import lock_process_memory, request_scheduling
+from drivers.process_rights import lock_process_memory, request_scheduling_policy
 from drivers.wakeups import RealClock
 
 REAL_TIME_PRIORITY = 50
@@ -26,9 +26,9 @@ _STOP_TIME_LIMIT_S = (
 )
 
 
-def request_real_time(priority: int = REAL_TIME_PRIORITY) -> list[str]:
+def request_real_time_scheduling(priority: int = REAL_TIME_PRIORITY) -> list[str]:
     """Request SCHED_FIFO, and return a message for the operator if the request is refused."""
-    cause = request_scheduling("SCHED_FIFO", priority)
+    cause = request_scheduling_policy("SCHED_FIFO", priority)
     words = "the driver host runs without real-time priority ({cause}); see docs/integrator/computer.md"
     return [Message(words, cause=cause)] if cause else []
 
@@ -98,7 +98,7 @@ def _rounds(sock: socket.socket, host: DriverHost, driven: DriverBundle) -> None
     while not host.is_done:
         host.record_wakeup_delay(clock.now() - due)
         host.run_cycle()
-        due = ear.listen_until_due(
+        due = ear.handle_messages_until_due(
             host.get_next_cycle_time(due), is_punctual=driven.get_next_tick_time() is not None
         )
         if host.is_orphaned:
@@ -120,7 +120,7 @@ class MessageListener:
         self._socket, self._host, self._clock = MessageSocket(sock), host, clock
         self._listened = clock.now()
 
-    def listen_until_due(self, due_time: float, *, is_punctual: bool) -> float:
+    def handle_messages_until_due(self, due_time: float, *, is_punctual: bool) -> float:
         """Reply to messages until the next cycle is due, and return the due time of that cycle.
 
         The method returns immediately if a control wakes up. If ``is_punctual`` is True, no reply is

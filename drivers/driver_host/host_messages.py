@@ -137,6 +137,6 @@ def make_fault_entries(key: str, fault: str, default_code: FaultCode) -> Mapping
     return {key: fault, f"{key}_code": get_fault_code(fault, default_code)}
 
 
-def parse_texts(value: object) -> list[str]:
+def parse_strings(value: object) -> list[str]:
     """Return the strings of a JSON list, ignoring other values."""
     return [one for one in parse_list(value) if isinstance(one, str)]

@@ -28,7 +28,7 @@ from drivers.driver_host.host_messages import (
     number,
     parse_floats,
     parse_list,
-    parse_texts,
+    parse_strings,
     read_fault,
 )
 from drivers.operator_station import PostedControls
@@ -47,7 +47,7 @@ class HostAxes(_HostPort):
 
     def __init__(self, connection: HostConnection, properties: Mapping[str, object]) -> None:
         super().__init__(connection)
-        self.axes = tuple(parse_texts(properties.get("axes")))
+        self.axes = tuple(parse_strings(properties.get("axes")))
         self.commit = number(properties, "commit")
 
     def now(self) -> float:
@@ -84,9 +84,9 @@ class HostAxes(_HostPort):
             demand=parse_floats(shown.get("demand", none)),
             actual=parse_floats(shown.get("actual", none)),
             following_error=parse_floats(shown.get("following_error", none)),
-            enabled=shown.get("enabled") is True and not self._line.is_lost,
+            enabled=shown.get("enabled") is True and not self._line.is_host_unavailable,
             homed=tuple(one is True for one in parse_list(shown.get("homed"))) or (False,) * len(self.axes),
-            moving=shown.get("moving") is True and not self._line.is_lost,
+            moving=shown.get("moving") is True and not self._line.is_host_unavailable,
             fault=self._line.fault or read_fault(shown, "fault", "axis"),
         )
 
@@ -113,7 +113,7 @@ class HostAxes(_HostPort):
             self._line.send_command("clear_fault")
 
 
-class HostGear(_HostPort):
+class HostSpindleGear(_HostPort):
     """Port for axes that follow the spindle (``core.ports.SpindleGear``), via the driver host."""
 
     def mesh(self, cam: Cam) -> None:
@@ -126,7 +126,7 @@ class HostGear(_HostPort):
     def geared(self) -> GearState | None:
         """Return the position of the axes on the cam, or None if they do not follow the spindle."""
         shown = self._line.poll_state(is_forced=True).get("geared")
-        return None if shown is None or self._line.is_lost else GearState(*parse_floats(shown))
+        return None if shown is None or self._line.is_host_unavailable else GearState(*parse_floats(shown))
 
 
 class HostSpindle(_HostPort):
@@ -172,11 +172,11 @@ class HostWakeup(_HostPort):
     def __init__(self, connection: HostConnection, wakeup_bell: ProcessWakeup) -> None:
         super().__init__(connection)
         self._bell = wakeup_bell
-        self.request_poll = wakeup_bell.wake
+        self.request_poll = wakeup_bell.send_wakeup
 
-    def is_settled(self) -> bool:
+    def can_rely_on_wakeups(self) -> bool:
         """Return whether the control may sleep, because the driver host reports each change."""
-        return not self._line.is_lost
+        return not self._line.is_host_unavailable
 
     def wait_for_wakeup(self, seconds: float) -> bool:
         """Wait for a wake-up or the end of the driver host, and return whether either occurred."""
@@ -184,21 +184,21 @@ class HostWakeup(_HostPort):
             self._line.enter_sleep()
         except DriverError:
             return True  # The next poll has the reason.
-        rung = self._bell.wait(seconds, self._line.end_signals)
+        rung = self._bell.wait_for_wakeup(seconds, self._line.disconnect_file_descriptors)
         if rung:
             self._line.leave_sleep()
         return rung
 
 
-class HostSamples(_HostPort):
+class HostSampleSource(_HostPort):
     """Scope samples (``core.ports.SampleSource``) that the driver host adds to its poll replies."""
 
     def __init__(self, connection: HostConnection, properties: Mapping[str, object]) -> None:
         super().__init__(connection)
         self.sample_rate_hz = number(properties, "samples")
-        self._width = 5 + 3 * len(parse_texts(properties.get("axes")))
+        self._width = 5 + 3 * len(parse_strings(properties.get("axes")))
 
-    def take(self, max_rows: int = 8192) -> FloatArray:  # noqa: ARG002  an answer has few enough
+    def take_samples(self, max_rows: int = 8192) -> FloatArray:  # noqa: ARG002  an answer has few enough
         """Return the samples since the last call.
 
         Batches of the wrong length are ignored.
@@ -218,10 +218,10 @@ class HostSpindleCAxis(_HostPort):
 
     def is_c_ready(self) -> bool:
         """Return whether the C axis may move."""
-        return self._line.poll_state().get("held") is True and not self._line.is_lost
+        return self._line.poll_state().get("held") is True and not self._line.is_host_unavailable
 
 
-class HostOrientation(_HostPort):
+class HostOrientingSpindle(_HostPort):
     """Port that orients the spindle (``core.ports.OrientingSpindle``), via the driver host."""
 
     def orient_spindle(self, angle: float, direction: int = 0) -> None:
@@ -261,7 +261,7 @@ class HostIO(_HostPort):
 
 
 class HostStation(_HostPort):
-    """Operator station (``core.ports.Station``) as the driver host last reported it."""
+    """Operator station (``core.ports.OperatorStation``) as the driver host last reported it."""
 
     def read_state(self) -> StationState:
         """Return the current state of the station.
@@ -269,12 +269,12 @@ class HostStation(_HostPort):
         After a loss of the driver host, no button is pressed and the age is inf.
         """
         shown = self._line.poll_state().get("station")
-        if self._line.is_lost or not isinstance(shown, dict):
+        if self._line.is_host_unavailable or not isinstance(shown, dict):
             return StationState(age=float("inf"))
         return StationState(**shown)
 
 
-class HostTouch(_HostPort):
+class HostTouchInput(_HostPort):
     """Probe port (``core.ports.TouchInput``) that reads the touches latched by the driver host."""
 
     def arm_latch(self) -> None:
@@ -284,7 +284,7 @@ class HostTouch(_HostPort):
     def read_latch(self) -> TouchLatch | None:
         """Return the first touch since ``arm_latch``, or None without a touch."""
         shown = self._line.poll_state().get("latch")
-        if shown is None or self._line.is_lost:
+        if shown is None or self._line.is_host_unavailable:
             return None
         t, place, late = parse_list(shown)
         (t_s, late_s) = parse_floats([t, late])
@@ -306,7 +306,7 @@ class HostTripMonitor(_HostPort):
         (away_s,) = parse_floats([away])
         (number_,) = parse_floats([count])
         return DriverHostTrip(
-            int(number_), away_s, spindle is True, tuple(parse_texts(outputs)), found is True
+            int(number_), away_s, spindle is True, tuple(parse_strings(outputs)), found is True
         )
 
     def acknowledge_trip(self, trip: DriverHostTrip) -> None:
@@ -319,7 +319,7 @@ def create_host_ports(connection: HostConnection) -> MachinePorts:
 
     Raises DriverError if the driver host does not reply, or uses another version of the protocol.
     """
-    hello, spindle = connection.read_properties(), HostSpindle(connection)
+    hello, spindle = connection.read_host_properties(), HostSpindle(connection)
     return MachinePorts(
         clock=connection.clock,
         axes=HostAxes(connection, hello),
@@ -327,17 +327,17 @@ def create_host_ports(connection: HostConnection) -> MachinePorts:
         spindle_lag=spindle.get_line_delay,
         io=HostIO(connection),
         station=HostStation(connection),
-        warnings=tuple(parse_texts(hello.get("warnings"))),
-        gear=HostGear(connection) if hello.get("gear") is True else None,
+        warnings=tuple(parse_strings(hello.get("warnings"))),
+        gear=HostSpindleGear(connection) if hello.get("gear") is True else None,
         lock=HostSpindleCAxis(connection) if hello.get("lock") is True else None,
-        orientation=HostOrientation(connection) if hello.get("orientation") is True else None,
+        orientation=HostOrientingSpindle(connection) if hello.get("orientation") is True else None,
         trip_monitor=HostTripMonitor(connection),
         halt_machine=connection.disconnect,
         untraced=str(hello.get("untraced") or ""),
-        samples=HostSamples(connection, hello) if hello.get("samples") else None,
+        samples=HostSampleSource(connection, hello) if hello.get("samples") else None,
         wakeup=HostWakeup(connection, connection.wakeup_bell) if connection.wakeup_bell is not None else None,
-        unknown=connection.find_unknown_items,
-        touch=HostTouch(connection) if hello.get("touch") is True else None,
+        unknown=connection.find_unknown_parts,
+        touch=HostTouchInput(connection) if hello.get("touch") is True else None,
     )
 
 

@@ -144,7 +144,7 @@ class DriverBundle:
     station_controls: object | None = None
     # Due time of the next tick; None: every few milliseconds.
     get_next_tick_time: Callable[[], float | None] = lambda: None
-    collect_notes: Callable[[], Sequence[str]] = tuple  # Messages of the drivers for the control.
+    collect_driver_messages: Callable[[], Sequence[str]] = tuple  # Messages of the drivers for the control.
     get_idle_time: Callable[[bool], float] = lambda _asleep: 0.0
     has_sent_requests: Callable[[], bool] = lambda: False
 
@@ -232,7 +232,7 @@ class DriverHost:
                 "unknown-request",
             )
         try:
-            self._guard.require_allowed(message)
+            self._guard.require_request_allowed(message)
             return answer(message)
         except TrippedError as error:
             return Message({"tripped": str(error)}, NO_NUMBERS)
@@ -246,7 +246,7 @@ class DriverHost:
     def run_cycle(self) -> None:
         """Run the drivers, and then check whether the control still sends messages."""
         self._driven.run_cycle()
-        for note in self._driven.collect_notes():
+        for note in self._driven.collect_driver_messages():
             self._note(note)
         if self._guard.is_c_requested:
             sample = self._ports.axes.sample()
@@ -333,7 +333,7 @@ class DriverHost:
         if self._silence.check(now):
             silent = self._silence.measure(now)
             self._note(Text("no messages from TurnDesk for {seconds} s", seconds=f"{silent:.2f}"))
-            self._guard.update_silence(silent)
+            self._guard.update_silence_duration(silent)
         self._silence.hear(now)
 
     def _expire_outputs(self, silence_s: float) -> None:
@@ -348,7 +348,7 @@ class DriverHost:
                     )
                 )
                 self._carefully(partial(self._ports.io.write, name, False))
-                self._guard.record_output_off(silence_s, name)
+                self._guard.record_output_switched_off(silence_s, name)
 
     def _switch_off(self) -> None:
         """Switch off the spindle and the outputs, because the control is silent and the axes are at rest."""
@@ -416,7 +416,7 @@ class DriverHost:
         self._notes, self._rung = [], False
         self._told = cache(partial(_without_times, {**state, "notes": []}))
         source = self._ports.samples
-        sampled = source.take(_MAX_REPLY_SAMPLES).ravel() if source is not None else NO_NUMBERS
+        sampled = source.take_samples(_MAX_REPLY_SAMPLES).ravel() if source is not None else NO_NUMBERS
         return Message(state, sampled)
 
     def _splice(self, message: Message) -> Message:

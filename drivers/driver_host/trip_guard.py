@@ -22,7 +22,7 @@ class TripGuard:
         self._turns = False  # The control has commanded the spindle to turn.
         self.is_c_requested = False  # The spindle drive has accepted a command to engage as C.
 
-    def require_allowed(self, message: Message) -> None:
+    def require_request_allowed(self, message: Message) -> None:
         """Raise TrippedError if a trip is not acknowledged and the message requests an action.
 
         Such actions are a motion, a start of the spindle, engaging C, and switching on an output. Engaging C
@@ -75,11 +75,11 @@ class TripGuard:
         if turned or outputs:
             self._tripped(silence_s, turned, outputs)
 
-    def record_output_off(self, silence_s: float, output: str) -> None:
+    def record_output_switched_off(self, silence_s: float, output: str) -> None:
         """Record that one output was switched off because the control did not renew it."""
         self._tripped(silence_s, False, [output])
 
-    def update_silence(self, silence_s: float) -> None:
+    def update_silence_duration(self, silence_s: float) -> None:
         """Update the duration of the silence when the control sends messages again."""
         if self.active_trip is not None:
             self.active_trip = self.active_trip._replace(silence_s=max(silence_s, self.active_trip.silence_s))

@@ -80,7 +80,7 @@ class GrblAxes:
             self._mark_not_homed()
         if c.fault or not c.is_position_reliable:
             self._homing = ""
-        if self._homing and not c.is_busy and (c.is_ready or c.is_homed(self._homing)):
+        if self._homing and not c.is_script_running and (c.is_ready or c.is_axis_homed(self._homing)):
             self._known[self._homing], self._homing = True, ""
         places = self._places()
         return AxisSample(
@@ -123,12 +123,12 @@ class GrblAxes:
                 "the controller does not have an axis {axis} to home", reason="no-axis", axis=f"{axis!r}"
             )
         self._blocks.require_motion_enabled()
-        if self._blocks.describe_start_refusal() and self._c.alarm_number == 0:
+        if self._blocks.get_start_refusal_reason() and self._c.alarm_number == 0:
             raise DriverError(
                 "{axis} cannot home: {hindrance}",
                 "homing",
                 axis=axis,
-                hindrance=self._blocks.describe_start_refusal(),
+                hindrance=self._blocks.get_start_refusal_reason(),
             )
         self._known[axis], self._homing = False, axis
         self._c.is_position_reliable = True
@@ -146,7 +146,7 @@ class GrblAxes:
             self._c.reconnect(self._reopen(), lambda: grblhal_scripts.reconnect_controller(self._c))
         elif self._c.fault:
             self._c.fault = ""
-            self._c.run_script(grblhal_scripts.recover_from_alarm(self._c))
+            self._c.start_script(grblhal_scripts.recover_from_alarm(self._c))
 
     def _mark_not_homed(self) -> None:
         """Mark the wired axes as not homed, because their counted positions may be wrong."""
@@ -158,7 +158,7 @@ class GrblAxes:
         If homing is enabled in the controller, the controller reports this. Otherwise the machine file
         specifies it.
         """
-        is_homed = self._c.is_homed(name)
+        is_homed = self._c.is_axis_homed(name)
         known = self._known[name] if is_homed is None or name not in self._wired else is_homed
         return known and self._c.is_position_reliable and self._homing != name
 

@@ -12,9 +12,9 @@ from drivers.grblhal import grblhal_codes, grblhal_scripts
 from drivers.grblhal.grblhal_codes import format_block, get_ticket_line_number
 from drivers.grblhal.grblhal_config import GrblAxis
 from drivers.grblhal.grblhal_controller import GrblController
-from drivers.grblhal.grblhal_operator import FeedHolds, GrblJogs, GrblOverrides
+from drivers.grblhal.grblhal_operator import FeedHoldControl, GrblJogSender, GrblOverrides
 from drivers.grblhal.grblhal_report import StatusReport
-from drivers.port_checks import require_power
+from drivers.port_checks import require_drive_power
 
 QUEUED_TIME_S = 0.4  # Seconds of motion beyond the present block, which continue if the host is lost.
 _ABORT_PURPOSE = "abort"
@@ -26,15 +26,15 @@ class GrblBlocks:
     Only the thread of the executor may call the methods.
     """
 
-    max_lead_s = QUEUED_TIME_S
+    max_queued_motion_s = QUEUED_TIME_S
 
     def __init__(self, controller: GrblController) -> None:
         self._c = controller
         self.overrides = GrblOverrides(
             lambda data: controller.send_realtime_bytes(*data), controller.set_fault
         )
-        self._jogs = GrblJogs(controller)
-        self._holds = FeedHolds(controller)
+        self._jogs = GrblJogSender(controller)
+        self._holds = FeedHoldControl(controller)
         self.is_motion_enabled = False  # Motion is permitted; set by ``GrblAxes``.
         self._last = 0  # ticket
         self._done = 0
@@ -52,12 +52,12 @@ class GrblBlocks:
         controller.are_blocks_settled = lambda: self._settled
 
     @property
-    def is_listening(self) -> bool:
+    def can_accept_lines(self) -> bool:
         """Return whether the controller reads and executes lines.
 
         It does not read lines during a jog or a feed hold.
         """
-        return self._c.is_ready and not self._jogs.is_active and self._c.state not in {"Jog", "Hold"}
+        return self._c.is_ready and not self._jogs.is_active and self._c.state_name not in {"Jog", "Hold"}
 
     @property
     def capabilities(self) -> frozenset[str]:
@@ -77,7 +77,7 @@ class GrblBlocks:
             | ({"surface-speed"} if not own or self._c.has_variable_speed else set())
         )
 
-    def get_max_line_speed(self, x_component: float, z_component: float) -> float:
+    def get_max_directional_speed(self, x_component: float, z_component: float) -> float:
         """Return the maximum speed in mm/s along a direction.
 
         The limit of each axis is the lower value of the machine file and the controller.
@@ -88,7 +88,7 @@ class GrblBlocks:
             lambda axis: min(axis.max_velocity, self._c.get_max_axis_speed(axis.name) or axis.max_velocity),
         )
 
-    def prepare_css(self, max_rpm: float) -> None:
+    def announce_css_max_rpm(self, max_rpm: float) -> None:
         """Store the highest spindle speed in rpm for constant surface speed.
 
         If the value is 0, the spindle speed is constant instead.
@@ -101,7 +101,7 @@ class GrblBlocks:
 
         In this state, lines that require a standstill can be sent.
         """
-        return self._settled and not self._c.is_busy
+        return self._settled and not self._c.is_script_running
 
     def submit_block(self, block: BlockOperation) -> int | None:
         """Send one block and return its ticket, or None while the buffer of the controller is full.
@@ -113,17 +113,17 @@ class GrblBlocks:
         c = self._c
         self._demand_ready()
         self.overrides.is_thread_active = isinstance(block, ThreadOperation)
-        if self.overrides.is_thread_active and not self.overrides.are_confirmed(c.overrides):
+        if self.overrides.is_thread_active and not self.overrides.are_overrides_confirmed(c.overrides):
             return None
         ticket = self._last + 1
         line = format_block(
             block,
             ticket,
             self._rapid_rate(block),
-            self.overrides.commanded_percents[0] / 100.0,
+            self.overrides.commanded_override_percents[0] / 100.0,
             c.home_origin,
         )
-        if not c.line_sender.can_send(line):
+        if not c.line_sender.can_send_now(line):
             return None
         c.send_line(line, ticket)
         self._last, self._settled, self._target = ticket, False, (block.x, block.z)
@@ -141,36 +141,39 @@ class GrblBlocks:
         c = self._c
         resting = self.is_at_standstill or c.is_lost or (c.fault != "" and self._is_motion_ended())
         return BlockState(
-            self._done, self._active, resting, self._holds.is_holding, self.describe_start_refusal()
+            self._done, self._active, resting, self._holds.is_in_feed_hold, self.get_start_refusal_reason()
         )
 
-    def describe_start_refusal(self) -> str:
+    def get_start_refusal_reason(self) -> str:
         """Return the reason why no block can start, or an empty string if a block can start."""
-        return self._c.start_refusal
+        return self._c.motion_refusal_reason
 
-    def hold_on_path(self) -> None:
+    def stop_on_path(self) -> None:
         """Start a feed hold immediately (byte 82h).
 
         This method must not be called during a threading pass, because the axes would stop in the cut.
         """
-        self._holds.start_hold()
+        self._holds.start_feed_hold()
 
     def resume(self) -> None:
         """End the feed hold (byte 81h), even if it was started at the controller."""
-        self._holds.end_hold()
+        self._holds.end_feed_hold()
 
     def abort_blocks(self) -> None:
         """Stop the motion and discard all tickets."""
         self._holds.clear_hold_request()
-        if not self._c.is_lost and not (self._c.is_busy and self._c.script_purpose == _ABORT_PURPOSE):
-            self._c.run_script(grblhal_scripts.abort_and_verify(self._c), _ABORT_PURPOSE)
+        if not self._c.is_lost and not (
+            self._c.is_script_running and self._c.script_purpose == _ABORT_PURPOSE
+        ):
+            self._c.start_script(grblhal_scripts.abort_and_verify_modes(self._c), _ABORT_PURPOSE)
 
     def set_overrides(self, feed_fraction: float, rapid_fraction: float) -> None:
         """Set the feed and rapid overrides as fractions.
 
-        ``send_pending`` later sends the overrides to the controller and verifies the reported values.
+        ``send_pending_commands`` later sends the overrides to the controller and verifies the reported
+        values.
         """
-        self.overrides.set_feed_and_rapid(feed_fraction, rapid_fraction)
+        self.overrides.set_motion_overrides(feed_fraction, rapid_fraction)
 
     def start_jog(
         self, axis: str, velocity: float, lease_s: float, limits: tuple[float, float] | None
@@ -187,14 +190,14 @@ class GrblBlocks:
             self._settled, self.last_block_end = False, None
         return moves
 
-    def move_by_step(self, axis: str, target: float, speed: float) -> None:
+    def move_to_target(self, axis: str, target: float, speed: float) -> None:
         """Jog the axis to ``target`` in one step.
 
         Raises DriverError if the controller is not ready or motion is not permitted.
         """
         self._demand_ready()
         place = self.last_block_end or (self._c.position.get("X", 0.0), self._c.position.get("Z", 0.0))
-        self._jogs.start_step(axis, target, speed)
+        self._jogs.start_step_jog(axis, target, speed)
         self._settled, self.last_block_end = False, None
         self._target = (target, place[1]) if axis == "X" else (place[0], target)
 
@@ -207,25 +210,25 @@ class GrblBlocks:
             if self._c.line_sender.is_idle:
                 self._c.request_report()
             else:
-                self._c.run_script(grblhal_scripts.finish_jog(self._c))
+                self._c.start_script(grblhal_scripts.finish_canceled_jog(self._c))
 
     def start_homing(self, axis: str) -> None:
         """Start to home an axis, which the controller does on its own."""
         self._settled, self.last_block_end = False, None
-        self._c.run_script(grblhal_scripts.home_axis(self._c, axis))
+        self._c.start_script(grblhal_scripts.home_axis(self._c, axis))
 
-    def send_pending(self) -> None:
+    def send_pending_commands(self) -> None:
         """Send jogs and overrides; call this method once per tick after the cycle of the controller."""
         c = self._c
-        self._jogs.send_travel()
-        steady = self._threads or c.is_busy or not c.is_ready
-        c.set_override_reports(not self.overrides.are_confirmed(c.overrides) and not steady)
+        self._jogs.send_remaining_travel()
+        steady = self._threads or c.is_script_running or not c.is_ready
+        c.set_override_reports_enabled(not self.overrides.are_overrides_confirmed(c.overrides) and not steady)
         if not steady:
-            self.overrides.send_differences(c.overrides, c.override_report_count, c.clock.now())
+            self.overrides.send_override_steps(c.overrides, c.override_report_count, c.clock.now())
 
     def require_motion_enabled(self) -> None:
         """Raise DriverError unless motion is permitted."""
-        require_power("", self.is_motion_enabled)
+        require_drive_power("", self.is_motion_enabled)
 
     # --- inside -------------------------------------------------------------------------------------------
 
@@ -251,7 +254,7 @@ class GrblBlocks:
         return min((speed * distance_mm / share for speed, share in axis_limits if share), default=math.inf)
 
     def _demand_ready(self) -> None:
-        why = self.describe_start_refusal()
+        why = self.get_start_refusal_reason()
         if self._c.fault:
             raise DriverError(why, get_fault_code(why, "controller-refuses"))  # Report only the cause.
         if why:
@@ -265,7 +268,7 @@ class GrblBlocks:
     def _is_motion_ended(self) -> bool:
         """Return whether an alarm has stopped all motion, or the last report shows no motion."""
         c = self._c
-        return not c.is_busy and (c.alarm_number != 0 or c.report is None or not c.report.moves)
+        return not c.is_script_running and (c.alarm_number != 0 or c.report is None or not c.report.moves)
 
     def _reported(self, report: StatusReport) -> None:
         c = self._c

@@ -124,7 +124,7 @@ def describe_alarm(number: int) -> str:
     )
 
 
-def describe_error(number: int, line: str) -> str:
+def describe_line_error(number: int, line: str) -> str:
     """Return a sentence that describes an error of the controller and the rejected line."""
     return Message(
         "the controller rejects {line} with error:{number} ({number2})",

@@ -57,7 +57,7 @@ class GrblConfig:
     spindle, and the controller can at most measure the speed.
     """
 
-    table: GrblhalTable
+    grblhal_table: GrblhalTable
     axes: tuple[GrblAxis, ...]
     max_rpm: float
     outputs: Mapping[str, GrblOutput]

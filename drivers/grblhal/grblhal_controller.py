@@ -96,7 +96,7 @@ class GrblController(ReportedState):
         """
         return self.line_sender.send_line(line, self.listened_s, ticket)
 
-    def run_script(self, script: Script, purpose: str = "") -> None:
+    def start_script(self, script: Script, purpose: str = "") -> None:
         """Start a script, and cancel the script that is running."""
         self.is_ready, self.is_reset_expected = False, False
         self.script_runner.start_script(script, purpose, self.listened_s)
@@ -111,7 +111,7 @@ class GrblController(ReportedState):
         """Treat the controller's next startup message as the result of the driver's own reset."""
         self.is_reset_expected = True
 
-    def set_override_reports(self, enabled: bool) -> None:
+    def set_override_reports_enabled(self, enabled: bool) -> None:
         """Select whether reports without offsets are requested as well, to receive the overrides.
 
         The controller omits the overrides from a full report, which always contains the offsets.
@@ -139,7 +139,7 @@ class GrblController(ReportedState):
         if not (full and self._sees_overrides):
             self._next_question = now + self._interval()
 
-    def request_modes(self) -> None:
+    def request_parser_modes(self) -> None:
         """Request the parser state with a real-time byte; the reply is stored in ``reported_modes``."""
         self.reported_modes, self._asks_modes = "", True
         self.send_realtime_bytes(grblhal_codes.TELL_MODES)
@@ -191,20 +191,20 @@ class GrblController(ReportedState):
     # --- state ---------------------------------------------------------------------------------------
 
     @property
-    def is_busy(self) -> bool:
+    def is_script_running(self) -> bool:
         """Return whether a script is running."""
-        return self.script_runner.is_busy
+        return self.script_runner.is_script_running
 
     @property
-    def start_refusal(self) -> str:
+    def motion_refusal_reason(self) -> str:
         """Return the reason why no motion can start now, or an empty string if motion can start."""
         if self.fault:
             return self.fault
-        if self.alarm_number == grblhal_codes.HOMING_REQUIRED_ALARM and not self.is_busy:
+        if self.alarm_number == grblhal_codes.HOMING_REQUIRED_ALARM and not self.is_script_running:
             return "the controller must be homed first"
         if self._opening is not None:
             return "the connection to the controller is being restored"
-        if self.is_busy or not self.is_ready:
+        if self.is_script_running or not self.is_ready:
             return "the controller's modal state is being verified"
         return ""
 
@@ -246,7 +246,7 @@ class GrblController(ReportedState):
         elif line.startswith("[") and line.endswith("]"):
             self._told(line)
         elif _SETTING.fullmatch(line):
-            self.line_sender.add_message(line)
+            self.line_sender.add_received_line(line)
         elif line.lower().startswith("grbl"):
             self._restarted()
         elif line and not line.startswith((">", "$")):
@@ -280,7 +280,7 @@ class GrblController(ReportedState):
         while self._garbage[0] < now - _WITHIN:
             self._garbage.popleft()
         moving = self.report is not None and self.report.moves
-        if self.line_sender.has_stale_replies or (self.is_busy and self.identity is None):
+        if self.line_sender.has_stale_replies or (self.is_script_running and self.identity is None):
             return
         if moving or not self.line_sender.is_idle or len(self._garbage) >= _GARBAGE:
             self.set_fault(
@@ -299,7 +299,7 @@ class GrblController(ReportedState):
         if self.line_sender.has_stale_replies and line.startswith("[GC:"):
             self.line_sender.has_stale_replies = False
         if not line.startswith("[MSG:"):
-            self.line_sender.add_message(line)
+            self.line_sender.add_received_line(line)
 
     def _answer(self, error: int) -> None:
         self.last_reply_s = self.listened_s
@@ -307,14 +307,14 @@ class GrblController(ReportedState):
         if self.line_sender.has_stale_replies:
             return
         first = self.fault == ""
-        ask = self.line_sender.handle_reply(error)
+        ask = self.line_sender.assign_reply(error)
         if ask is None:
             self.handle_invalid_line("ok" if not error else f"error:{error}")
-        elif error == grblhal_codes.LOCKED_ERROR and ask.text.startswith("M66"):
+        elif error == grblhal_codes.LOCKED_ERROR and ask.line_text.startswith("M66"):
             return  # A request for an input; the next report shows the reason for the lock.
-        elif error and first and not self.is_busy:
+        elif error and first and not self.is_script_running:
             # The error is sticky: later lines get the same error and are not executed.
-            self.set_fault(grblhal_codes.describe_error(error, ask.text), "controller-refuses")
+            self.set_fault(grblhal_codes.describe_line_error(error, ask.line_text), "controller-refuses")
 
     def _restarted(self) -> None:
         self.reset_count += 1
@@ -327,7 +327,7 @@ class GrblController(ReportedState):
         if report is None:
             self.handle_invalid_line(line)
             return
-        if not (self.is_busy or not self.is_ready or self.is_plausible(report)):
+        if not (self.is_script_running or not self.is_ready or self.is_report_plausible(report)):
             if self._leapt is None:
                 self._leapt = report, line
                 self.request_report()  # The next report shows whether the position is correct.
@@ -353,7 +353,7 @@ class GrblController(ReportedState):
         """Handle events that the state in a report shows, even if their messages were missed."""
         if report.state != "Alarm":
             self.alarm_number = 0
-        if self.is_busy:
+        if self.is_script_running:
             return
         if report.state == "Alarm":
             number = report.sub or self.alarm_number or grblhal_codes.LOCKED_ALARM
@@ -402,7 +402,7 @@ class GrblController(ReportedState):
         self._garbage.clear()
         self.discard_pending_lines()
         assert self._then is not None
-        self.run_script(self._then(), "reconnect")
+        self.start_script(self._then(), "reconnect")
 
     def _gone(self, error: TransportLostError) -> None:
         self.is_lost = self.is_silent = True
@@ -431,14 +431,14 @@ class GrblController(ReportedState):
     def _advance(self) -> None:
         """Continue the script; if the script fails, the reason becomes the fault."""
         why = self.script_runner.advance_script(self.listened_s)
-        self.is_reset_expected = self.is_reset_expected and self.is_busy
+        self.is_reset_expected = self.is_reset_expected and self.is_script_running
         if why:
             if self.identity is None:
                 self.fault = ""  # The reason for rejecting the controller has priority over its alarms.
             self.set_fault(why, get_fault_code(why, "controller-silent"))
 
     def _interval(self) -> float:
-        if self.is_busy:
+        if self.is_script_running:
             return _ASKING
         if self.clock.now() < self.fast_polling_until:
             return _FAST_INTERVAL_S
@@ -466,7 +466,7 @@ class GrblController(ReportedState):
         The timeout is longer while a threading pass waits for the spindle index. A reply to a line also
         counts as a response, because the controller may execute lines before it answers a report request.
         """
-        if self.is_busy:
+        if self.is_script_running:
             return
         patience = _INDEX_TIMEOUT_S if self.waits_for_index else _SILENCE_TIMEOUT_S
         if self.report_due_since_s is not None and self.listened_s - self.report_due_since_s > patience:
@@ -479,11 +479,13 @@ class GrblController(ReportedState):
             return
         first = self.line_sender.unacknowledged_lines[0]
         patience = (
-            _INDEX_TIMEOUT_S if self.waits_for_index else _REPLY_TIMEOUT_S + self.get_max_wait(first.text)
+            _INDEX_TIMEOUT_S
+            if self.waits_for_index
+            else _REPLY_TIMEOUT_S + self.get_line_wait_s(first.line_text)
         )
         if self.listened_s - max(first.sent_time_s, self.last_reply_s) > patience:
             self.set_fault(
                 "no response to {line}; there may be interference on the line",
                 "controller-silent",
-                line=f"{first.text!r}",
+                line=f"{first.line_text!r}",
             )

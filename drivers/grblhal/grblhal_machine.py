@@ -42,7 +42,7 @@ class GrblMachine:
         self._wire = transport
         self._trips = 0
         self.controller = GrblController(
-            config, transport or open_transport(config.table.port, config.table.baud), clock
+            config, transport or open_transport(config.grblhal_table.port, config.grblhal_table.baud), clock
         )
         self.block_controller = GrblBlocks(self.controller)
         self.spindle = GrblSpindle(self.controller, self.block_controller)
@@ -58,14 +58,14 @@ class GrblMachine:
         )
         voided = self.controller.on_discard
 
-        def void() -> None:
+        def handle_discard() -> None:
             voided()
             self.spindle.handle_reset()
             self.io.handle_reset()
 
-        self.controller.on_discard = void
+        self.controller.on_discard = handle_discard
         self._connect()
-        self.on_screen_station = OnScreenStation(clock, self.controller_inputs.read_states)
+        self.on_screen_station = OnScreenStation(clock, self.controller_inputs.read_input_states)
         self.ports = MachinePorts(
             clock=clock,
             axes=self.axes,
@@ -76,21 +76,21 @@ class GrblMachine:
             blocks=self.block_controller,
             halt_machine=self.controller.halt_motion,
             touch=self.touch_input,
-            unknown=self.find_unknown_items,
+            unknown=self.find_unknown_parts,
             trip_monitor=self,
         )
 
     def run_cycle(self) -> None:
         """Run one cycle of the controller, blocks, spindle and terminals, without waiting."""
         self.controller.run_cycle()
-        self.block_controller.send_pending()
-        self.spindle.send_commands()
+        self.block_controller.send_pending_commands()
+        self.spindle.send_spindle_commands()
         self.io.send_output_changes()
         self.controller_inputs.request_next_input()
         if self.touch_input is not None:
             self.touch_input.check_touch()
 
-    def find_unknown_items(self) -> frozenset[UnknownPart]:
+    def find_unknown_parts(self) -> frozenset[UnknownPart]:
         """Return the parts of the machine whose state is unknown.
 
         While the controller is silent, all states are unknown, because it may continue its blocks and its
@@ -124,11 +124,11 @@ class GrblMachine:
         """Close the old connection, which releases the port, and begin to reopen the connection."""
         close, config = self.controller.close, self.controller.config
 
-        def opened() -> GrblTransport:
+        def reopen_transport() -> GrblTransport:
             close()
-            return self._wire or open_transport(config.table.port, config.table.baud)
+            return self._wire or open_transport(config.grblhal_table.port, config.grblhal_table.baud)
 
-        return ConnectionAttempt(opened, synchronous=self._wire is not None)
+        return ConnectionAttempt(reopen_transport, synchronous=self._wire is not None)
 
     def close(self) -> None:
         """Stop all motion and then close the connection."""
@@ -138,15 +138,15 @@ class GrblMachine:
 
     def _connect(self) -> None:
         c = self.controller
-        c.run_script(grblhal_scripts.connect_controller(c))
+        c.start_script(grblhal_scripts.connect_controller(c))
         self._rounds(_CONNECT_TIMEOUT_S)
-        if c.is_busy or c.identity is None or (c.fault and c.alarm_number == 0):
+        if c.is_script_running or c.identity is None or (c.fault and c.alarm_number == 0):
             c.close()
-            raise DriverError(f"{c.config.table.port}: {c.fault or 'no response from controller'}")
+            raise DriverError(f"{c.config.grblhal_table.port}: {c.fault or 'no response from controller'}")
 
     def _rounds(self, limit: float) -> None:
         end = self._clock.now() + limit
-        while self.controller.is_busy and not self.controller.is_lost and self._clock.now() < end:
+        while self.controller.is_script_running and not self.controller.is_lost and self._clock.now() < end:
             self._idle()
             self.run_cycle()
             self._clock.sleep_until(self._clock.now() + _CYCLE_S)
@@ -176,11 +176,11 @@ class GrblMachine:
                         amax=f"{axis.max_acceleration:.0f}",
                     )
                 )
-        if c.config.has_own_spindle and 0.0 < self.spindle.max_controller_rpm < c.config.max_rpm:
+        if c.config.has_own_spindle and 0.0 < self.spindle.controller_max_rpm < c.config.max_rpm:
             warnings.append(
                 Message(
                     "spindle: $30 allows {highest} rpm, but the machine file specifies {rpm_max} rpm",
-                    highest=f"{self.spindle.max_controller_rpm:g}",
+                    highest=f"{self.spindle.controller_max_rpm:g}",
                     rpm_max=f"{c.config.max_rpm:g}",
                 )
             )
@@ -188,7 +188,7 @@ class GrblMachine:
 
     def _list_homing_warnings(self) -> list[str]:
         """Return a warning if axes need a home switch, but homing is disabled in the controller."""
-        if self.controller.homing_setting:
+        if self.controller.homing_setting_bits:
             return []
         names = [
             axis.name

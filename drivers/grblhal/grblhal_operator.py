@@ -65,7 +65,7 @@ def round_rapid_override(fraction: float) -> int:
     return 100 if fraction >= 1.0 else 50 if fraction >= 0.5 else 25
 
 
-def limit_override_percent(fraction: float) -> int:
+def convert_override_to_percent(fraction: float) -> int:
     """Convert a fraction into percent, limited to the override range of the controller."""
     return min(max(round(100 * fraction), LEAST), MOST)
 
@@ -86,32 +86,32 @@ class GrblOverrides:
         self.is_thread_active = False  # A thread is active and requires 100 %.
 
     @property
-    def commanded_percents(self) -> list[int]:
+    def commanded_override_percents(self) -> list[int]:
         """Return the commanded feed, rapid and spindle overrides in percent."""
         return [100, self._asked[1], 100] if self.is_thread_active else self._asked
 
-    def set_feed_and_rapid(self, feed_fraction: float, rapid_fraction: float) -> None:
+    def set_motion_overrides(self, feed_fraction: float, rapid_fraction: float) -> None:
         """Set the feed and rapid overrides as fractions above 0."""
-        self._asked[:2] = limit_override_percent(feed_fraction), round_rapid_override(rapid_fraction)
+        self._asked[:2] = convert_override_to_percent(feed_fraction), round_rapid_override(rapid_fraction)
 
-    def set_spindle_percent(self, percent: int) -> None:
+    def set_spindle_override(self, percent: int) -> None:
         """Set the spindle override as a percentage of the last S word."""
         self._asked[2] = percent
 
-    def are_confirmed(self, reported: tuple[int, ...] | None) -> bool:
+    def are_overrides_confirmed(self, reported: tuple[int, ...] | None) -> bool:
         """Return whether the reported overrides are equal to the commanded overrides."""
-        return reported is not None and list(reported[:3]) == self.commanded_percents
+        return reported is not None and list(reported[:3]) == self.commanded_override_percents
 
-    def send_differences(self, reported: tuple[int, ...] | None, report_count: int, now: float) -> None:
+    def send_override_steps(self, reported: tuple[int, ...] | None, report_count: int, now: float) -> None:
         """Send override steps if the commanded and reported overrides differ.
 
         Steps are sent only after a report that is newer than the last steps, or again if no such report
         arrives. ``report_count`` is the number of reports with overrides.
         """
-        if reported is None or self.are_confirmed(reported) or reported != self._last:
+        if reported is None or self.are_overrides_confirmed(reported) or reported != self._last:
             self._since = None  # A spindle that follows the radius changes continuously.
         self._last = reported
-        if reported is None or self.are_confirmed(reported):
+        if reported is None or self.are_overrides_confirmed(reported):
             return
         fresh = report_count > self._seen and now - self._sent_at >= _SEND_INTERVAL_S
         if not fresh and now - self._sent_at < _RESEND_DELAY_S:
@@ -122,7 +122,7 @@ class GrblOverrides:
                 Message(
                     "the controller does not accept an override: {commanded} was commanded, but "
                     "{reported} is reported",
-                    commanded=self.commanded_percents,
+                    commanded=self.commanded_override_percents,
                     reported=list(reported),
                 ),
                 "controller-refuses",
@@ -132,7 +132,7 @@ class GrblOverrides:
         self._write(self._steps(reported))
 
     def _steps(self, reported: tuple[int, ...]) -> bytes:
-        feed, rapid, spindle = self.commanded_percents
+        feed, rapid, spindle = self.commanded_override_percents
         data = encode_override_steps(feed, reported[0])
         data += bytes([grblhal_codes.RAPID_OVERRIDES[rapid]]) if reported[1] != rapid else b""
         return data + (
@@ -146,7 +146,7 @@ class GrblOverrides:
 _MAX_STALE_REPORTS = 3  # Reports that may still show the state before a hold or before its end.
 
 
-class FeedHolds:
+class FeedHoldControl:
     """Feed holds (byte 82h) and resumes (byte 81h), whose effects are tracked from report to report."""
 
     def __init__(self, controller: GrblController) -> None:
@@ -157,19 +157,19 @@ class FeedHolds:
         self._released = self._again = 0
 
     @property
-    def is_holding(self) -> bool:
+    def is_in_feed_hold(self) -> bool:
         """Return whether the controller is at rest in a feed hold."""
         c = self._c
         held = c.report is not None and c.report.state == "Hold" and not c.report.sub
-        return held and c.report_count >= self._released and not c.is_busy
+        return held and c.report_count >= self._released and not c.is_script_running
 
-    def start_hold(self) -> None:
+    def start_feed_hold(self) -> None:
         """Start a feed hold immediately."""
         self._asked = self._ours = True
         self._released = 0
         self._say()
 
-    def end_hold(self) -> None:
+    def end_feed_hold(self) -> None:
         """End a feed hold as soon as the axes are at rest."""
         self._asked, self._ours = False, True
         self._send_resume()
@@ -220,7 +220,7 @@ _MIN_JOG_MM = 0.002  # Minimum travel in mm.
 _MIN_RENEWAL_S = 0.02  # Seconds; a shorter renewal is not sent.
 
 
-class GrblJogs:
+class GrblJogSender:
     """Sender of jog lines (``$J``), which waits for the acknowledgment of each line.
 
     The lease is the time for which a jog may continue without renewal. At any time, the target is the
@@ -251,18 +251,18 @@ class GrblJogs:
             self.is_active = False
             return False
         self._wanted, self.is_active = target, True
-        self.send_travel()
+        self.send_remaining_travel()
         return True
 
-    def start_step(self, axis: str, target: float, speed: float) -> None:
+    def start_step_jog(self, axis: str, target: float, speed: float) -> None:
         """Jog an axis from rest to ``target``, and stop it there."""
         self._begin(axis, speed, self._c.clock.now())
         self._wanted, self.is_active = target, True
-        self.send_travel()
+        self.send_remaining_travel()
 
-    def send_travel(self) -> None:
+    def send_remaining_travel(self) -> None:
         """Send the travel that is still due, if the last line has been acknowledged."""
-        if not self.is_active or (self._ask is not None and not self._ask.is_done):
+        if not self.is_active or (self._ask is not None and not self._ask.is_acknowledged):
             return
         added = abs(self._wanted - self._sent)
         if added < max(_MIN_JOG_MM, _MIN_RENEWAL_S * abs(self._velocity)) and self._ask is not None:
@@ -273,7 +273,7 @@ class GrblJogs:
 
     def handle_standstill(self) -> None:
         """End the jog after a report shows that the controller is at rest."""
-        if self._ask is None or self._ask.is_done:
+        if self._ask is None or self._ask.is_acknowledged:
             self.clear_jog()
 
     def clear_jog(self) -> None:

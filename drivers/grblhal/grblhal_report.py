@@ -80,22 +80,22 @@ def _numbers(text: str) -> tuple[float, ...] | None:
 
 
 def _floats(name: str) -> Callable[[str], Mapping[str, object] | None]:
-    def read(text: str) -> Mapping[str, object] | None:
+    def parse_float_field(text: str) -> Mapping[str, object] | None:
         values = _numbers(text)
         return None if values is None else {name: values}
 
-    return read
+    return parse_float_field
 
 
 def _whole(name: str, index: int | None = None) -> Callable[[str], Mapping[str, object] | None]:
-    def read(text: str) -> Mapping[str, object] | None:
+    def parse_integer_field(text: str) -> Mapping[str, object] | None:
         parts = text.split(",")
         if not all(part.isdecimal() for part in parts):
             return None
         values = tuple(int(part) for part in parts)
         return {name: values if index is None else values[index]}
 
-    return read
+    return parse_integer_field
 
 
 _FIELD_READERS: dict[str, Callable[[str], Mapping[str, object] | None]] = {
@@ -136,14 +136,14 @@ class ControllerIdentity(NamedTuple):
     buffer_byte_count: int
     axis_letters: str
     option_names: frozenset[str]
-    input_count: int  # auxiliary digital inputs
-    output_count: int
-    build_letters: str = ""  # Build options: V variable spindle, M mist.
-    signal_letters: str | None = (
+    auxiliary_input_count: int  # auxiliary digital inputs
+    auxiliary_output_count: int
+    build_option_letters: str = ""  # Build options: V variable spindle, M mist.
+    control_input_letters: str | None = (
         None  # Control inputs of the board, by their letters in the pins of a report.
     )
 
-    def has_pin(self, letter: str) -> bool:
+    def has_input_pin(self, letter: str) -> bool:
         """Return whether the board has the input with this letter.
 
         Firmware since 2024 lists the control inputs in [SIGNALS:…]. For older firmware, every control input
@@ -151,10 +151,14 @@ class ControllerIdentity(NamedTuple):
         """
         if letter in _AXES:
             return letter in self.axis_letters
-        return self.signal_letters is None or letter not in _CONTROL_INPUTS or letter in self.signal_letters
+        return (
+            self.control_input_letters is None
+            or letter not in _CONTROL_INPUTS
+            or letter in self.control_input_letters
+        )
 
     @property
-    def is_lathe_mode(self) -> bool:
+    def is_in_lathe_mode(self) -> bool:
         """Return whether the controller reports lathe mode."""
         return any(option.startswith("LATHE") for option in self.option_names)
 

@@ -44,7 +44,7 @@ def synchronize_controller(controller: GrblController) -> Script:
     """
     # The controller reads these lines before ``$G``.
     slow = max(
-        (controller.get_max_wait(ask.text) for ask in controller.line_sender.unacknowledged_lines),
+        (controller.get_line_wait_s(ask.line_text) for ask in controller.line_sender.unacknowledged_lines),
         default=0.0,
     )
     for _ in range(_TRIES):
@@ -52,13 +52,13 @@ def synchronize_controller(controller: GrblController) -> Script:
         controller.send_realtime_bytes(ord("\n"))
         ask, by = controller.send_line("$G"), controller.clock.now() + REPLY_TIMEOUT_S / _TRIES + slow
         yield _by(controller, ask, by), REPLY_TIMEOUT_S + slow, ""
-        if ask.is_done:
+        if ask.is_acknowledged:
             return
     raise ScriptError("no response from the controller to '$G'")
 
 
 def _by(c: GrblController, ask: SentLine, by: float) -> Callable[[], bool]:
-    return _ready_by(c, lambda: ask.is_done, by)
+    return _ready_by(c, lambda: ask.is_acknowledged, by)
 
 
 def _ready_by(c: GrblController, ready: Callable[[], bool], deadline_s: float) -> Callable[[], bool]:
@@ -75,16 +75,16 @@ def query_line(
     """
     ask = controller.send_line(line)
     yield (
-        lambda: ask.is_done,
-        timeout_s + controller.get_max_wait(line),
+        lambda: ask.is_acknowledged,
+        timeout_s + controller.get_line_wait_s(line),
         Message("no response from the controller to {line}", line=f"{line!r}"),
     )
     if ask.error_code:
-        raise ScriptError(grblhal_codes.describe_error(ask.error_code, line))
+        raise ScriptError(grblhal_codes.describe_line_error(ask.error_code, line))
     return ask.received_lines
 
 
-def send_modes(controller: GrblController) -> Script:
+def send_required_modes(controller: GrblController) -> Script:
     """Send the required modes, end other modes that another host has left active, and verify the result."""
     yield from query_line(controller, "".join(grblhal_codes.REQUIRED_MODES))
     modes = yield from _read_modes(controller)
@@ -128,7 +128,7 @@ def _read_modes(c: GrblController) -> Generator[ScriptStep, None, list[str]]:
     return modes_text.removeprefix("[GC:").rstrip("]").split()
 
 
-def require_hardware(controller: GrblController, identity: ControllerIdentity) -> None:
+def require_axes_and_estop(controller: GrblController, identity: ControllerIdentity) -> None:
     """Raise ScriptError if the controller lacks an axis of the machine file or the E-stop input."""
     missing = [axis.name for axis in controller.wired_axes if axis.name not in identity.axis_letters]
     if missing:
@@ -138,14 +138,14 @@ def require_hardware(controller: GrblController, identity: ControllerIdentity) -
             missing=", ".join(missing),
         )
     estop = controller.config.inputs.get(ESTOP)
-    if estop is not None and not identity.has_pin(estop.terminal.removeprefix("pn.")):
+    if estop is not None and not identity.has_input_pin(estop.terminal.removeprefix("pn.")):
         raise ScriptError(
             "the controller's board does not have the input {terminal} for the E-stop: it reports "
             "[SIGNALS:{signals}]. Use a board or firmware that has this input; if the E-stop only cuts "
             'the power, write io.in.estop = {{ at = "{hardware}" }}',
             "controller-estop",
             terminal=estop.terminal,
-            signals=identity.signal_letters,
+            signals=identity.control_input_letters,
             hardware=HARDWARE,
         )
 
@@ -173,9 +173,9 @@ def stop(controller: GrblController, *, in_thread_pass: bool = False) -> Script:
     pass is active, which may be waiting at rest for the index. In this case, byte 18h would lose the
     position, so byte 19h is used, which then acts as a reset. An active alarm is not changed.
     """
-    if controller.state != "Home":  # Only a reset ends the state Home.
+    if controller.state_name != "Home":  # Only a reset ends the state Home.
         yield from _brake(controller)
-    if controller.state == "Alarm":
+    if controller.state_name == "Alarm":
         return
     if not (in_thread_pass and controller.clock.now() - controller.last_report_s > _NO_REPORT_S):
         yield from reset_controller(controller)
@@ -188,7 +188,7 @@ def stop(controller: GrblController, *, in_thread_pass: bool = False) -> Script:
         _INDEX,
         NO_REPORTS_TEXT,
     )
-    if controller.state != "Alarm" and controller.reset_count == before:
+    if controller.state_name != "Alarm" and controller.reset_count == before:
         yield from reset_controller(controller)
 
 
@@ -199,12 +199,12 @@ def reset_controller(controller: GrblController) -> Script:
     """
     before, reports, began = controller.reset_count, controller.report_count, controller.clock.now()
 
-    def answers() -> bool:
+    def has_newer_report() -> bool:
         return controller.report_count > reports and controller.last_report_s > began + _STALE_REPORT_S
 
     controller.expect_driver_reset()
     controller.send_realtime_bytes(grblhal_codes.RESET)
-    yield lambda: controller.reset_count > before or answers(), _BANNER, _NO_RESET
+    yield lambda: controller.reset_count > before or has_newer_report(), _BANNER, _NO_RESET
     yield lambda: controller.reset_count > before, 0.0, _NO_RESET
 
 
@@ -214,10 +214,10 @@ def _brake(c: GrblController) -> Generator[ScriptStep, None, None]:
     by = began + _stopping_time(c)
     c.send_realtime_bytes(grblhal_codes.JOG_CANCEL, grblhal_codes.HOLD)
 
-    def rests() -> bool:
+    def is_at_rest() -> bool:
         return c.report_count > after and c.report is not None and not c.report.moves
 
-    yield lambda: rests() or c.clock.now() >= by, _stopping_time(c) + 1.0, NO_REPORTS_TEXT
+    yield lambda: is_at_rest() or c.clock.now() >= by, _stopping_time(c) + 1.0, NO_REPORTS_TEXT
 
 
 def _stopping_time(c: GrblController) -> float:
@@ -285,20 +285,20 @@ def reconnect_controller(controller: GrblController) -> Script:
     """Set up a controller after a lost connection, and record the accessories that were still on."""
     unheard = controller.clock.now() - controller.last_report_s
     yield from request_full_report(controller, _BOOT)
-    yield from check_restart(controller)
+    yield from detect_restart(controller)
     on = controller.reported_accessories[1] if controller.reported_accessories is not None else ""
     yield from _set_up(controller)
     controller.active_at_silence = (unheard, on) if on else None
 
 
-def check_restart(controller: GrblController) -> Script:
+def detect_restart(controller: GrblController) -> Script:
     """Detect whether the controller restarted while it was silent.
 
     After a restart, the active modes differ from those of TurnDesk, because ``gc_init`` of grblHAL selects
     G17. The position then counts from 0, so a position other than 0 proves that there was no restart.
     """
     by = controller.clock.now() + _MODES_TIMEOUT_S
-    controller.request_modes()
+    controller.request_parser_modes()
     yield _ready_by(controller, lambda: controller.reported_modes != "", by), REPLY_TIMEOUT_S, ""
     modes = controller.reported_modes.removeprefix("[GC:").rstrip("]").split()
     places = controller.report.position if controller.report is not None else None
@@ -313,7 +313,7 @@ def _set_up(c: GrblController) -> Script:
         yield from stop(c)
     yield from synchronize_controller(c)
     identity = parse_identity((yield from query_line(c, "$I")))
-    require_hardware(c, identity)
+    require_axes_and_estop(c, identity)
     c.identity = identity
     c.line_sender.set_buffer_size(c.identity.buffer_byte_count)
     number = _present_alarm(c)
@@ -358,7 +358,7 @@ def verify_modes(controller: GrblController) -> Script:
     Idle or Jog.
     """
     yield from synchronize_controller(controller)
-    yield from send_modes(controller)
+    yield from send_required_modes(controller)
     yield from request_full_report(controller)
     if any(abs(offset) > 1e-9 for offset in controller.work_offset):
         yield from query_line(
@@ -383,7 +383,7 @@ def verify_modes(controller: GrblController) -> Script:
     controller.is_ready = controller.fault == ""
 
 
-def abort_and_verify(controller: GrblController) -> Script:
+def abort_and_verify_modes(controller: GrblController) -> Script:
     """Stop the motion, discard the queue and verify the modes.
 
     The position is preserved if this is possible.
@@ -412,7 +412,7 @@ def recover_from_alarm(controller: GrblController) -> Script:
     unheard = controller.is_silent
     yield from request_full_report(controller)
     if unheard:
-        yield from check_restart(controller)
+        yield from detect_restart(controller)
     if controller.report is not None and "E" in controller.report.pins:
         raise ScriptError(
             "E-stop is pressed at the controller: release it, then press Reset", "controller-estop"
@@ -447,7 +447,7 @@ def home_axis(controller: GrblController, axis_letter: str) -> Script:
             - axis.home_position_mm
         )
     elif not (
-        axis.has_absolute_encoder and not controller.homing_setting
+        axis.has_absolute_encoder and not controller.homing_setting_bits
     ):  # Otherwise the operator confirms the position.
         yield from _look_for_switch(controller, axis_letter)
     yield from request_full_report(controller)
@@ -459,15 +459,15 @@ def home_axis(controller: GrblController, axis_letter: str) -> Script:
 
 def _look_for_switch(c: GrblController, letter: str) -> Script:
     c.home_origin.pop(letter, None)
-    if not c.homing_setting or c.homing_setting & _SINGLE_AXIS_BIT:
+    if not c.homing_setting_bits or c.homing_setting_bits & _SINGLE_AXIS_BIT:
         yield from query_line(c, f"$H{letter}", _HOMING)
-    elif not c.is_homed(letter):
+    elif not c.is_axis_homed(letter):
         yield from query_line(
             c, "$H", _HOMING
         )  # All axes are homed together, so the next one is already homed.
 
 
-def finish_jog(controller: GrblController) -> Script:
+def finish_canceled_jog(controller: GrblController) -> Script:
     """Wait until the axes are at rest after a canceled jog, and then verify the modes.
 
     The check is necessary because the controller discards lines when a jog is canceled.

@@ -19,8 +19,8 @@ def find_required_settings(c: GrblController, there: Mapping[int, str]) -> dict[
 
     ``there`` contains the settings that the controller reports now.
     """
-    wanted: dict[int, float | str] = dict(c.config.table.settings)
-    always = c.identity is not None and c.identity.is_lathe_mode and _MODE not in there
+    wanted: dict[int, float | str] = dict(c.config.grblhal_table.settings)
+    always = c.identity is not None and c.identity.is_in_lathe_mode and _MODE not in there
     if always and wanted.get(_MODE) == _LATHE:
         del wanted[_MODE]  # Firmware built for lathes only does not have this setting.
     wanted[_MASK] = (int(float(there.get(_MASK, "0"))) | _REPORTS) & ~_PARSER

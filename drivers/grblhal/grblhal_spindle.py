@@ -39,7 +39,7 @@ class GrblEncoder:
         self._sign = 1.0
 
     @property
-    def is_measuring(self) -> bool:
+    def has_measured_speed(self) -> bool:
         """Return whether the controller reports a measured speed."""
         return self._c.report is not None and self._c.report.measured is not None
 
@@ -106,9 +106,9 @@ class GrblSpindle:
         controller would reduce the speed without a message.
         """
         if rpm:
-            require_spindle_ready(self._blocks.describe_start_refusal())
+            require_spindle_ready(self._blocks.get_start_refusal_reason())
         rpm = math.copysign(min(abs(rpm), self._c.config.max_rpm), rpm)
-        highest = self.max_controller_rpm
+        highest = self.controller_max_rpm
         if highest and abs(rpm) > 1.001 * highest:
             raise DriverError(
                 "spindle: the controller allows {highest} rpm ($30), not {rpm} rpm",
@@ -117,14 +117,14 @@ class GrblSpindle:
                 rpm=f"{abs(rpm):.0f}",
             )
         self._wanted = rpm
-        self.send_commands()
+        self.send_spindle_commands()
 
     def start_coasting(self) -> None:
         """Stop the spindle with M5, because the controller has no other stop."""
         self.set_speed(0.0)
 
     @property
-    def max_controller_rpm(self) -> float:
+    def controller_max_rpm(self) -> float:
         """Return the speed limit of the controller in rpm, or 0 if it is not reported.
 
         The controller reduces higher speeds to this limit.
@@ -152,13 +152,13 @@ class GrblSpindle:
         """Record that a stop or reset has switched the spindle off until the program starts it again."""
         self._wanted, self._runs, self._paused_at, self._word = 0.0, False, None, None
 
-    def send_commands(self) -> None:
+    def send_spindle_commands(self) -> None:
         """Send the commands that bring the spindle to the requested speed."""
         c = self._c
         self.speed()  # Evaluate each report; otherwise a reversal could be missed.
         if not c.is_ready:
             return
-        if c.state == "Hold":
+        if c.state_name == "Hold":
             self._handle_hold()
         elif self._paused_at is not None:
             self._restore_after_hold()
@@ -166,7 +166,7 @@ class GrblSpindle:
             self._stop()
         elif (
             self._blocks.is_at_standstill
-            and self._blocks.is_listening
+            and self._blocks.can_accept_lines
             and (not self._runs or self._base_rpm != self._said)
         ):
             self._start()
@@ -204,10 +204,10 @@ class GrblSpindle:
         base = self._base_rpm
         if self._blocks.max_css_rpm:
             self._follow_by_override(base)
-            if not self._blocks.overrides.are_confirmed(self._c.overrides):
+            if not self._blocks.overrides.are_overrides_confirmed(self._c.overrides):
                 return
         else:
-            self._blocks.overrides.set_spindle_percent(100)
+            self._blocks.overrides.set_spindle_override(100)
         self._runs, self._said = True, base
         self._word = self._c.send_line(f"M{3 if base > 0.0 else 4}S{number(abs(base))}")
 
@@ -220,7 +220,7 @@ class GrblSpindle:
         c = self._c
         now, reported_speeds = c.clock.now(), c.report.speeds if c.report is not None else None
         share = c.overrides[2] / 100.0 if c.overrides is not None and len(c.overrides) > 2 else None
-        said = self._runs and self._word is not None and self._word.is_done and c.state != "Hold"
+        said = self._runs and self._word is not None and self._word.is_acknowledged and c.state_name != "Hold"
         if not said or reported_speeds is None or share is None or len(reported_speeds) < 2:
             self._unlike_since = None
             return
@@ -243,12 +243,12 @@ class GrblSpindle:
         """Set the spindle override that results in the requested speed if the S word is ``base``."""
         if self._wanted * base > 0.0:
             share = round(100.0 * self._wanted / base)
-            self._blocks.overrides.set_spindle_percent(min(max(share, LEAST), MOST))
+            self._blocks.overrides.set_spindle_override(min(max(share, LEAST), MOST))
 
     def _stop(self) -> None:
         if not self._runs or self._abort_start_wait():
             return
-        if self._blocks.is_listening:
+        if self._blocks.can_accept_lines:
             self._runs = False
             self._c.send_line("M5")
         else:
@@ -261,7 +261,7 @@ class GrblSpindle:
         Only an abort with a reset can then stop the spindle.
         """
         word = self._word
-        if word is None or word.is_done:
+        if word is None or word.is_acknowledged:
             return False
         if self._c.listened_s - word.sent_time_s > _WAIT_DETECTION_S:
             self._blocks.abort_blocks()

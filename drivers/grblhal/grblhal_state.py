@@ -35,7 +35,7 @@ _COOLANT = frozenset((7, 8))
 _FUNCTION = re.compile(r"M0*(\d+)")
 
 
-def get_max_firmware_wait(line: str, settings: Mapping[int, str]) -> float:
+def get_firmware_wait_s(line: str, settings: Mapping[int, str]) -> float:
     """Return the seconds that the firmware may wait before it acknowledges ``line``.
 
     The result is 0 for most lines.
@@ -86,7 +86,7 @@ class ReportedState:
         self.request_times: deque[float] = deque()  # Times of the pending report requests.
 
     @property
-    def state(self) -> str:
+    def state_name(self) -> str:
         """Return the state in the last report, or an empty string before the first report."""
         return self.report.state if self.report is not None else ""
 
@@ -112,7 +112,7 @@ class ReportedState:
         self.report, self.last_report_s = report, self.clock.now()
         self._before_alarm = self._before_alarm if report.state == "Alarm" else report
 
-    def is_plausible(self, report: StatusReport) -> bool:
+    def is_report_plausible(self, report: StatusReport) -> bool:
         """Return whether every axis could have reached its reported position since the last report.
 
         The available time starts when the last report was created, not when it was read. This computer may
@@ -135,14 +135,14 @@ class ReportedState:
         """Return the axis letters in the order of the controller's reports and settings."""
         return self.identity.axis_letters if self.identity is not None else "XYZ"
 
-    def has_pin(self, letter: str) -> bool:
-        """Return whether the board has the input with this letter (``ControllerIdentity.has_pin``)."""
-        return self.identity is None or self.identity.has_pin(letter)
+    def has_input_pin(self, letter: str) -> bool:
+        """Return whether the board has the input with this letter (``ControllerIdentity.has_input_pin``)."""
+        return self.identity is None or self.identity.has_input_pin(letter)
 
     @property
     def has_variable_speed(self) -> bool:
         """Return whether the firmware supports a spindle with variable speed."""
-        return self.identity is not None and _VARIABLE in self.identity.build_letters
+        return self.identity is not None and _VARIABLE in self.identity.build_option_letters
 
     @property
     def wired_axes(self) -> tuple[GrblAxis, ...]:
@@ -164,28 +164,28 @@ class ReportedState:
         """
         return self.read_axis_setting(110, letter) / 60.0
 
-    def get_max_wait(self, line: str) -> float:
+    def get_line_wait_s(self, line: str) -> float:
         """Return the maximum seconds for which the controller waits when it executes a line.
 
         The controller may wait for the spindle or for the coolant.
         """
-        return get_max_firmware_wait(line, self.settings)
+        return get_firmware_wait_s(line, self.settings)
 
     @property
-    def homing_setting(self) -> int:
+    def homing_setting_bits(self) -> int:
         """Return the homing setting $22.
 
         Bit 0 enables homing, and bit 1 permits homing of single axes.
         """
         return int(float(self.settings.get(_HOMING, "0")))
 
-    def is_homed(self, letter: str) -> bool | None:
+    def is_axis_homed(self, letter: str) -> bool | None:
         """Return whether the controller has homed an axis.
 
         Returns None if homing is disabled in the controller, or if its state is unknown.
         """
         index = self.reported_axis_letters.find(letter)
-        if not self.homing_setting & _HOMED or self.homed_flags is None or index < 0:
+        if not self.homing_setting_bits & _HOMED or self.homed_flags is None or index < 0:
             return None
         if len(self.homed_flags) > 1:
             return bool(self.homed_flags[1] >> index & 1)

@@ -13,7 +13,7 @@ from core.table_schema import (
     DriverTable,
     FileFinding,
     MachineFileReading,
-    TableReference,
+    TableDescription,
     make_table_finding,
 )
 
@@ -73,7 +73,7 @@ def _read_settings(file: MachineFileReading) -> dict[int, float | str]:
 
 
 def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
-    values, settings = file.values, _read_settings(file)
+    values, settings = file.file_values, _read_settings(file)
     if "handwheel" in file.list_table_keys("io.analog") and values.has_text("machine.backend", "grblhal"):
         yield FileFinding(_WHEEL, "", "this backend does not have a counter input; remove this entry")
     if values.has_text("machine.backend", "grblhal"):
@@ -98,7 +98,7 @@ def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
 
 def _check_guard(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield a finding if a cycle-stopping guard uses an input that is readable only at standstill."""
-    values, path = file.values, "interlocks.guard_stops"
+    values, path = file.file_values, "interlocks.guard_stops"
     stops = values.has_values(path, _GUARD) and values.read_flag(path)
     if stops and values.text(_GUARD).startswith("in."):
         expected = (
@@ -111,7 +111,7 @@ def _check_travel(
     file: MachineFileReading, settings: Mapping[int, float | str], axis: str
 ) -> Iterator[FileFinding]:
     """Yield findings about axes whose limits exceed the limits in the controller's settings."""
-    values, offset = file.values, _AXES[axis]
+    values, offset = file.file_values, _AXES[axis]
     for first, key, factor, unit in _LIMITS:
         path = f"axis.{axis}.{key}"
         if values.has_values(path):
@@ -149,7 +149,7 @@ DRIVER = DriverDeclaration(
             serial_port_key="grblhal.port",
             purpose='The connection to a grblHAL controller (`backend = "grblhal"`).',
             sub_tables=(
-                TableReference(
+                TableDescription(
                     "grblhal.settings",
                     "Settings of the controller that TurnDesk writes at each connection and reads back: the "
                     "key is the number of the setting (`13` is `$13`), the value is in the controller's "

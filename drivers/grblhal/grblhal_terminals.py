@@ -12,7 +12,7 @@ from drivers.grblhal.grblhal_config import ESTOP, HARDWARE
 from drivers.grblhal.grblhal_controller import GrblController
 from drivers.grblhal.grblhal_report import StatusReport
 from drivers.grblhal.grblhal_transport import SentLine
-from drivers.port_checks import FirstTouchInput, find_output
+from drivers.port_checks import FirstTouchLatch, find_output
 
 # --- Inputs: pins are in every report; auxiliary inputs are requested at standstill.
 
@@ -37,7 +37,7 @@ class GrblInputs:
         self._fulls = 0
         self._next = 0.0
 
-    def read_states(self) -> Mapping[str, bool]:
+    def read_input_states(self) -> Mapping[str, bool]:
         """Return the states of the inputs by name.
 
         Inputs that have never been read or that the board does not have are omitted.
@@ -47,13 +47,13 @@ class GrblInputs:
             return states
         for name, wired in self._c.config.inputs.items():
             letter = wired.terminal.removeprefix(_PIN)
-            if wired.terminal.startswith(_PIN) and self._c.has_pin(letter):
+            if wired.terminal.startswith(_PIN) and self._c.has_input_pin(letter):
                 states[name] = (letter in report.pins) != wired.is_active_low
         return states
 
     def list_missing_inputs(self) -> dict[str, str]:
         """Return the names of the inputs that the controller lacks, each with the reason."""
-        have = self._c.identity.input_count if self._c.identity is not None else 0
+        have = self._c.identity.auxiliary_input_count if self._c.identity is not None else 0
         missing: dict[str, str] = {}
         for name, wired in self._c.config.inputs.items():
             port = self._port(name)
@@ -61,7 +61,7 @@ class GrblInputs:
                 continue
             if port is None and not wired.terminal.startswith(_PIN):
                 missing[name] = "the terminal is neither a pin nor an auxiliary input"
-            elif port is None and not self._c.has_pin(wired.terminal.removeprefix(_PIN)):
+            elif port is None and not self._c.has_input_pin(wired.terminal.removeprefix(_PIN)):
                 missing[name] = "the controller's board does not have this input"
             elif port is not None and port >= have:
                 missing[name] = Message(
@@ -75,7 +75,10 @@ class GrblInputs:
         if self._asked is not None:
             self._take(*self._asked)
         elif (
-            self._order and now >= self._next and self._blocks.is_at_standstill and self._blocks.is_listening
+            self._order
+            and now >= self._next
+            and self._blocks.is_at_standstill
+            and self._blocks.can_accept_lines
         ):
             name = self._order.pop(0)
             self._order.append(name)
@@ -86,12 +89,12 @@ class GrblInputs:
 
     def _take(self, name: str, ask: SentLine) -> None:
         c = self._c
-        if c.fault or c.is_busy or ask.error_code:
+        if c.fault or c.is_script_running or ask.error_code:
             self._asked = None
-        elif ask.is_done and not self._fulls:
+        elif ask.is_acknowledged and not self._fulls:
             self._fulls = c.full_report_count + 1
             c.request_report(full=True)
-        elif ask.is_done and c.full_report_count >= self._fulls and c.report is not None:
+        elif ask.is_acknowledged and c.full_report_count >= self._fulls and c.report is not None:
             if c.report.input is not None:
                 self._read[name] = (c.report.input > 0) != self._c.config.inputs[name].is_active_low
             self._asked, self._fulls = None, 0
@@ -124,7 +127,7 @@ class GrblIO:
 
     def inputs(self) -> Mapping[str, bool]:
         """Return the states of the inputs by name."""
-        return self._inputs.read_states()
+        return self._inputs.read_input_states()
 
     def get_outputs(self) -> Mapping[str, bool]:
         """Return the states of the outputs by name, without outputs that the controller does not have.
@@ -179,13 +182,13 @@ class GrblIO:
         """
         terminal = self._c.config.outputs[name].terminal
         if terminal in _COOLANT:
-            mist = self._c.identity is not None and _MIST in self._c.identity.build_letters
+            mist = self._c.identity is not None and _MIST in self._c.identity.build_option_letters
             return (
                 ""
                 if terminal != "mist" or mist
                 else ("the controller's firmware does not support mist coolant")
             )
-        have = self._c.identity.output_count if self._c.identity is not None else 0
+        have = self._c.identity.auxiliary_output_count if self._c.identity is not None else 0
         port = terminal.removeprefix("out.")
         if port.isdecimal() and int(port) < have:
             return ""
@@ -224,7 +227,7 @@ class GrblIO:
 
         Changes are delayed while the controller is locked, jogging or in feed hold.
         """
-        for name in [name for name, ask in self._asks.items() if ask.is_done]:
+        for name in [name for name, ask in self._asks.items() if ask.is_acknowledged]:
             del self._asks[name]
             self._said_at[name] = self._c.clock.now()
         for name, on in self._wanted.items():
@@ -232,7 +235,7 @@ class GrblIO:
                 self._tell(name)
 
     def _tell(self, name: str) -> None:
-        if not self._blocks.is_listening:
+        if not self._blocks.can_accept_lines:
             self._sent.setdefault(name, not self._wanted[name])
             return
         on = self._sent[name] = self._wanted[name]
@@ -264,7 +267,7 @@ _ARMED_POLLING_S = 60.0  # Seconds after arming with more frequent requests.
 _TOUCH_POLLING_S = 0.5  # Seconds after a touch with more frequent requests.
 
 
-class GrblProbe(FirstTouchInput):
+class GrblProbe(FirstTouchLatch):
     """Touch input evaluated from reports, which are requested more often while the probe is armed.
 
     G38.2 is not used, because its motion would continue if the host were lost. A jog, in contrast, ends
@@ -291,7 +294,7 @@ class GrblProbe(FirstTouchInput):
         if report is self._report or report is None:
             return
         late, self._report, self._at = now - self._at, report, now
-        if self._is_first_touch(self._inputs.read_states().get(PROBE_INPUT, False)):
+        if self._is_first_touch(self._inputs.read_input_states().get(PROBE_INPUT, False)):
             sample = self._axes.sample()
             self._kept = TouchLatch(sample.t, sample.actual, late)
             self._c.fast_polling_until = min(self._c.fast_polling_until, now + _TOUCH_POLLING_S)

@@ -198,9 +198,9 @@ class SentLine:
     If the reply is ``ok``, ``error_code`` is 0.
     """
 
-    text: str
+    line_text: str
     received_lines: list[str] = field(default_factory=list)
-    is_done: bool = False
+    is_acknowledged: bool = False
     error_code: int = 0
     sent_time_s: float = 0.0
     ticket_number: int = 0  # Ticket of a block, 0 for other lines.
@@ -208,7 +208,7 @@ class SentLine:
     @property
     def size_bytes(self) -> int:
         """Return the number of bytes of the line, including the line end."""
-        return len(self.text) + 1
+        return len(self.line_text) + 1
 
 
 class LineSender:
@@ -230,7 +230,7 @@ class LineSender:
         """Return whether all lines have been sent and acknowledged."""
         return not self.waiting_lines and not self.unacknowledged_lines
 
-    def can_send(self, line: str) -> bool:
+    def can_send_now(self, line: str) -> bool:
         """Return whether a line could be sent immediately."""
         return not self.waiting_lines and self._used() + len(line) + 1 <= self.free_bytes
 
@@ -252,9 +252,9 @@ class LineSender:
             ask = self.waiting_lines.popleft()
             ask.sent_time_s = now
             self.unacknowledged_lines.append(ask)
-            self._write(ask.text.encode("ascii") + b"\n")
+            self._write(ask.line_text.encode("ascii") + b"\n")
 
-    def handle_reply(self, error_code: int) -> SentLine | None:
+    def assign_reply(self, error_code: int) -> SentLine | None:
         """Assign a reply to the line that caused it.
 
         Return that line, or None if no line is pending. ``error_code`` is 0 for the reply ``ok``.
@@ -262,10 +262,10 @@ class LineSender:
         if not self.unacknowledged_lines:
             return None
         ask = self.unacknowledged_lines.popleft()
-        ask.is_done, ask.error_code = True, error_code
+        ask.is_acknowledged, ask.error_code = True, error_code
         return ask
 
-    def add_message(self, line: str) -> None:
+    def add_received_line(self, line: str) -> None:
         """Add a received message to the line that the controller will acknowledge next."""
         if self.unacknowledged_lines:
             self.unacknowledged_lines[0].received_lines.append(line)
@@ -305,7 +305,7 @@ class ScriptRunner:
         self._inside = False  # The script is executing a step.
 
     @property
-    def is_busy(self) -> bool:
+    def is_script_running(self) -> bool:
         """Return whether a script is running."""
         return self._script is not None
 

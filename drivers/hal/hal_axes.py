@@ -19,18 +19,18 @@ from core.ports import (
 from drivers.hal.bridge.packets import number
 from drivers.hal.bridge.packets import parse_pieces as pieces_told
 from drivers.hal.hal_config import HalConfig
-from drivers.hal.hal_homing import HalHoming, HalTouch
+from drivers.hal.hal_homing import HalHoming, HalTouchInput
 from drivers.hal.hal_link import HalLink, parse_bridge_fault
 from drivers.hal.hal_queue import HalQueue
 from drivers.port_checks import (
-    require_axis,
+    require_drive_power,
+    require_existing_axis,
     require_no_fault,
     require_no_homing,
-    require_power,
     require_standstill,
 )
 from drivers.setpoint_pieces import MotionPiece
-from drivers.setpoint_queue import check_limits, convert_segments
+from drivers.setpoint_queue import check_setpoint_limits, convert_segments
 from drivers.spindle_gear import GearAxes, SpindlePhaseFilter
 
 _HISTORY_S = 0.5  # Age in s of setpoints that are still available.
@@ -66,10 +66,12 @@ class HalAxes:
         self.index_rev = 0.0  # Revolutions at the spindle's index in HAL's count.
         probe = config.probe_input
         self.touch_input = (
-            HalTouch(config.hal_table.period, active_low=probe.is_active_low) if probe is not None else None
+            HalTouchInput(config.hal_table.period, active_low=probe.is_active_low)
+            if probe is not None
+            else None
         )
         # An axis that is used as the spindle and retains its count. None: C is engaged or does not exist.
-        self._lent = next((n for n, axis in enumerate(config.axes) if axis.is_spindle), None)
+        self._lent = next((n for n, axis in enumerate(config.axes) if axis.is_spindle_c_axis), None)
         self.is_c_turning = False  # C turns to its position relative to the index.
         self.spindle_rev_per_s = 0.0
         self._on = False
@@ -93,7 +95,7 @@ class HalAxes:
         for forget in self.reconnect_handlers:
             forget()
         self.process_samples()
-        self.queue.reset_to(self._actual)
+        self.queue.reset_to_position(self._actual)
 
     def set_sample_handler(self, handler: Callable[..., None]) -> None:
         """Set the function that receives each sample as a row of ``core.ports.SampleSource``."""
@@ -114,7 +116,7 @@ class HalAxes:
         self._actual = self._to_machine_position(row[1 + axes : 1 + 2 * axes], t)
         if turning:
             self.spindle_sample = t, row[1 + 2 * axes]
-            self.queue.play_spindle_sample(t, row[1 + 2 * axes] - self.index_rev)
+            self.queue.calculate_cam_setpoint(t, row[1 + 2 * axes] - self.index_rev)
         if telling:
             self.spindle_rev_per_s = row[1 + 2 * axes + turning]
         elif turning:
@@ -125,7 +127,7 @@ class HalAxes:
             self.touch_input.add_sample(t, self._actual, bool(bits[-1]))
         for index, on in zip(self._marks, bits[: len(self._marks)], strict=True):
             if self.active_homing is not None and self._homes(index):
-                self.active_homing.add_sample(self.read_hal_position(index), bool(on))
+                self.active_homing.add_switch_sample(self.read_hal_position(index), bool(on))
         moved = zip(self._actual, self._still, self.config.axes, strict=True)
         if any(abs(a - b) > 1.5 * axis.count for a, b, axis in moved):
             self._moved, self._still = t, self._actual
@@ -171,7 +173,7 @@ class HalAxes:
         if fault_text and not self.fault:
             self.fault = fault_text
             self._forget()
-        if self._on and self._link.is_executed(self._order) and report.get("on") is not True:
+        if self._on and self._link.is_command_executed(self._order) and report.get("on") is not True:
             self._handle_power_loss()
         self._process_bridge_state()
         self._home_on()
@@ -189,7 +191,7 @@ class HalAxes:
             self._brakings = count
             raw = pieces_told([float(each) for each in numbers], len(self._driven))
             pieces = [self._from_hal(piece) for piece in raw]
-            self.queue.replace_by_braking(pieces[0].start_time_s, pieces)
+            self.queue.replace_with_braking(pieces[0].start_time_s, pieces)
 
     def _handle_power_loss(self) -> None:
         """Handle a loss of power after an E-stop or a drive fault.
@@ -202,7 +204,7 @@ class HalAxes:
 
     def _forget(self) -> None:
         self._on, self.active_homing = False, None
-        self.queue.reset_to(self._actual)
+        self.queue.reset_to_position(self._actual)
 
     # --- the port -----------------------------------------------------------------------------------------
 
@@ -298,7 +300,9 @@ class HalAxes:
         if self._powered:
             return
         self._order = self._link.send_command("enable")
-        if not self._link.wait_until(lambda: self._link.last_report.get("powered") is True, _POWER_ON_S):
+        if not self._link.wait_until_ready(
+            lambda: self._link.last_report.get("powered") is True, _POWER_ON_S
+        ):
             self._link.send_command("off")
             raise DriverError(
                 "the drives stay off because HAL's E-stop chain does not close; check the E-stop "
@@ -306,7 +310,7 @@ class HalAxes:
                 "no-power",
             )
         self.process_samples()
-        self.queue.reset_to(self._actual)
+        self.queue.reset_to_position(self._actual)
         self._on = True
 
     def stop(self, mode: StopMode) -> None:
@@ -327,7 +331,7 @@ class HalAxes:
 
         ``sample().homed`` becomes True when homing is done. Raises DriverError if homing cannot start.
         """
-        require_axis(axis, self.axes)
+        require_existing_axis(axis, self.axes)
         index = self.axes.index(axis)
         axis_config = self.config.axes[index]
         if axis_config.absolute or axis_config.pins is None:
@@ -352,14 +356,14 @@ class HalAxes:
             self.handle_connection()
         self._forget()
         order = self._link.send_command("clear")
-        self._link.wait_until(lambda: self._link.is_executed(order), 0.5)
+        self._link.wait_until_ready(lambda: self._link.is_command_executed(order), 0.5)
         for clear in self.fault_clearers:
             clear()
         self.fault = ""
 
     # --- for C on the spindle drive ------------------------------------------------------------------------
 
-    def transfer_c(
+    def transfer_c_axis(
         self, axis_index: int | None, hal_position: float = 0.0, control_position: float = 0.0
     ) -> None:
         """Release the axis ``axis_index`` to the spindle, or engage the C axis if ``axis_index`` is None.
@@ -377,30 +381,30 @@ class HalAxes:
                 tuple([control_position if n == held else p for n, p in enumerate(each)])
                 for each in (self._actual, self._actual, self._command)
             )
-        self.queue.reset_to(place)
+        self.queue.reset_to_position(place)
 
     # --- for homing ---------------------------------------------------------------------------------------
 
-    def read_bit(self, name: str) -> bool:
+    def read_bit_pin(self, name: str) -> bool:
         """Return the state of a bit pin of the bridge by the name of the pin, such as ``X.index``."""
-        return self._link.read_bit(name)
+        return self._link.read_bit_pin(name)
 
-    def read_number(self, name: str) -> float:
+    def read_number_pin(self, name: str) -> float:
         """Return the value of a number pin of the bridge by the name of the pin, such as ``X.index-at``."""
-        return self._link.read_number(name)
+        return self._link.read_number_pin(name)
 
-    def request_index(self, pin: str, enabled: bool) -> None:
+    def request_encoder_index(self, pin: str, enabled: bool) -> None:
         """Request the index of an encoder, or cancel the request."""
         self._link.send_command("index", pin=pin, on=enabled)
 
-    def ignore_limit_switch(self, axis: str, ignored: bool) -> None:
+    def set_limit_switch_ignored(self, axis: str, ignored: bool) -> None:
         """Select whether the limit switch of an axis is ignored.
 
         It must be ignored while the axis homes on this switch.
         """
         self._link.send_command("homing", axis=axis, on=ignored)
 
-    def splice_homing(self, segments: MotionSegments) -> None:
+    def splice_homing_move(self, segments: MotionSegments) -> None:
         """Splice the setpoints of a homing move into the queue.
 
         Raises DriverError if they do not continue the queue, or if the bridge does not accept them.
@@ -427,7 +431,7 @@ class HalAxes:
         )
         place = list(self.queue.get_commanded_state(self._now())[0])
         place[index] += leap
-        self.queue.reset_to(place)
+        self.queue.reset_to_position(place)
 
     # --- inside -------------------------------------------------------------------------------------------
 
@@ -444,13 +448,13 @@ class HalAxes:
         return self._on and self._link.last_report.get("powered") is True and not self.fault
 
     def _need_power(self) -> None:
-        require_power(self.fault, self._powered)
+        require_drive_power(self.fault, self._powered)
 
     def _check(self, segments: MotionSegments) -> None:
-        check_limits(segments, self.config.axes, self._homed, self._actual)
+        check_setpoint_limits(segments, self.config.axes, self._homed, self._actual)
 
     def _send(self, what: str, pieces: Sequence[MotionPiece], **values: object) -> None:
-        self._link.send_pieces(what, [self._to_hal(piece) for piece in pieces], **values)
+        self._link.send_setpoint_pieces(what, [self._to_hal(piece) for piece in pieces], **values)
 
     def _to_hal(self, piece: MotionPiece) -> MotionPiece:
         p = tuple([piece.positions[n] + self.home_positions[n] for n in self._driven])

@@ -19,7 +19,7 @@ class HalAxis(AxisProperties):
     home_method: int = 0
     home_latch_speed: float = 0.0  # mm/s
     home_offset: float = 0.0
-    is_spindle: bool = False  # C uses the spindle drive.
+    is_spindle_c_axis: bool = False  # C uses the spindle drive.
 
     @property
     def switch_key(self) -> str:
@@ -41,8 +41,8 @@ class HalSpindleConfig:
 
     pins: HalSpindlePins
     max_rpm: float
-    acceleration_rpm_s: float
-    deceleration_rpm_s: float
+    acceleration_rpm_per_s: float
+    deceleration_rpm_per_s: float
     has_encoder: bool
     is_driven_by_hal: bool = True
 

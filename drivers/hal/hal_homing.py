@@ -13,7 +13,7 @@ from typing import Protocol
 from core.ports import DriverError, MotionSegments, TouchLatch, is_queue_finished
 from drivers.hal.hal_config import HalAxis
 from drivers.hal.hal_table import PRESENT_POSITION_METHODS, REQUIRED_PINS_BY_HOMING_METHOD
-from drivers.port_checks import FirstTouchInput
+from drivers.port_checks import FirstTouchLatch
 from drivers.setpoint_queue import plan_axis_move
 
 _SEARCH_DOWN_METHODS = frozenset((1, 17, 5, 21, 33))  # Methods that search in the negative direction.
@@ -45,15 +45,15 @@ class HomingAxes(Protocol):
         """Return the queued positions and velocities at ``time_s``."""
         ...
 
-    def read_bit(self, name: str) -> bool:
+    def read_bit_pin(self, name: str) -> bool:
         """Return a bit of the bridge by the name of its pin, or False for an unknown pin."""
         ...
 
-    def read_number(self, name: str) -> float:
+    def read_number_pin(self, name: str) -> float:
         """Return a number of the bridge by the name of its pin, or 0 for an unknown pin."""
         ...
 
-    def splice_homing(self, segments: MotionSegments) -> None:
+    def splice_homing_move(self, segments: MotionSegments) -> None:
         """Splice the setpoints of a homing move into the queue.
 
         Raises DriverError if the bridge does not accept them.
@@ -64,11 +64,11 @@ class HomingAxes(Protocol):
         """Brake all axes to rest as soon as possible."""
         ...
 
-    def request_index(self, pin: str, enabled: bool) -> None:
+    def request_encoder_index(self, pin: str, enabled: bool) -> None:
         """Request the index of an encoder, or cancel the request if ``enabled`` is False."""
         ...
 
-    def ignore_limit_switch(self, axis: str, ignored: bool) -> None:
+    def set_limit_switch_ignored(self, axis: str, ignored: bool) -> None:
         """Select whether the limit switch of an axis is ignored.
 
         It must be ignored while the axis homes on this switch.
@@ -116,14 +116,14 @@ class HalHoming:
         self._since = 0.0
         self._on: bool | None = None  # Switch in the newest sample.
         self._mark: float | None = None
-        axes.ignore_limit_switch(axis.name, True)
+        axes.set_limit_switch_ignored(axis.name, True)
 
     @property
     def is_done(self) -> bool:
         """Return whether home has been found and the axis is at rest."""
         return self._step is _Step.DONE
 
-    def add_sample(self, hal_position: float, is_switch_on: bool) -> None:
+    def add_switch_sample(self, hal_position: float, is_switch_on: bool) -> None:
         """Add a sample of the position and the switch.
 
         The home position is where the switch turns off.
@@ -180,7 +180,7 @@ class HalHoming:
 
     def _leave(self, now: float, rests: bool) -> None:
         if self._mark is not None and self._to_index:
-            self._slides.request_index(f"{self.name}.index", True)
+            self._slides.request_encoder_index(f"{self.name}.index", True)
             self._enter(_Step.INDEX, now)
         elif self._mark is not None:
             self._slides.brake_axes()
@@ -190,25 +190,25 @@ class HalHoming:
 
     def _seek_index(self, now: float) -> None:
         self._go(self._way, self._slow, _Step.INDEX, now, _INDEX_TRAVEL)
-        self._slides.request_index(f"{self.name}.index", True)
+        self._slides.request_encoder_index(f"{self.name}.index", True)
 
     def _search_index(self, now: float, rests: bool) -> None:
         """Wait until the index request turns off, which happens when the index passes.
 
         The jump of the count that HAL compensates is then the position of the index.
         """
-        if now > self._since + 0.1 and not self._slides.read_bit(f"{self.name}.index"):
-            self._mark = self._slides.read_number(f"{self.name}.index-at")
+        if now > self._since + 0.1 and not self._slides.read_bit_pin(f"{self.name}.index"):
+            self._mark = self._slides.read_number_pin(f"{self.name}.index-at")
             self._slides.brake_axes()
             self._enter(_Step.FINISH, now)
         elif rests and now > self._since + _STOP_TIME_S:
-            self._slides.request_index(f"{self.name}.index", False)
+            self._slides.request_encoder_index(f"{self.name}.index", False)
             raise self._failed("no index pulse was detected", "no-index")
 
     def _end(self, now: float, rests: bool) -> None:
         if rests and now > self._since + _STOP_TIME_S:
             assert self._mark is not None
-            self._slides.ignore_limit_switch(self.name, False)
+            self._slides.set_limit_switch_ignored(self.name, False)
             self._slides.set_home_position(self.axis_index, self._mark + self._axis.home_offset)
             place, _ = self._slides.demand_at(now)
             if self._axis.home_method in PRESENT_POSITION_METHODS or place[self.axis_index] == 0.0:
@@ -230,7 +230,7 @@ class HalHoming:
         segments = plan_axis_move(
             begins, place, self.axis_index, target=to, speed=speed, accel=self._axis.amax
         )
-        self._slides.splice_homing(segments)
+        self._slides.splice_homing_move(segments)
         self._mark = None
         self._enter(step, now)
 
@@ -238,14 +238,14 @@ class HalHoming:
         self._step, self._since = step, now
 
     def _failed(self, why: str, reason: str) -> DriverError:
-        self._slides.ignore_limit_switch(self.name, False)
+        self._slides.set_limit_switch_ignored(self.name, False)
         return DriverError("{name}: homing failed: {why}", "homing", reason=reason, name=self.name, why=why)
 
 
 # --- Probe: HAL samples its input and the axis positions in the same period.
 
 
-class HalTouch(FirstTouchInput):
+class HalTouchInput(FirstTouchLatch):
     """Probe input (``core.ports.TouchInput``) that evaluates HAL's samples."""
 
     def __init__(self, period: float, *, active_low: bool) -> None:

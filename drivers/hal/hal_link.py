@@ -10,7 +10,7 @@ from contextlib import suppress
 from typing import get_args
 
 from core.ports import Clock, DriverError, Fault, FaultCode
-from drivers.hal.bridge.packets import BridgeConfig, PacketHead, build_packets, number, pack_packet
+from drivers.hal.bridge.packets import BridgeConfig, PacketHead, build_piece_packets, number, pack_packet
 from drivers.hal.hal_session import INVALID_PACKET, BridgeLink
 from drivers.process_messages import text
 from drivers.setpoint_pieces import MotionPiece
@@ -66,10 +66,10 @@ class HalLink:
             self.failure = error.fault  # The next Reset tries again.
             raise
         self._silence.hear(self._clock.now())
-        if not self.wait_until(lambda: self._reports > 0, 3.0):
+        if not self.wait_until_ready(lambda: self._reports > 0, 3.0):
             raise DriverError("the HAL bridge does not send reports; restart TurnDesk", "hal-silent")
-        self.wait_until(lambda: False, _SETTLING_TIME_S)
-        self.wait_until(lambda: not self.are_inputs_stale, _START_TIMEOUT_S)
+        self.wait_until_ready(lambda: False, _SETTLING_TIME_S)
+        self.wait_until_ready(lambda: not self.are_inputs_stale, _START_TIMEOUT_S)
 
     def _wait_for_shutdown(self, link: BridgeLink) -> bool:
         """Wait up to 4 s until HAL has shut down after the end of its bridge, and return whether it has."""
@@ -165,20 +165,20 @@ class HalLink:
         self._send(pack_packet({"do": command, "n": self._sent, **values}))
         return self._sent
 
-    def send_pieces(self, what: str, pieces: Sequence[MotionPiece], **values: object) -> None:
+    def send_setpoint_pieces(self, what: str, pieces: Sequence[MotionPiece], **values: object) -> None:
         """Send a command with the motion pieces of a path to the bridge.
 
         Raises DriverError if the bridge does not accept the command.
         """
         self._sent += 1
-        for data in build_packets({"do": what, "n": self._sent, **values}, pieces, self._axes):
+        for data in build_piece_packets({"do": what, "n": self._sent, **values}, pieces, self._axes):
             self._send(data)
 
-    def is_executed(self, command_number: int) -> bool:
+    def is_command_executed(self, command_number: int) -> bool:
         """Return whether the bridge has executed the command with this number."""
         return number(self.last_report, "n") >= command_number
 
-    def wait_until(self, is_ready: Callable[[], bool], timeout_s: float) -> bool:
+    def wait_until_ready(self, is_ready: Callable[[], bool], timeout_s: float) -> bool:
         """Process packets until ``is_ready`` returns True, and return whether it did.
 
         The result is False after ``timeout_s`` seconds or a loss of the connection.
@@ -193,12 +193,12 @@ class HalLink:
             self._clock.sleep_until(self._clock.now() + _POLL_INTERVAL_S)
         return False
 
-    def read_bit(self, name: str) -> bool:
+    def read_bit_pin(self, name: str) -> bool:
         """Return a bit of the bridge by the name of its pin, or False for an unknown pin."""
         bits, at = self.last_report.get("bits"), self._bits.get(name)
         return isinstance(bits, list) and at is not None and bits[at] is True
 
-    def read_number(self, name: str) -> float:
+    def read_number_pin(self, name: str) -> float:
         """Return a number of the bridge by the name of its pin, or 0 for an unknown pin."""
         numbers, at = self.last_report.get("figures"), self._figures.get(name)
         return float(numbers[at]) if isinstance(numbers, list) and at is not None else 0.0

@@ -20,9 +20,9 @@ from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_link import HalLink
 from drivers.hal.hal_session import BridgeLink, create_bridge_config
-from drivers.hal.hal_spindle import HalOrientation, HalSpindle, HalSpindleCAxis
+from drivers.hal.hal_spindle import HalOrientingSpindle, HalSpindle, HalSpindleCAxis
 from drivers.operator_station import build_station_state
-from drivers.port_checks import LOG_ROWS, SampleLog, find_output, require_output_allowed
+from drivers.port_checks import LOG_ROWS, SampleRingBuffer, find_output, require_output_allowed
 
 
 class HalTerminals:
@@ -47,7 +47,7 @@ class HalTerminals:
         real = reported_states if isinstance(reported_states, list) else [False] * len(self._config.outputs)
         found = {name: on is True for name, on in zip(self._config.outputs, real, strict=True)}
         for name, (on, order) in list(self._written.items()):
-            if self._link.is_executed(order):
+            if self._link.is_command_executed(order):
                 del self._written[name]
             else:
                 found[name] = on
@@ -107,15 +107,15 @@ class HalTerminals:
         return float(values[names.index(name)])
 
 
-class HalSamples:
+class HalSampleSource:
     """Scope samples of HAL (``core.ports.SampleSource``), one for each period of the servo thread."""
 
     def __init__(self, axes: HalAxes, period: float) -> None:
         self.sample_rate_hz = 1.0 / period
-        self._log = SampleLog(len(axes.axes))
+        self._log = SampleRingBuffer(len(axes.axes))
         axes.set_sample_handler(self._log.append_row)
 
-    def take(self, max_rows: int = LOG_ROWS) -> FloatArray:
+    def take_samples(self, max_rows: int = LOG_ROWS) -> FloatArray:
         """Return at most ``max_rows`` samples since the last call, oldest first."""
         return self._log.pop_rows(max_rows)
 
@@ -140,11 +140,11 @@ class HalMachine:
         self.spindle = HalSpindle(config, self.bridge_link, self.axes)
         self.spindle_c = _create_spindle_c(config, self.axes, self.spindle, self.bridge_link)
         turned = config.spindle.is_driven_by_hal and bool(config.spindle.pins.orient)
-        self.orientation = HalOrientation(self.axes, self.spindle, self.bridge_link) if turned else None
+        self.orientation = HalOrientingSpindle(self.axes, self.spindle, self.bridge_link) if turned else None
         self.axes.fault_clearers.append(self.spindle.spindle_index.clear_fault)
         self.axes.reconnect_handlers.append(self.spindle.spindle_index.discard_index)
         self.io = HalTerminals(config, self.bridge_link, clock.now)
-        self.samples = HalSamples(self.axes, config.hal_table.period)
+        self.samples = HalSampleSource(self.axes, config.hal_table.period)
         try:
             self.bridge_link.connect()
         except DriverError:
@@ -170,11 +170,11 @@ class HalMachine:
             orientation=self.orientation,
             touch=self.axes.touch_input,
             samples=self.samples,
-            unknown=self.find_unknown_items,
+            unknown=self.find_unknown_parts,
             warnings=self.bridge_link.warnings,
         )
 
-    def find_unknown_items(self) -> frozenset[UnknownPart]:
+    def find_unknown_parts(self) -> frozenset[UnknownPart]:
         """Return the parts of the machine state that are unknown.
 
         All parts are unknown if the bridge, HAL or the board does not respond.
@@ -188,11 +188,11 @@ class HalMachine:
         """
         self.bridge_link.process_packets()
         self.axes.run_cycle()
-        self.spindle.update()
+        self.spindle.update_spindle()
         if self.spindle_c is not None:
-            self.spindle_c.update()
+            self.spindle_c.continue_mode_change()
         if self.orientation is not None:
-            self.orientation.update()
+            self.orientation.update_orientation()
         self.bridge_link.send_heartbeat()
 
     def close(self) -> None:
@@ -204,7 +204,7 @@ def _create_spindle_c(
     config: HalConfig, axes: HalAxes, spindle: HalSpindle, link: HalLink
 ) -> HalSpindleCAxis | None:
     """Create the C axis on the spindle drive, or return None if C is absent or has its own drive."""
-    number = next((n for n, axis in enumerate(config.axes) if axis.is_spindle), None)
+    number = next((n for n, axis in enumerate(config.axes) if axis.is_spindle_c_axis), None)
     if number is None:
         return None
     mode_pin_path = "spindle.in_position_mode" if config.spindle.pins.in_position_mode else ""

@@ -9,7 +9,7 @@ from drivers.spindle_gear import AxisMotion, GearedQueue
 class HalQueue(GearedQueue):
     """Setpoint queue whose axes may follow the spindle, until the bridge reports the end of the cam."""
 
-    def play_spindle_sample(self, time_s: float, revolutions: float) -> AxisMotion | None:
+    def calculate_cam_setpoint(self, time_s: float, revolutions: float) -> AxisMotion | None:
         """Return the axis setpoint for one spindle position sample, or None without an active cam."""
         return (
             None if self._gearing is None else self._gearing.calculate_setpoint(time_s, time_s, revolutions)
@@ -20,8 +20,8 @@ class HalQueue(GearedQueue):
         if self._gearing is not None:
             self._leave_gearing(time_s, self._gearing)
 
-    def replace_by_braking(self, time_s: float, pieces: list[MotionPiece]) -> None:
+    def replace_with_braking(self, time_s: float, pieces: list[MotionPiece]) -> None:
         """Replace the queue by a braking ramp that the bridge has executed."""
         if self._gearing is not None:
-            self.reset_to(pieces[0].positions)
+            self.reset_to_position(pieces[0].positions)
         self.replace_pieces_from(time_s, pieces)

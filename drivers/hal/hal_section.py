@@ -27,16 +27,16 @@ _LOADRT = re.compile(r"^\s*loadrt\s+(\S+)\s*(.*?)\s*(?:#.*)?$")
 
 
 @dataclass(frozen=True, slots=True)
-class MachineLink:
+class MachinePinLink:
     """A pin or signal of the machine's HAL file, with TurnDesk's signals that are connected to it.
 
-    ``path`` is its key in the machine file. ``is_driven`` is True if TurnDesk is the source.
+    ``path`` is its key in the machine file. ``is_driven_by_turndesk`` is True if TurnDesk is the source.
     """
 
-    path: str
+    machine_file_key: str
     pin_name: str
     hal_type: str
-    is_driven: bool
+    is_driven_by_turndesk: bool
     turndesk_signals: tuple[str, ...]
 
 
@@ -62,9 +62,9 @@ class HalSection:
         default_factory=dict
     )  # Pins by signal, with the source first.
     pin_values: list[tuple[str, float]] = field(default_factory=list)
-    machine_links: list[MachineLink] = field(default_factory=list)
+    machine_links: list[MachinePinLink] = field(default_factory=list)
     bridge_pins: list[BridgePin] = field(default_factory=list)
-    sample_columns: str = ""  # Column types of the sampler.
+    sample_column_types: str = ""  # Column types of the sampler.
 
     def add_component(self, component: str, name: str, **pins: str) -> None:
         """Add a component instance, and connect its pins to signals.
@@ -89,20 +89,20 @@ class HalSection:
 
     def add_sample_column(self, kind: str, signal: str) -> None:
         """Add a column to the sample rows that HAL sends to the bridge."""
-        self.connect_pins(signal, f"sampler.0.pin.{len(self.sample_columns)}")
-        self.sample_columns += {FLOAT: "f", BIT: "b", COUNT: "s"}[kind]
+        self.connect_pins(signal, f"sampler.0.pin.{len(self.sample_column_types)}")
+        self.sample_column_types += {FLOAT: "f", BIT: "b", COUNT: "s"}[kind]
 
     def connect_machine_output(self, key: str, pin: str, hal_type: str, *ours: str) -> None:
         """Connect an output of the machine to TurnDesk's signals."""
-        self.machine_links.append(MachineLink(key, pin, hal_type, False, ours))
+        self.machine_links.append(MachinePinLink(key, pin, hal_type, False, ours))
 
     def connect_machine_input(self, key: str, pin: str, hal_type: str, turndesk_signal: str) -> None:
         """Connect an input of the machine to TurnDesk's signal, unless the pin name is empty."""
         if pin:
-            self.machine_links.append(MachineLink(key, pin, hal_type, True, (turndesk_signal,)))
+            self.machine_links.append(MachinePinLink(key, pin, hal_type, True, (turndesk_signal,)))
 
 
-def build_section(config: HalConfig) -> HalSection:
+def build_hal_section(config: HalConfig) -> HalSection:
     """Return the section, with its calls in the order of the servo thread."""
     border = HalSection()
     _streams(border, config)
@@ -119,7 +119,7 @@ def build_section(config: HalConfig) -> HalSection:
     _terminals(border, config)
     if config.probe_input is not None:
         border.add_sample_column(BIT, "td-in-probe")
-    border.loadrt_lines.append(f"loadrt sampler depth={_SAMPLES} cfg={border.sample_columns}")
+    border.loadrt_lines.append(f"loadrt sampler depth={_SAMPLES} cfg={border.sample_column_types}")
     border.function_calls.append("sampler.0")
     return border
 
@@ -261,7 +261,7 @@ def _slide(border: HalSection, axis: HalAxis) -> None:
         "sum2", f"td.{name}.sum", in0=f"{signal}-at", in1=f"{signal}-geared", out=f"{signal}-wanted"
     )
     free = "td-no-power"
-    if axis.is_spindle:  # While the spindle turns, the setpoint of C has no effect.
+    if axis.is_spindle_c_axis:  # While the spindle turns, the setpoint of C has no effect.
         border.add_component("not", f"td.{name}.turns", in_="td-position_mode", out=f"{signal}-turns")
         border.add_component("or2", f"td.{name}.free", in0=free, in1=f"{signal}-turns", out=f"{signal}-free")
         free = f"{signal}-free"
@@ -300,7 +300,7 @@ def _add_smooth_start(border: HalSection, signal: str, path: str, pin: str, own_
     name, index = signal.replace("td-", "td.", 1), f"{signal}-index"
     border.add_bridge_pin(own_signal, BIT, "io", index)
     border.add_bridge_pin(f"{own_signal}-at", FLOAT, "in", f"{signal}-shift")
-    border.machine_links.append(MachineLink(path, pin, BIT, False, (index,)))
+    border.machine_links.append(MachinePinLink(path, pin, BIT, False, (index,)))
     border.add_component("not", f"{name}.no-index", in_=index, out=f"{signal}-no-index")
     border.add_component(
         "and2", f"{name}.fell", in0=f"{signal}-no-index", in1=f"{signal}-index-was", out=f"{signal}-fell"
@@ -401,7 +401,7 @@ def _terminals(border: HalSection, config: HalConfig) -> None:
 # --- Output as text.
 
 
-def insert_section(machine_text: str, section: HalSection, thread_name: str, source_name: str) -> str:
+def insert_hal_section(machine_text: str, section: HalSection, thread_name: str, source_name: str) -> str:
     """Return the machine's HAL file with TurnDesk's section inserted.
 
     A component can be loaded only once. If the file and the section use the same component, their instances

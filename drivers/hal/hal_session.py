@@ -37,9 +37,9 @@ from drivers.hal.hal_section import (
     BIT,
     BRIDGE_COMPONENT,
     HalSection,
-    build_section,
+    build_hal_section,
     count_stream_columns,
-    insert_section,
+    insert_hal_section,
     list_bridge_nets,
 )
 from drivers.process_messages import MessageSocket, ReceivedMessage, text
@@ -62,7 +62,7 @@ def create_session_folder() -> tuple[Path, int]:
     return folder, lock
 
 
-def remove_old_folders(should_continue: Callable[[], bool]) -> None:
+def remove_old_session_folders(should_continue: Callable[[], bool]) -> None:
     """Remove the folders of sessions whose control has ended, as soon as their processes have ended.
 
     ``should_continue`` is called between two checks and must wait briefly. When it returns False, folders
@@ -140,10 +140,10 @@ _ENDED, _MUTE = "HAL bridge process has ended", "no error message"
 INVALID_PACKET = "the HAL bridge sent an invalid packet"
 
 
-class PinVerdict(NamedTuple):
+class PinCheckResult(NamedTuple):
     """The result of the check of one pin, with its key in the machine file, its name and its error."""
 
-    path: str
+    machine_file_key: str
     pin_name: str
     error_text: str
 
@@ -183,14 +183,16 @@ class BridgeLink(Protocol):
 
 def create_bridge_config(config: HalConfig) -> BridgeConfig:
     """Return the configuration of the bridge."""
-    pins = build_section(config).bridge_pins
+    pins = build_hal_section(config).bridge_pins
     read = [
         pin for pin in pins if pin.direction != "out" and not pin.name.startswith(("in.", "is.", "analog."))
     ]
     written = [pin.name for pin in pins if pin.direction == "out"]
     return BridgeConfig(
         axes=tuple(
-            BridgeAxis(axis.name, axis.amax, axis.following_window, axis.following_time, axis.is_spindle)
+            BridgeAxis(
+                axis.name, axis.amax, axis.following_window, axis.following_time, axis.is_spindle_c_axis
+            )
             for axis in config.driven_axes
         ),
         period=config.hal_table.period,
@@ -219,7 +221,7 @@ class HalSession:
         _remove_leftovers()
         self._folder, self._lock = create_session_folder()
         self.warnings: tuple[str, ...] = ()
-        self.pin_verdicts: tuple[PinVerdict, ...] = ()
+        self.pin_verdicts: tuple[PinCheckResult, ...] = ()
         try:
             self._start(config, clock_zero, only_check=check_only)
         except BaseException:
@@ -253,7 +255,7 @@ class HalSession:
 
     def _write(self, config: HalConfig, fd: int, zero: float, *, check_only: bool) -> None:
         """Write the session's files, including the HAL file and the bridge configuration."""
-        border = build_section(config)
+        border = build_hal_section(config)
         try:
             machine = config.hal_file.read_text(encoding="utf-8")
         except (OSError, UnicodeError) as error:
@@ -262,7 +264,7 @@ class HalSession:
             ) from error
         folder, session = (
             self._folder,
-            insert_section(machine, border, config.hal_table.thread, str(config.hal_file)),
+            insert_hal_section(machine, border, config.hal_table.thread, str(config.hal_file)),
         )
         (folder / "bridge.json").write_text(
             json.dumps(_bridge_settings(config, border, folder, fd, zero, only_check=check_only)),
@@ -292,7 +294,7 @@ class HalSession:
             if why := text(head, "error"):
                 raise DriverError("HAL: {why}", "hal-setup", why=why)
             if isinstance(said := head.get("verdicts"), list):
-                self.pin_verdicts = tuple(PinVerdict(*each) for each in said)
+                self.pin_verdicts = tuple(PinCheckResult(*each) for each in said)
                 wrong = [each for each in self.pin_verdicts if each.error_text]
                 if only_check:
                     return
@@ -305,7 +307,7 @@ class HalSession:
                     first = wrong[0]
                     words = Message(
                         template,
-                        path=first.path,
+                        path=first.machine_file_key,
                         pin=first.pin_name,
                         fault=first.error_text,
                         count=len(wrong) - 1,
@@ -425,11 +427,11 @@ def _remove_leftovers() -> None:
     """Wait until the HAL session of a killed control has been shut down, and remove its folder."""
     deadline = time.monotonic() + _END_TIMEOUT_S
 
-    def goes_on() -> bool:
+    def can_keep_waiting() -> bool:
         time.sleep(_POLL_INTERVAL_S)
         return time.monotonic() < deadline
 
-    remove_old_folders(goes_on)
+    remove_old_session_folders(can_keep_waiting)
 
 
 def _require_halrun() -> None:
@@ -450,7 +452,13 @@ def _bridge_settings(
         "name": BRIDGE_COMPONENT,
         "only_check": only_check,
         "wanted": [
-            (link.path, link.pin_name, link.hal_type, link.is_driven, link.turndesk_signals[0])
+            (
+                link.machine_file_key,
+                link.pin_name,
+                link.hal_type,
+                link.is_driven_by_turndesk,
+                link.turndesk_signals[0],
+            )
             for link in section.machine_links
         ],
         "pins": [(pin.name, pin.hal_type, pin.direction) for pin in section.bridge_pins],
@@ -459,6 +467,6 @@ def _bridge_settings(
         "alive": str(folder / _ALIVE_FILE),
         "ended": str(folder / _ENDED_FILE),
         "columns": "f" * count_stream_columns(config),
-        "sampled": section.sample_columns,
+        "sampled": section.sample_column_types,
         "bridge": asdict(create_bridge_config(config)),
     }

@@ -19,7 +19,7 @@ from core.ports import DriverError, Fault
 from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_link import HalLink
-from drivers.port_checks import require_free_drive, require_spindle_ready, require_stopped_spindle
+from drivers.port_checks import require_free_spindle_drive, require_spindle_ready, require_stopped_spindle
 from drivers.setpoint_queue import plan_axis_move
 
 _MODES = {0: 0, 1: 1, -1: 2}
@@ -29,7 +29,7 @@ _ANGLE_SETTLING_S = (
 _STANDSTILL_RPM = 2.0  # rpm
 
 
-class HalOrientation:
+class HalOrientingSpindle:
     """Port that orients the spindle on HAL (``core.ports.OrientingSpindle``).
 
     ``update`` is called once per cycle.
@@ -46,7 +46,7 @@ class HalOrientation:
         Raises DriverError if a fault is active or the E-stop chain is open. Also raises DriverError while
         the spindle turns, unless it is already being oriented.
         """
-        self._spindle.require_ready()
+        self._spindle.require_spindle_ready()
         require_stopped_spindle(self._order is None and _is_turning(self._spindle))
         self._since = None
         self._order = self._link.send_command("orient", on=True, angle=angle, mode=_MODES[direction])
@@ -62,11 +62,11 @@ class HalOrientation:
         since = self._since
         if since is None or self._axes.now() < since + _ANGLE_SETTLING_S:
             return False
-        return self._link.read_bit("spindle.is_oriented")
+        return self._link.read_bit_pin("spindle.is_oriented")
 
-    def update(self) -> None:
+    def update_orientation(self) -> None:
         """Detect when HAL starts to orient the spindle, and when the orientation has been canceled."""
-        if self._order is None or not self._link.is_executed(self._order):
+        if self._order is None or not self._link.is_command_executed(self._order):
             return
         goes = self._link.last_report.get("orients") is True
         if goes and self._since is None:
@@ -90,11 +90,11 @@ class HalSpindle:
         self.spindle_index = SpindleIndex(axes, link, wired=bool(config.spindle.pins.index_enable))
         self._unknown: tuple[float, float] | None = None  # Angle reported before the index is known.
 
-    def update(self) -> None:
+    def update_spindle(self) -> None:
         """Cancel the commanded speed if the E-stop chain is open, and update the index."""
         if self._link.last_report.get("ok") is not True:
             self.commanded_rpm = 0.0
-        self.spindle_index.update()
+        self.spindle_index.update_index()
 
     def set_speed(self, rpm: float) -> None:
         """Run the spindle at the signed speed ``rpm``; 0 stops it.
@@ -102,13 +102,13 @@ class HalSpindle:
         A speed other than 0 raises DriverError if a fault is active or the chain is open.
         """
         if rpm:
-            self.require_ready()
+            self.require_spindle_ready()
         limit = self._config.max_rpm
         self.commanded_rpm = min(max(rpm, -limit), limit)
         if not self._link.failure:
             self._link.send_command("spindle", rpm=self.commanded_rpm, on=bool(self.commanded_rpm))
 
-    def require_ready(self) -> None:
+    def require_spindle_ready(self) -> None:
         """Raise DriverError if the spindle has a fault or the E-stop chain is open."""
         require_spindle_ready(self.read_fault() or self._axes.fault)
         if self._link.last_report.get("ok") is not True:
@@ -136,7 +136,7 @@ class HalSpindle:
         pins = self._config.pins
         if pins.position or pins.velocity:
             return 60.0 * self._axes.spindle_rev_per_s
-        return self.commanded_rpm if self._link.read_bit("spindle.at_speed") else 0.0
+        return self.commanded_rpm if self._link.read_bit_pin("spindle.at_speed") else 0.0
 
     def read_angle(self) -> tuple[float, float] | None:
         """Return the time and the revolutions of the spindle encoder, or None without an encoder.
@@ -159,7 +159,7 @@ class HalSpindle:
             return why
         if self.spindle_index.failure:
             return self.spindle_index.failure
-        wrong = self._link.read_bit("spindle.fault")
+        wrong = self._link.read_bit_pin("spindle.fault")
         return Fault("the spindle drive reports a fault", "spindle") if wrong else ""
 
 
@@ -201,7 +201,7 @@ class SpindleIndex:
         if self.failure:
             self.discard_index()
 
-    def update(self) -> None:
+    def update_index(self) -> None:
         """Request the index when the spindle turns, and evaluate its position.
 
         This method is called once per cycle.
@@ -216,11 +216,15 @@ class SpindleIndex:
         elif self._fell is None:
             self._wait(t, turns)
         elif t > self._fell + _SETTLING_TIME_S:
-            self._axes.index_rev = self._link.read_number(f"{_PIN}-at")
+            self._axes.index_rev = self._link.read_number_pin(f"{_PIN}-at")
             self.is_known = True
 
     def _wait(self, t: float, turns: float) -> None:
-        if self._order is not None and self._link.is_executed(self._order) and not self._link.read_bit(_PIN):
+        if (
+            self._order is not None
+            and self._link.is_command_executed(self._order)
+            and not self._link.read_bit_pin(_PIN)
+        ):
             self._fell = t
         elif abs(turns - self._from) > _TURNS:
             self.failure = Fault(
@@ -241,7 +245,7 @@ _SLOW = 0.25  # Fraction of C's speed for the move to its position.
 _STOP_TIME_S = 0.05  # Seconds after a motion until it counts as complete.
 
 
-class HalSpindleCStep(Enum):
+class HalCAxisChangeStep(Enum):
     """Step of the change between spindle mode and C axis mode."""
 
     SPINDLE_MODE = "the drive is running as the spindle drive"
@@ -268,7 +272,7 @@ class HalSpindleCAxis:
         """
         self._axes, self._spindle, self._link = axes, spindle, link
         self._axis, self._told = axis, position_mode_pin
-        self.step = HalSpindleCStep.SPINDLE_MODE
+        self.step = HalCAxisChangeStep.SPINDLE_MODE
         self._orient = False
         self._since = 0.0
         self._order = 0
@@ -283,34 +287,34 @@ class HalSpindleCAxis:
         if not is_enabled:
             self._let_go()
             return
-        if self.step is not HalSpindleCStep.SPINDLE_MODE:
+        if self.step is not HalCAxisChangeStep.SPINDLE_MODE:
             return
-        require_free_drive(self._axes.sample().enabled, _is_turning(self._spindle))
+        require_free_spindle_drive(self._axes.sample().enabled, _is_turning(self._spindle))
         self._orient = should_orient
         if should_orient and not self._spindle.spindle_index.is_known:
             self._spindle.set_speed(_SEARCH)
-            self._enter(HalSpindleCStep.FIND_INDEX)
+            self._enter(HalCAxisChangeStep.FIND_INDEX)
         else:
             self._change()
 
     def is_c_ready(self) -> bool:
         """Return whether the C axis is engaged and may move."""
-        return self.step is HalSpindleCStep.ENGAGED
+        return self.step is HalCAxisChangeStep.ENGAGED
 
     # --- each cycle ---------------------------------------------------------------------------------------
 
-    def update(self) -> None:
+    def continue_mode_change(self) -> None:
         """Continue the change between spindle and C that is in progress."""
-        if self.step is HalSpindleCStep.SPINDLE_MODE:
+        if self.step is HalCAxisChangeStep.SPINDLE_MODE:
             return
         if self._link.is_state_unknown or not self._axes.sample().enabled:
             self._let_go()
             return
-        acts: dict[HalSpindleCStep, Callable[[], None]] = {
-            HalSpindleCStep.FIND_INDEX: self._search,
-            HalSpindleCStep.STOP: self._brake,
-            HalSpindleCStep.CHANGE_MODE: self._engage_c,
-            HalSpindleCStep.TURN_TO_POSITION: self._arrive,
+        acts: dict[HalCAxisChangeStep, Callable[[], None]] = {
+            HalCAxisChangeStep.FIND_INDEX: self._search,
+            HalCAxisChangeStep.STOP: self._brake,
+            HalCAxisChangeStep.CHANGE_MODE: self._engage_c,
+            HalCAxisChangeStep.TURN_TO_POSITION: self._arrive,
         }
         if self.step in acts:
             acts[self.step]()
@@ -318,7 +322,7 @@ class HalSpindleCAxis:
     def _search(self) -> None:
         if self._spindle.spindle_index.is_known:
             self._spindle.set_speed(0.0)
-            self._enter(HalSpindleCStep.STOP)
+            self._enter(HalCAxisChangeStep.STOP)
         elif self._late(_INDEX):
             self._fail("no spindle index pulse was detected")
 
@@ -330,12 +334,14 @@ class HalSpindleCAxis:
 
     def _change(self) -> None:
         self._order = self._link.send_command("c", on=True)
-        self._enter(HalSpindleCStep.CHANGE_MODE)
+        self._enter(HalCAxisChangeStep.CHANGE_MODE)
 
     def _engage_c(self) -> None:
         """Engage C as soon as HAL plays the spindle position as its setpoint and the drive follows."""
-        c_position = self._link.last_report.get("c_at") if self._link.is_executed(self._order) else None
-        if isinstance(c_position, float | int) and (not self._told or self._link.read_bit(self._told)):
+        c_position = (
+            self._link.last_report.get("c_at") if self._link.is_command_executed(self._order) else None
+        )
+        if isinstance(c_position, float | int) and (not self._told or self._link.read_bit_pin(self._told)):
             self._hold_at(float(c_position))
         elif self._late(_CHANGE):
             self._fail("the signal hal.spindle.in_position_mode does not turn on")
@@ -343,21 +349,21 @@ class HalSpindleCAxis:
     def _hold_at(self, raw: float) -> None:
         count = self._axes.sample().demand[self._axis]
         off = self._angle_to_position(count) if self._orient else 0.0
-        self._axes.transfer_c(None, raw, count - off)
+        self._axes.transfer_c_axis(None, raw, count - off)
         if abs(off) <= self._axes.config.axes[self._axis].count:
-            self._enter(HalSpindleCStep.ENGAGED)
+            self._enter(HalCAxisChangeStep.ENGAGED)
             return
         axis_config, now = self._axes.config.axes[self._axis], self._axes.now()
         place, _ = self._axes.demand_at(now)
         speed, begins = _SLOW * axis_config.vmax, now + self._axes.commit + 0.005
-        self._axes.splice_homing(
+        self._axes.splice_homing_move(
             plan_axis_move(begins, place, self._axis, target=count, speed=speed, accel=axis_config.amax)
         )
-        self._enter(HalSpindleCStep.TURN_TO_POSITION)
+        self._enter(HalCAxisChangeStep.TURN_TO_POSITION)
 
     def _arrive(self) -> None:
         if self._axes.is_at_rest and self._axes.now() > self._since + _STOP_TIME_S:
-            self._enter(HalSpindleCStep.ENGAGED)
+            self._enter(HalCAxisChangeStep.ENGAGED)
 
     def _angle_to_position(self, count: float) -> float:
         """Return the shortest angle, in degrees, through which the spindle must turn to the C count."""
@@ -366,14 +372,14 @@ class HalSpindleCAxis:
         return math.remainder(count - phase, _DEGREES_PER_REV)
 
     def _let_go(self) -> None:
-        if self.step is HalSpindleCStep.SPINDLE_MODE:
+        if self.step is HalCAxisChangeStep.SPINDLE_MODE:
             return
-        if self.step in {HalSpindleCStep.FIND_INDEX, HalSpindleCStep.STOP} and not self._link.failure:
+        if self.step in {HalCAxisChangeStep.FIND_INDEX, HalCAxisChangeStep.STOP} and not self._link.failure:
             self._spindle.set_speed(0.0)
-        self._axes.transfer_c(self._axis)
+        self._axes.transfer_c_axis(self._axis)
         if not self._link.failure:
             self._link.send_command("c", on=False)
-        self._enter(HalSpindleCStep.SPINDLE_MODE)
+        self._enter(HalCAxisChangeStep.SPINDLE_MODE)
 
     def _fail(self, why: str) -> None:
         self._let_go()
@@ -382,7 +388,7 @@ class HalSpindleCAxis:
     def _late(self, longest: float) -> bool:
         return self._axes.now() > self._since + longest
 
-    def _enter(self, step: HalSpindleCStep) -> None:
+    def _enter(self, step: HalCAxisChangeStep) -> None:
         self.step, self._since = step, self._axes.now()
-        self._spindle.is_used_as_c = step is not HalSpindleCStep.SPINDLE_MODE
-        self._axes.is_c_turning = step is HalSpindleCStep.TURN_TO_POSITION
+        self._spindle.is_used_as_c = step is not HalCAxisChangeStep.SPINDLE_MODE
+        self._axes.is_c_turning = step is HalCAxisChangeStep.TURN_TO_POSITION

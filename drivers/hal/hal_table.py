@@ -20,7 +20,7 @@ from core.table_schema import (
     DriverTable,
     FileFinding,
     MachineFileReading,
-    TableReference,
+    TableDescription,
     read_axes_and_spindle,
 )
 
@@ -163,16 +163,17 @@ def _read(file: MachineFileReading) -> Iterator[FileFinding]:
 def _pin_tables(file: MachineFileReading) -> dict[str, object]:
     """Return the nested tables of the axes and the spindle."""
     axes = {
-        name: file.values.make_model(HalAxisPins, f"{_AXES}.{name}") for name in file.list_table_keys(_AXES)
+        name: file.file_values.make_model(HalAxisPins, f"{_AXES}.{name}")
+        for name in file.list_table_keys(_AXES)
     }
-    return {"axes": axes, "spindle": file.values.make_model(HalSpindlePins, _SPINDLE)}
+    return {"axes": axes, "spindle": file.file_values.make_model(HalSpindlePins, _SPINDLE)}
 
 
 def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
     if "hal" not in file.tables:
         return
     yield from _check_names(file)
-    if not file.values.has_text("machine.backend", "hal"):
+    if not file.file_values.has_text("machine.backend", "hal"):
         return
     yield from _check_shared_inputs(file)
     yield from _check_link(file)
@@ -194,7 +195,7 @@ def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
 
 def _iterate_pins(file: MachineFileReading) -> Iterator[tuple[str, str]]:
     """Yield every pin that the machine file names, with its path."""
-    values = file.values
+    values = file.file_values
     places = ["hal.machine_on", "hal.charge_pump", "hal.link_fault"]
     places += [
         f"{_AXES}.{axis}.{each.name}" for axis in file.list_table_keys(_AXES) for each in fields(HalAxisPins)
@@ -217,7 +218,7 @@ def _check_names(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield findings about invalid pin names, and about pins that two sources would drive."""
     driven: dict[str, str] = {}
     for path, pin in _iterate_pins(file):
-        ours = path.startswith("hal.") or file.values.has_text("machine.backend", "hal")
+        ours = path.startswith("hal.") or file.file_values.has_text("machine.backend", "hal")
         if ours and not _PIN.fullmatch(pin):
             yield FileFinding(
                 path, format_toml_value(pin), 'expected the name of a HAL pin, for example "pid.x.command"'
@@ -259,13 +260,13 @@ def _check_link(file: MachineFileReading) -> Iterator[FileFinding]:
 
     The value of such an input freezes if the cable is disconnected.
     """
-    if not file.values.has_values("hal.link_fault") or file.values.text("hal.link_fault"):
+    if not file.file_values.has_values("hal.link_fault") or file.file_values.text("hal.link_fault"):
         return
     read = (
         pin for path, pin in _iterate_pins(file) if not _DRIVEN_PATTERN.fullmatch(path.removesuffix(".at"))
     )
     frozen = next((pin for pin in read if _CABLE_PIN_PATTERN.fullmatch(pin)), "")
-    board = any(file.values.has_text("board.kind", kind) for kind in _CABLE_BOARDS)
+    board = any(file.file_values.has_text("board.kind", kind) for kind in _CABLE_BOARDS)
     if frozen or board:
         why = Message(
             "the last value from {frozen} is retained while the board's cable is disconnected",
@@ -282,7 +283,7 @@ _CABLE_BOARDS = ("mesa-7i76e", "mesa-7i97", "ethercat")
 
 
 def _all_axes(file: MachineFileReading) -> Iterator[FileFinding]:
-    values = file.values
+    values = file.file_values
     for axis in file.axes:
         on = axis != "C" or (values.has_values("axis.C.enabled") and values.read_flag("axis.C.enabled"))
         there = axis in file.list_table_keys(_AXES) or f"{_AXES}.{axis}" in values.invalid_paths
@@ -298,7 +299,7 @@ def _all_axes(file: MachineFileReading) -> Iterator[FileFinding]:
 
 def _check_spindle_as_c(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield findings about missing pins for C on the spindle drive."""
-    values = file.values
+    values = file.file_values
     own = values.has_values("axis.C.own_drive") and values.read_flag("axis.C.own_drive")
     if (
         own
@@ -318,7 +319,7 @@ def _check_spindle_as_c(file: MachineFileReading) -> Iterator[FileFinding]:
 
 def _check_spindle_pins(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield findings about missing command or feedback pins of a spindle that HAL drives."""
-    values = file.values
+    values = file.file_values
     paths = {each.name: f"{_SPINDLE}.{each.name}" for each in fields(HalSpindlePins)}
     if not values.has_values(*paths.values()):
         return
@@ -348,7 +349,7 @@ def _check_spindle_pins(file: MachineFileReading) -> Iterator[FileFinding]:
 
 def _check_orientation(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield findings about missing pins of a spindle that HAL orients."""
-    values = file.values
+    values = file.file_values
     if not values.has_values("spindle.oriented") or not values.read_flag("spindle.oriented"):
         return
     if not values.has_text("spindle.driver", "hal"):
@@ -366,7 +367,7 @@ def _check_orientation(file: MachineFileReading) -> Iterator[FileFinding]:
 
 def _check_homing(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield findings about the homing method, offset and pins of each axis."""
-    values = file.values
+    values = file.file_values
     for axis in file.list_table_keys(_AXES):
         path, pins = f"axis.{axis}.home.method", f"{_AXES}.{axis}"
         if not values.has_values(path):
@@ -414,7 +415,7 @@ def _check_homing(file: MachineFileReading) -> Iterator[FileFinding]:
 
 def _axis_with_same_switch(file: MachineFileReading, axis: str) -> str:
     """Return the key of another axis whose home switch uses the same input, or an empty string."""
-    values = file.values
+    values = file.file_values
     homes = {each: f"{_AXES}.{each}.home" for each in file.list_table_keys(_AXES)}
     pins = {each: values.text(path) for each, path in homes.items() if values.has_values(path)}
     own = pins.get(axis)
@@ -423,7 +424,7 @@ def _axis_with_same_switch(file: MachineFileReading, axis: str) -> str:
 
 def _read_pin(file: MachineFileReading, text: str) -> object:
     """Return a pin name without surrounding spaces, or None if the backend is not HAL."""
-    return text.strip() if file.values.has_text("machine.backend", "hal") else None
+    return text.strip() if file.file_values.has_text("machine.backend", "hal") else None
 
 
 DRIVER = DriverDeclaration(
@@ -439,14 +440,14 @@ DRIVER = DriverDeclaration(
             "directions of the HAL pin. With [board], a name without a dot is a signal of the "
             "generated HAL file.",
             sub_tables=(
-                TableReference(
+                TableDescription(
                     "hal.axes.…",
                     "HAL pins of one axis; the last word of the heading is the axis name. "
                     "Positions are in mm (X: a radius) or degrees. The homing method decides which "
                     "switches are required.",
                     HalAxisPins,
                 ),
-                TableReference("hal.spindle", "HAL pins of the spindle.", HalSpindlePins),
+                TableDescription("hal.spindle", "HAL pins of the spindle.", HalSpindlePins),
             ),
         ),
     ),

@@ -13,18 +13,18 @@ _SPEED_DROP_FRACTION = 0.005  # Fraction of the speed by which it must fall at l
 PRESS_ESTOP_TEXT = "PRESS E-STOP"
 
 
-def add_estop_request(reason: str) -> str:
+def append_estop_instruction(reason: str) -> str:
     """Return the fault text with the request to press the E-stop appended."""
     return Message("{why}: {press}", why=reason, press=PRESS_ESTOP_TEXT)
 
 
-class CommandMonitor:
+class InverterCommandMonitor:
     """Monitor that checks whether an inverter follows its commands.
 
-    ``record_command`` records a command, and ``check_poll`` checks a poll. On a slow line, the values of a
-    poll are as old as the duration of its exchange. The one second that the inverter has to react therefore
-    starts after the exchange, and a decreasing speed is compared with the first poll after the command.
-    ``setpoint_step_hz`` is the resolution of the reported setpoint in Hz.
+    ``record_command`` records a command, and ``check_polled_state`` checks a poll. On a slow line, the
+    values of a poll are as old as the duration of its exchange. The one second that the inverter has to
+    react therefore starts after the exchange, and a decreasing speed is compared with the first poll after
+    the command. ``setpoint_step_hz`` is the resolution of the reported setpoint in Hz.
     """
 
     def __init__(self, setpoint_step_hz: float = 0.01) -> None:
@@ -50,7 +50,7 @@ class CommandMonitor:
         if self._since is None:
             self._since = time_s
 
-    def check_poll(self, time_s: float, state: InverterState, exchange_s: float = 0.0) -> str:
+    def check_polled_state(self, time_s: float, state: InverterState, exchange_s: float = 0.0) -> str:
         """Return a fault text if the inverter has not followed its command in time, else an empty string.
 
         The permitted time is one second plus ``exchange_s``, the duration of one exchange in seconds.
@@ -73,7 +73,7 @@ class CommandMonitor:
             if self._asked == 0.0
             else self._describe_setpoint_error(look) or self._describe_rotation_error(look)
         )
-        return add_estop_request(why) if why else ""
+        return append_estop_instruction(why) if why else ""
 
     def _standing(self, look: InverterState) -> str:
         if look.output_hz > STANDSTILL_HZ and (look.is_running or not self._is_decelerating(look)):
@@ -114,7 +114,7 @@ class CommandMonitor:
 
         The speed must decrease toward a lower setpoint or before a reversal.
         """
-        back = state.is_reverse != (self._asked < 0.0) and state.output_hz > STANDSTILL_HZ
+        back = state.is_reverse_direction != (self._asked < 0.0) and state.output_hz > STANDSTILL_HZ
         if back and not self._is_decelerating(state):
             return "the inverter runs in the direction opposite to its command"
         if (
@@ -144,7 +144,7 @@ _DEVIATION_TIME_S = 1.0  # Seconds for which both must differ.
 _SLACK_RPM = 30.0  # rpm
 
 
-class SpeedComparison:
+class SpeedComparator:
     """A comparison of the speeds of the encoder and the inverter.
 
     ``max_difference`` is the permitted relative difference.

@@ -17,26 +17,26 @@ from core.key_declaration import get_declared_keys
 from core.message import Message, join_messages
 from core.ports import DriverError
 from core.secret_values import format_toml_value
-from core.table_schema import FileFinding, FileValues, join_path, make_table_finding, read_table
+from core.table_schema import FileFinding, FileValues, join_path, make_table_finding, read_table_values
 from drivers.inverter import family_rules
 from drivers.inverter.family_table import (
     COMMAND_NAMES,
     MODBUS,
     STATE_NAMES,
-    CodeKeys,
     CommandKeys,
-    CurrentKeys,
     FamilyKeys,
     FamilyTable,
+    FaultCodeKeys,
     FrequencyKeys,
     LimitKeys,
-    LineKeys,
+    MaxFrequencyKeys,
+    OutputCurrentKeys,
     ParameterKeys,
-    ReadKeys,
+    ReadRequestKeys,
     RegisterTable,
+    SerialLineKeys,
     StateKeys,
-    TopKeys,
-    WriteKeys,
+    WriteRequestKeys,
 )
 from drivers.inverter.inverter_table import FAMILY_FOLDER, FAMILY_NAMES
 
@@ -44,18 +44,18 @@ if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
 _KeyClass = TypeVar("_KeyClass", bound="DataclassInstance")
-_OPTIONAL_TABLES = {"highest": TopKeys, "limits": LimitKeys}
+_OPTIONAL_TABLES = {"highest": MaxFrequencyKeys, "limits": LimitKeys}
 _REPORT_TABLES: Mapping[str, type] = {
     "output": FrequencyKeys,
     "setpoint": FrequencyKeys,
-    "current": CurrentKeys,
+    "current": OutputCurrentKeys,
     **dict.fromkeys(STATE_NAMES, StateKeys),
-    "fault_code": CodeKeys,
+    "fault_code": FaultCodeKeys,
 }
 _MODBUS_TABLES = ("frequency", "command", "read", "report", "faults")
 
 
-def load_family(name: str, folder: Path) -> FamilyTable:
+def load_inverter_family(name: str, folder: Path) -> FamilyTable:
     """Return a shipped family by its name, or the family in a file in ``folder``.
 
     Raises DriverError in the same cases as ``read_family_file``.
@@ -142,8 +142,8 @@ class _FamilyReader:
         self.findings: list[FileFinding] = []
         self._modbus = data.get("protocol") != "huanyang"
         children = ("line", "parameter", *_OPTIONAL_TABLES, *(_MODBUS_TABLES if self._modbus else ()))
-        self.findings += read_table(data, FamilyKeys, "", self._values, children)
-        self._table("line", LineKeys)
+        self.findings += read_table_values(data, FamilyKeys, "", self._values, children)
+        self._table("line", SerialLineKeys)
         self._read_rows("parameter", ParameterKeys)
         for path, keys in _OPTIONAL_TABLES.items():
             if path in data:
@@ -155,8 +155,10 @@ class _FamilyReader:
         self._table("frequency", FrequencyKeys)
         self._table("command", CommandKeys, COMMAND_NAMES)
         for name in COMMAND_NAMES if self._is_table("command") else ():
-            self._read_rows(f"command.{name}", WriteKeys, self._data["command"].get(name), is_required=True)
-        self._read_rows("read", ReadKeys, is_required=True)
+            self._read_rows(
+                f"command.{name}", WriteRequestKeys, self._data["command"].get(name), is_required=True
+            )
+        self._read_rows("read", ReadRequestKeys, is_required=True)
         self._table("report", (), tuple(_REPORT_TABLES))
         for name, keys in _REPORT_TABLES.items() if self._is_table("report") else ():
             if name != "fault" or name in self._data["report"]:
@@ -176,7 +178,7 @@ class _FamilyReader:
         if raw is None:
             self.findings.append(FileFinding(path, "", "this table is missing; add the table", "missing"))
         else:
-            self.findings += read_table(raw, keys, path, self._values, children)
+            self.findings += read_table_values(raw, keys, path, self._values, children)
 
     def _read_rows(self, path: str, keys: type, raw: object = None, *, is_required: bool = False) -> None:
         """Read a list of tables.
@@ -191,7 +193,7 @@ class _FamilyReader:
             )
             return
         for number, row in enumerate(raw, 1):
-            self.findings += read_table(row, keys, f"{path}[{number}]", self._values)
+            self.findings += read_table_values(row, keys, f"{path}[{number}]", self._values)
 
     def _read_faults(self, raw: Mapping[str, Any]) -> None:
         for key, text in raw.items():
@@ -217,26 +219,28 @@ class _FamilyReader:
         return FamilyTable(
             name=self._values.text("name"),
             protocol=self._values.text("protocol"),
-            line=self._values.make_model(LineKeys, "line"),
+            serial_line=self._values.make_model(SerialLineKeys, "line"),
             parameters=self._models("parameter", ParameterKeys),
-            max_frequency_parameter=self._optional("highest", TopKeys),
-            limits=self._optional("limits", LimitKeys) or LimitKeys(),
-            registers=self._registers() if self._values.has_text("protocol", MODBUS) else None,
+            max_frequency_parameter=self._optional("highest", MaxFrequencyKeys),
+            inverter_limits=self._optional("limits", LimitKeys) or LimitKeys(),
+            register_table=self._registers() if self._values.has_text("protocol", MODBUS) else None,
         )
 
     def _registers(self) -> RegisterTable:
         values, states = self._values, [name for name in STATE_NAMES if name in self._data["report"]]
         return RegisterTable(
-            frequency=values.make_model(FrequencyKeys, "frequency"),
+            commanded_frequency=values.make_model(FrequencyKeys, "frequency"),
             command_settings=values.make_model(CommandKeys, "command"),
-            commands={name: self._models(f"command.{name}", WriteKeys) for name in COMMAND_NAMES},
-            reads=self._models("read", ReadKeys),
-            output=values.make_model(FrequencyKeys, "report.output"),
-            setpoint=values.make_model(FrequencyKeys, "report.setpoint"),
-            current=values.make_model(CurrentKeys, "report.current"),
-            states={name: values.make_model(StateKeys, f"report.{name}") for name in states},
-            fault_code=values.make_model(CodeKeys, "report.fault_code"),
-            faults=self._faults,
+            command_writes={
+                name: self._models(f"command.{name}", WriteRequestKeys) for name in COMMAND_NAMES
+            },
+            read_requests=self._models("read", ReadRequestKeys),
+            output_frequency=values.make_model(FrequencyKeys, "report.output"),
+            reported_setpoint=values.make_model(FrequencyKeys, "report.setpoint"),
+            output_current=values.make_model(OutputCurrentKeys, "report.current"),
+            state_conditions={name: values.make_model(StateKeys, f"report.{name}") for name in states},
+            fault_code=values.make_model(FaultCodeKeys, "report.fault_code"),
+            fault_texts=self._faults,
         )
 
     def _optional(self, path: str, keys: type[_KeyClass]) -> _KeyClass | None:

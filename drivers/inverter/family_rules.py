@@ -14,10 +14,10 @@ from drivers.inverter.family_table import (
     ABSENT_REGISTER,
     FamilyTable,
     ParameterKeys,
-    ReadKeys,
+    ReadRequestKeys,
     RegisterTable,
     StateKeys,
-    WriteKeys,
+    WriteRequestKeys,
 )
 
 _PARITIES = {"N", "E", "O"}
@@ -27,12 +27,12 @@ RegisterAddress = tuple[str, int]  # "register" or "coil", and its number
 
 def check_family(table: FamilyTable) -> Iterator[FileFinding]:
     """Yield findings about invalid or contradictory values in a table whose types are correct."""
-    said = table.line.parity.split()
+    said = table.serial_line.parity.split()
     if not said or not set(said) <= _PARITIES:
         yield _finding("line.parity", 'expected one or more of "N", "E" and "O"')
     yield from _parameters(table.parameters)
-    if table.registers is not None:
-        yield from _registers(table.registers)
+    if table.register_table is not None:
+        yield from _registers(table.register_table)
 
 
 def _finding(path: str, text: str) -> FileFinding:
@@ -59,29 +59,31 @@ def _used(path: str, register: int, first: str) -> FileFinding:
 
 def _registers(table: RegisterTable) -> Iterator[FileFinding]:
     read: dict[RegisterAddress, str] = {}
-    for number, each in enumerate(table.reads, 1):
+    for number, each in enumerate(table.read_requests, 1):
         yield from _read(each, f"read[{number}]", read)
-    written = {table.frequency.register + n: "frequency" for n in range(table.frequency.words)}
-    for name, writes in table.commands.items():
+    written = {
+        table.commanded_frequency.register + n: "frequency" for n in range(table.commanded_frequency.words)
+    }
+    for name, writes in table.command_writes.items():
         for number, write in enumerate(writes, 1):
             yield from _write(write, f"command.{name}[{number}]", written)
-    for name, state in table.states.items():
+    for name, state in table.state_conditions.items():
         yield from _state(state, f"report.{name}", read)
     yield from _reported(table, read)
     yield from _code(table)
 
 
-def _one_kind(each: ReadKeys | WriteKeys | StateKeys, path: str) -> Iterator[FileFinding]:
+def _one_kind(each: ReadRequestKeys | WriteRequestKeys | StateKeys, path: str) -> Iterator[FileFinding]:
     if (each.register == ABSENT_REGISTER) is (each.coil == ABSENT_REGISTER):
         yield _finding(path, "expected either register or coil; use one of them")
 
 
-def _addresses(each: ReadKeys | StateKeys, count: int = 1) -> list[RegisterAddress]:
+def _addresses(each: ReadRequestKeys | StateKeys, count: int = 1) -> list[RegisterAddress]:
     kind, first = ("coil", each.coil) if each.register == ABSENT_REGISTER else ("register", each.register)
     return [(kind, first + n) for n in range(count)]
 
 
-def _read(each: ReadKeys, path: str, read: dict[RegisterAddress, str]) -> Iterator[FileFinding]:
+def _read(each: ReadRequestKeys, path: str, read: dict[RegisterAddress, str]) -> Iterator[FileFinding]:
     yield from _one_kind(each, path)
     addresses = _addresses(each, each.count)
     if addresses[-1][1] > 0xFFFF:
@@ -91,7 +93,7 @@ def _read(each: ReadKeys, path: str, read: dict[RegisterAddress, str]) -> Iterat
     read |= dict.fromkeys(addresses, path)
 
 
-def _write(each: WriteKeys, path: str, written: dict[int, str]) -> Iterator[FileFinding]:
+def _write(each: WriteRequestKeys, path: str, written: dict[int, str]) -> Iterator[FileFinding]:
     yield from _one_kind(each, path)
     if (each.register == ABSENT_REGISTER) is not (each.value == ABSENT_REGISTER):
         yield _finding(path, "a register needs a value, and a coil needs on; correct the keys")
@@ -109,10 +111,10 @@ def _state(state: StateKeys, path: str, read: dict[RegisterAddress, str]) -> Ite
 
 
 def _reported(table: RegisterTable, read: dict[RegisterAddress, str]) -> Iterator[FileFinding]:
-    for name, each in (("output", table.output), ("setpoint", table.setpoint)):
+    for name, each in (("output", table.output_frequency), ("setpoint", table.reported_setpoint)):
         addresses = [("register", each.register + n) for n in range(each.words)]
         yield from _unread(f"report.{name}", addresses, read)
-    yield from _unread("report.current", [("register", table.current.register)], read)
+    yield from _unread("report.current", [("register", table.output_current.register)], read)
 
 
 def _unread(
@@ -127,6 +129,6 @@ def _unread(
 def _code(table: RegisterTable) -> Iterator[FileFinding]:
     if not _CODE_FORMAT_PATTERN.fullmatch(table.fault_code.shown):
         yield _finding("report.fault_code.shown", "expected text with one {code}, {code:02d} or {code:04X}")
-    if "fault" not in table.states and not table.is_fault_code_polled:
+    if "fault" not in table.state_conditions and not table.is_fault_code_polled:
         text = "a fault code that is not in any read needs report.fault; add the fault state or the read"
         yield _finding("report.fault_code", text)

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from core.key_declaration import FileUnit, KeyRange, Pair, Words, declare_key, make_key_table
-from core.table_schema import TableReference
+from core.table_schema import TableDescription
 
 MODBUS, HUANYANG = "modbus", "huanyang"
 _ADDRESS = KeyRange(0, 0xFFFF)
@@ -29,7 +29,7 @@ class FamilyKeys:
 
 
 @make_key_table
-class LineKeys:
+class SerialLineKeys:
     """The serial line settings that the inverter supports."""
 
     baud: Pair = declare_key(KeyRange(110, 1_000_000), meaning="Lowest and highest bit rate.")
@@ -78,7 +78,7 @@ class FrequencyKeys:
 
 
 @make_key_table
-class CurrentKeys:
+class OutputCurrentKeys:
     """The register that contains the output current."""
 
     register: int = declare_key(_ADDRESS, meaning="Address of the register.")
@@ -106,7 +106,7 @@ class StateKeys:
 
 
 @make_key_table
-class CodeKeys:
+class FaultCodeKeys:
     """The register that contains the fault code; 0 means no fault."""
 
     register: int = declare_key(_ADDRESS, meaning="Address of the register.")
@@ -118,7 +118,7 @@ class CodeKeys:
 
 
 @make_key_table
-class ReadKeys:
+class ReadRequestKeys:
     """A read request of each poll."""
 
     register: int = declare_key(_ADDRESS, default=ABSENT_REGISTER, meaning="Address of the first register.")
@@ -129,7 +129,7 @@ class ReadKeys:
 
 
 @make_key_table
-class WriteKeys:
+class WriteRequestKeys:
     """A write request of a command."""
 
     register: int = declare_key(_ADDRESS, default=ABSENT_REGISTER, meaning="Address of the register.")
@@ -151,7 +151,7 @@ class CommandKeys:
     reset_tries: int = declare_key(
         KeyRange(1, 3), default=3, meaning="Number of times that a reset is sent without a response."
     )
-    reset_pause: float = declare_key(
+    reset_pause_s: float = declare_key(
         KeyRange(0.0, 3.0, FileUnit.SECONDS),
         name="reset_pause_s",
         default=0.0,
@@ -178,7 +178,7 @@ class ParameterKeys:
 
 
 @make_key_table
-class TopKeys:
+class MaxFrequencyKeys:
     """Parameter of the inverter that limits its output frequency."""
 
     name: str = declare_key(meaning="Number of the parameter at the keypad.")
@@ -199,8 +199,8 @@ STATE_NAMES = ("run", "reverse", "asked_reverse", "fault")
 COMMAND_NAMES = ("stop", "forward", "reverse", "reset")
 
 
-def _table(path: str, keys: type, *, purpose: str) -> TableReference:
-    return TableReference(f"{path} of a family file", purpose, keys)
+def _table(path: str, keys: type, *, purpose: str) -> TableDescription:
+    return TableDescription(f"{path} of a family file", purpose, keys)
 
 
 # Tables of a family file, for the reference of the machine file.
@@ -214,7 +214,7 @@ FAMILY_TABLES = (
     _table(
         "line",
         purpose="The serial line. The machine file selects the settings.",
-        keys=LineKeys,
+        keys=SerialLineKeys,
     ),
     _table(
         "frequency",
@@ -230,12 +230,12 @@ FAMILY_TABLES = (
     _table(
         "command.stop",
         purpose="One write of a command; `forward`, `reverse` and `reset` are alike.",
-        keys=WriteKeys,
+        keys=WriteRequestKeys,
     ),
     _table(
         "read",
         purpose="One read, `[[read]]`. TurnDesk sends all reads in their order, one request for each.",
-        keys=ReadKeys,
+        keys=ReadRequestKeys,
     ),
     _table(
         "report.output",
@@ -246,7 +246,7 @@ FAMILY_TABLES = (
     _table(
         "report.current",
         purpose="The output current.",
-        keys=CurrentKeys,
+        keys=OutputCurrentKeys,
     ),
     _table(
         "report.run",
@@ -259,7 +259,7 @@ FAMILY_TABLES = (
         "report.fault_code",
         purpose="The fault code. If it is not in a read, TurnDesk reads it when `fault` is on. The "
         'optional table `[faults]` has a text for each code, such as `0x07 = "over-current"`.',
-        keys=CodeKeys,
+        keys=FaultCodeKeys,
     ),
     _table(
         "parameter",
@@ -269,7 +269,7 @@ FAMILY_TABLES = (
     _table(
         "highest",
         purpose="The parameter with the highest output frequency. Optional.",
-        keys=TopKeys,
+        keys=MaxFrequencyKeys,
     ),
     _table(
         "limits",
@@ -283,16 +283,16 @@ FAMILY_TABLES = (
 class RegisterTable:
     """The registers and coils of an inverter on Modbus, with commands by name and fault texts by code."""
 
-    frequency: FrequencyKeys
+    commanded_frequency: FrequencyKeys
     command_settings: CommandKeys
-    commands: Mapping[str, tuple[WriteKeys, ...]]
-    reads: tuple[ReadKeys, ...]
-    output: FrequencyKeys
-    setpoint: FrequencyKeys
-    current: CurrentKeys
-    states: Mapping[str, StateKeys]
-    fault_code: CodeKeys
-    faults: Mapping[int, str]
+    command_writes: Mapping[str, tuple[WriteRequestKeys, ...]]
+    read_requests: tuple[ReadRequestKeys, ...]
+    output_frequency: FrequencyKeys
+    reported_setpoint: FrequencyKeys
+    output_current: OutputCurrentKeys
+    state_conditions: Mapping[str, StateKeys]
+    fault_code: FaultCodeKeys
+    fault_texts: Mapping[int, str]
 
     @property
     def is_fault_code_polled(self) -> bool:
@@ -302,7 +302,7 @@ class RegisterTable:
         """
         return any(
             each.register <= self.fault_code.register < each.register + each.count
-            for each in self.reads
+            for each in self.read_requests
             if each.register != ABSENT_REGISTER
         )
 
@@ -311,26 +311,29 @@ class RegisterTable:
 class FamilyTable:
     """An inverter family.
 
-    ``registers`` is None for a family that does not use Modbus.
+    ``register_table`` is None for a family that does not use Modbus.
     """
 
     name: str
     protocol: str
-    line: LineKeys
+    serial_line: SerialLineKeys
     parameters: tuple[ParameterKeys, ...] = ()
-    max_frequency_parameter: TopKeys | None = None
-    limits: LimitKeys = field(default_factory=LimitKeys)
-    registers: RegisterTable | None = None
+    max_frequency_parameter: MaxFrequencyKeys | None = None
+    inverter_limits: LimitKeys = field(default_factory=LimitKeys)
+    register_table: RegisterTable | None = None
 
     @property
     def max_hz(self) -> float:
         """Return the highest output frequency in Hz that can be commanded."""
-        own = self.registers.frequency.max_hz if self.registers else 0xFFFF / 100.0
-        return min(own, self.limits.max_hz or own)
+        own = self.register_table.commanded_frequency.max_hz if self.register_table else 0xFFFF / 100.0
+        return min(own, self.inverter_limits.max_hz or own)
 
     @property
     def setpoint_step_hz(self) -> float:
         """Return the resolution of the reported setpoint in Hz."""
-        if self.registers is None:
+        if self.register_table is None:
             return 0.01
-        return 1.0 / min(self.registers.frequency.counts_per_hz, self.registers.setpoint.counts_per_hz)
+        return 1.0 / min(
+            self.register_table.commanded_frequency.counts_per_hz,
+            self.register_table.reported_setpoint.counts_per_hz,
+        )

@@ -18,14 +18,14 @@ from collections.abc import Callable, Iterator
 
 from core.ports import Clock
 from drivers.inverter.family_table import FamilyTable
-from drivers.inverter.inverter_family import InverterState, write_and_check
+from drivers.inverter.inverter_family import InverterState, write_and_check_parameters
 from drivers.inverter.modbus_rtu import (
     REQUEST_INTERVAL_S,
     NoResponseError,
     RequestWithheldError,
     append_crc,
     has_valid_crc,
-    return_false,
+    report_no_pending_stop,
 )
 from drivers.serial_line import SerialTransport
 
@@ -52,7 +52,7 @@ class HuanyangInverter:
         self._gap = max(3.5 * character_s, 0.00175)
         self._free = clock.now()
         self._word = _HALT
-        self.is_stop_pending: Callable[[], bool] = return_false
+        self.is_stop_pending: Callable[[], bool] = report_no_pending_stop
         self._good = 0
 
     @property
@@ -65,14 +65,14 @@ class HuanyangInverter:
 
         Parameters are never written. The inverter has no communication timeout.
         """
-        return write_and_check(self._table, comm_timeout_s, max_hz, self._parameter, _reject_write)
+        return write_and_check_parameters(self._table, comm_timeout_s, max_hz, self._parameter, _reject_write)
 
-    def stop(self) -> None:
+    def stop_motor(self) -> None:
         """Stop the motor by the inverter's ramp, which requires PD026 = 0."""
         self._word = _HALT
         self._control()
 
-    def command_hz(self, hz: float) -> None:
+    def command_frequency_hz(self, hz: float) -> None:
         """Send the frequency in Hz, and then the run command.
 
         A negative frequency runs the motor in reverse.
@@ -98,7 +98,7 @@ class HuanyangInverter:
             output_hz=values[1] / 100.0,
             setpoint_hz=values[0] / 100.0,
             is_running=bool(state & 0x01),
-            is_reverse=bool(state & 0x20),
+            is_reverse_direction=bool(state & 0x20),
             is_reverse_commanded=bool(state & 0x04),
             current_a=values[2] / 10.0,
         )
@@ -108,7 +108,7 @@ class HuanyangInverter:
 
         Without a trip, the stop makes the inverter ready again.
         """
-        self.stop()
+        self.stop_motor()
 
     def close(self) -> None:
         """Close the serial line of the inverter."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from core.message import Message
 from core.ports import Clock, DriverError, Fault, FaultCode
-from drivers.inverter.command_monitor import STANDSTILL_HZ, CommandMonitor, add_estop_request
+from drivers.inverter.command_monitor import STANDSTILL_HZ, InverterCommandMonitor, append_estop_instruction
 from drivers.inverter.inverter_family import InverterFamily, InverterState
 from drivers.inverter.modbus_rtu import NoResponseError, RequestRejectedError, RequestWithheldError
 from drivers.serial_line import SerialLineError
@@ -32,12 +32,12 @@ _RESTART_TIME_S = 3.0  # Seconds in which an inverter may be silent after a rese
 class PolledState:
     """State of the inverter from the last poll, with the time of the poll.
 
-    When the poll began, all commands that were issued before ``commands_sent_before_s`` had been sent.
+    When the poll began, all commands that were issued before ``command_cutoff_time_s`` had been sent.
     """
 
     time_s: float
-    state: InverterState
-    commands_sent_before_s: float = 0.0
+    inverter_state: InverterState
+    command_cutoff_time_s: float = 0.0
 
 
 class InverterControl:
@@ -61,7 +61,7 @@ class InverterControl:
         self._want = 0.0
         self._told: float | None = None  # None: no command since the line was opened.
         self._stops = self._stopped = 0  # Number of commanded stops, and of those that the inverter has.
-        self._obedience = CommandMonitor(self._step)
+        self._obedience = InverterCommandMonitor(self._step)
         self._family: InverterFamily | None = None
         self._retry = 0.0
         self._began = self._began_before = clock.now()  # Start times of the present and the last exchange.
@@ -88,7 +88,7 @@ class InverterControl:
         self._want = hz
 
     @property
-    def is_trusted(self) -> bool:
+    def is_inverter_trusted(self) -> bool:
         """Return whether the inverter has sent enough valid responses to be trusted."""
         return (
             self._family is not None
@@ -118,9 +118,9 @@ class InverterControl:
         The delay is caused by the line.
         """
         seen = self.last_poll
-        return self._clock.now() - seen.commands_sent_before_s if seen is not None else 0.0
+        return self._clock.now() - seen.command_cutoff_time_s if seen is not None else 0.0
 
-    def open_and_check(self) -> None:
+    def open_and_check_line(self) -> None:
         """Open the line, stop the inverter, check it, and poll until it is trusted.
 
         Raises DriverError if one of these steps fails.
@@ -128,7 +128,7 @@ class InverterControl:
         self._prepare()
         for _ in range(_MAX_POLLS):
             self._look()
-            if self.is_trusted:
+            if self.is_inverter_trusted:
                 return
         raise DriverError(
             "the inverter did not send {warm_up} valid responses in a row: {missed}",
@@ -164,7 +164,7 @@ class InverterControl:
         self._reset = True
         self.failure = ""
 
-    def discard_state(self) -> None:
+    def discard_polled_state(self) -> None:
         """Discard the known state of the inverter and permit silence until it has restarted."""
         self.clear_fault()
         self._told, self.last_poll, self.silence_allowed_until = (
@@ -178,7 +178,7 @@ class InverterControl:
         self._want = 0.0
         if self._family is not None:
             try:
-                self._family.stop()
+                self._family.stop_motor()
             except DriverError as error:
                 self.exchange_error = str(error)
             self._family.close()
@@ -209,7 +209,7 @@ class InverterControl:
         respond.
         """
         stops, self._told = self._stops, None
-        self._familiar.stop()
+        self._familiar.stop_motor()
         self._told, self._stopped = 0.0, stops
 
     def _reopen(self) -> None:
@@ -234,15 +234,15 @@ class InverterControl:
         If the trip remains, the next poll reports it.
         """
         self._stop_now()
-        self._obedience = CommandMonitor(self._step)
-        tripped = self.last_poll is None or bool(self.last_poll.state.trip_text)
+        self._obedience = InverterCommandMonitor(self._step)
+        tripped = self.last_poll is None or bool(self.last_poll.inverter_state.trip_text)
         self._reset = False
         if tripped:
             self.silence_allowed_until = self._clock.now() + _RESTART_TIME_S
             self._familiar.reset_trip()
 
     def _tell(self) -> None:
-        want, look = self.commanded_hz, self.last_poll.state if self.last_poll else None
+        want, look = self.commanded_hz, self.last_poll.inverter_state if self.last_poll else None
         # A stop is repeated until standstill.
         turns = want == 0.0 and look is not None and (look.is_running or look.output_hz > STANDSTILL_HZ)
         missing = self._has_unsent_stop()
@@ -254,7 +254,7 @@ class InverterControl:
         if want != 0.0:
             self._obedience.record_command(self._clock.now(), want, look)
             self._told = None  # From the first frame on, a stop must be sent and has priority.
-            self._familiar.command_hz(want)
+            self._familiar.command_frequency_hz(want)
         self._told, self._answered = want, self._clock.now()
 
     def _look(self) -> None:
@@ -272,7 +272,7 @@ class InverterControl:
             return  # This poll started before the operator's reset.
         if look.trip_text:
             self._latch(Message("the inverter has tripped: {trip}", trip=look.trip_text), "spindle")
-        elif why := self._obedience.check_poll(now, look, now - self._began):
+        elif why := self._obedience.check_polled_state(now, look, now - self._began):
             self._latch(Message("the inverter does not follow its command: {why}", why=why), "ignores-stop")
 
     def _let_go(self, why: str) -> None:
@@ -280,17 +280,17 @@ class InverterControl:
         if self._family is not None:
             self._family.close()
         self._family, self._told = None, None
-        self._latch(add_estop_request(why) if self._may_turn() else why, "inverter-silent")
+        self._latch(append_estop_instruction(why) if self._may_turn() else why, "inverter-silent")
 
     def _supervise(self) -> None:
         """Set a fault if the inverter has been silent for too long, even if no command is active."""
         never = self.last_poll is None and self._clock.now() >= self.silence_allowed_until
         if (never or self.silence_s >= SILENCE_TIMEOUT_S) and not self.failure:
             why = self.exchange_error or "no response from inverter"
-            self._latch(add_estop_request(why) if self._may_turn() else why, "inverter-silent")
+            self._latch(append_estop_instruction(why) if self._may_turn() else why, "inverter-silent")
 
     def _may_turn(self) -> bool:
-        return self._want != 0.0 or self.last_poll is None or self.last_poll.state.output_hz > 0.0
+        return self._want != 0.0 or self.last_poll is None or self.last_poll.inverter_state.output_hz > 0.0
 
     def _latch(self, why: str, code: FaultCode) -> None:
         if not self.failure:
@@ -328,7 +328,7 @@ class InverterThread:
         The first command of the new thread is a stop.
         """
         if not self.is_alive and not self._ended.is_set():
-            self._attendant.discard_state()
+            self._attendant.discard_polled_state()
             self.thread = self._made()
             self.thread.start()
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 from core.message import Message
-from drivers.inverter.family_table import ABSENT_REGISTER, FamilyTable, ParameterKeys, TopKeys
+from drivers.inverter.family_table import ABSENT_REGISTER, FamilyTable, MaxFrequencyKeys, ParameterKeys
 from drivers.inverter.modbus_rtu import NoResponseError, RequestRejectedError
 
 
@@ -21,7 +21,7 @@ class InverterState:
     output_hz: float
     setpoint_hz: float  # As the inverter has received it.
     is_running: bool  # Run command as the inverter has received it.
-    is_reverse: bool  # Turns, or last turned, in reverse.
+    is_reverse_direction: bool  # Turns, or last turned, in reverse.
     is_reverse_commanded: bool  # A reverse command is active.
     trip_text: str = ""  # Reason for a trip.
     current_a: float = 0.0  # A
@@ -29,7 +29,7 @@ class InverterState:
     @property
     def signed_output_hz(self) -> float:
         """Return the output frequency in Hz, positive for M03 and negative for M04."""
-        return -self.output_hz if self.is_reverse else self.output_hz
+        return -self.output_hz if self.is_reverse_direction else self.output_hz
 
 
 class InverterFamily(Protocol):
@@ -57,11 +57,11 @@ class InverterFamily(Protocol):
         """
         ...
 
-    def stop(self) -> None:
+    def stop_motor(self) -> None:
         """Stop the motor by the inverter's ramp."""
         ...
 
-    def command_hz(self, hz: float) -> None:
+    def command_frequency_hz(self, hz: float) -> None:
         """Run the motor at a frequency in Hz, which is positive for M03 and negative for M04.
 
         Raises RequestWithheldError if a stop is pending.
@@ -96,8 +96,8 @@ class RequiredParameter(NamedTuple):
     """A required parameter value, with its register, its name at the keypad and its purpose."""
 
     register_address: int
-    value: int
-    name: str
+    required_value: int
+    keypad_name: str
     purpose: str
 
     def describe_difference(self, read_value: ReadParameter) -> str:
@@ -110,23 +110,23 @@ class RequiredParameter(NamedTuple):
         except RequestRejectedError as error:
             return Message(
                 "{name} cannot be read ({error}); its value must be {value} ({why})",
-                name=self.name,
+                name=self.keypad_name,
                 error=error,
-                value=self.value,
+                value=self.required_value,
                 why=self.purpose,
             )
-        if there == self.value:
+        if there == self.required_value:
             return ""
         return Message(
             "{name} is {present} but must be {value} ({why})",
-            name=self.name,
+            name=self.keypad_name,
             present=there,
-            value=self.value,
+            value=self.required_value,
             why=self.purpose,
         )
 
 
-def write_and_check(
+def write_and_check_parameters(
     table: FamilyTable,
     comm_timeout_s: float,
     max_hz: float,
@@ -177,13 +177,13 @@ def _apply_setting(
     for setting in required:
         if setting.describe_difference(read):
             try:
-                write(setting.register_address, setting.value)
+                write(setting.register_address, setting.required_value)
             except (RequestRejectedError, NoResponseError):
                 continue  # Reported below with the present value.
     return [text for setting in required if (text := setting.describe_difference(read))]
 
 
-def _check_max_frequency(parameter: TopKeys, highest: float, read: ReadParameter) -> str:
+def _check_max_frequency(parameter: MaxFrequencyKeys, highest: float, read: ReadParameter) -> str:
     """Return a message if the inverter limits its output below ``highest`` Hz, or an empty string."""
     try:
         there = read(parameter.register)

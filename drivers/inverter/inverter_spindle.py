@@ -9,8 +9,8 @@ from typing import Protocol
 
 from core.message import Message
 from core.ports import Clock, DriverError, Fault
-from drivers.inverter.command_monitor import PRESS_ESTOP_TEXT, SpeedComparison
-from drivers.inverter.family_files import load_family
+from drivers.inverter.command_monitor import PRESS_ESTOP_TEXT, SpeedComparator
+from drivers.inverter.family_files import load_inverter_family
 from drivers.inverter.family_table import FamilyTable
 from drivers.inverter.huanyang_hy import HuanyangInverter
 from drivers.inverter.inverter_control import MAX_SILENCE_S, InverterControl
@@ -65,7 +65,7 @@ class InverterSpindle:
             is_estop_pressed,
             get_encoder_fault,
         )
-        self._agreement = SpeedComparison(config.disagree)
+        self._agreement = SpeedComparator(config.disagree)
         self._revive = restart_thread
         self._unmeasured = ""  # Reason for an invalid measurement, latched until ``clear_fault``.
 
@@ -80,7 +80,7 @@ class InverterSpindle:
             require_spindle_ready(self.read_fault() or self._lost())
             # A spindle that turns may change its speed, because a rejected surface speed would scrap the
             # part.
-            if not (self._attendant.commanded_hz or self._attendant.is_trusted):
+            if not (self._attendant.commanded_hz or self._attendant.is_inverter_trusted):
                 raise DriverError(
                     "the spindle stays off until the inverter has sent the required number of "
                     "valid responses",
@@ -120,7 +120,7 @@ class InverterSpindle:
     def reported_rpm(self) -> float:
         """Return the speed in rpm, with its sign, according to the last poll of the inverter."""
         seen = self._attendant.last_poll
-        return seen.state.signed_output_hz / self._config.hz_per_rpm if seen else 0.0
+        return seen.inverter_state.signed_output_hz / self._config.hz_per_rpm if seen else 0.0
 
     def get_line_delay(self) -> float:
         """Return the delay in seconds from a command to the speed that shows its effect.
@@ -132,10 +132,10 @@ class InverterSpindle:
     @property
     def load_percent(self) -> float:
         """Return the output current in percent of the motor's rated current, or NaN if it is unknown."""
-        seen, rated = self._attendant.last_poll, self._config.rated
+        seen, rated = self._attendant.last_poll, self._config.rated_current_a
         if not rated or seen is None or self._attendant.is_state_unknown:
             return math.nan
-        return 100.0 * seen.state.current_a / rated
+        return 100.0 * seen.inverter_state.current_a / rated
 
     def read_angle(self) -> tuple[float, float] | None:
         """Return the time and the revolutions of the encoder, or None without a valid encoder."""
@@ -195,8 +195,8 @@ class InverterSpindle:
         seen = self._attendant.last_poll
         if seen is None:
             return "no response yet"
-        look = seen.state
-        what = f"turns {'back' if look.is_reverse else 'forward'}" if look.output_hz else "stands"
+        look = seen.inverter_state
+        what = f"turns {'back' if look.is_reverse_direction else 'forward'}" if look.output_hz else "stands"
         return Message(
             "{what}, output {output} Hz, setpoint {setpoint} Hz, current {current} A",
             what=what,
@@ -221,19 +221,21 @@ def create_inverter_control(
     file of a family that is not shipped with TurnDesk. Raises DriverError if the family cannot be read or
     does not fit the machine.
     """
-    table = load_family(config.family, family_folder)
+    table = load_inverter_family(config.family, family_folder)
     highest = config.rpm_max * config.hz_per_rpm
     _check_limits(table, config, highest)
 
-    def opened() -> InverterFamily:
+    def open_inverter() -> InverterFamily:
         return _create_family(table, config, open_wire(), clock)
 
-    return InverterControl(opened, clock, config.comm_loss, highest, table.setpoint_step_hz)
+    return InverterControl(
+        open_inverter, clock, config.communication_timeout_s, highest, table.setpoint_step_hz
+    )
 
 
 def _check_limits(table: FamilyTable, config: InverterTable, max_hz: float) -> None:
     """Raise DriverError if the inverter does not support the line settings or the maximum frequency in Hz."""
-    slowest, fastest = table.line.baud
+    slowest, fastest = table.serial_line.baud
     if not slowest <= config.baud <= fastest:
         raise DriverError(
             "spindle.vfd.baud = {baud}: {name} supports {slowest} to {fastest}; change baud here and at "
@@ -244,13 +246,13 @@ def _check_limits(table: FamilyTable, config: InverterTable, max_hz: float) -> N
             slowest=f"{slowest:g}",
             fastest=f"{fastest:g}",
         )
-    if config.parity not in table.line.parity.split():
+    if config.parity not in table.serial_line.parity.split():
         raise DriverError(
             "spindle.vfd.parity = {parity}: {name} supports {known}; change parity here and at the keypad",
             reason="parity",
             parity=config.parity,
             name=table.name,
-            known=table.line.parity,
+            known=table.serial_line.parity,
         )
     if max_hz > table.max_hz:
         raise DriverError(
@@ -267,7 +269,7 @@ def _create_family(
     table: FamilyTable, config: InverterTable, wire: SerialTransport, clock: Clock
 ) -> InverterFamily:
     """Create the inverter of the given family on an open line."""
-    if table.registers is None:
+    if table.register_table is None:
         return HuanyangInverter(table, wire, clock, config.unit, config.line_settings.character_time_s)
     line = ModbusMaster(wire, clock, config.unit, config.line_settings.character_time_s)
-    return RegisterInverter(table, table.registers, line, clock)
+    return RegisterInverter(table, table.register_table, line, clock)

@@ -24,8 +24,8 @@ _TABLE_PATH = "spindle.vfd"
 class InverterTable:
     """The settings of an inverter and its serial line.
 
-    ``hz_per_rpm`` refers to the spindle, including the belt. ``comm_loss`` is the inverter's communication
-    timeout in seconds.
+    ``hz_per_rpm`` refers to the spindle, including the belt. ``communication_timeout_s`` is the inverter's
+    communication timeout in seconds.
     """
 
     _: KW_ONLY
@@ -43,7 +43,7 @@ class InverterTable:
     unit: int = declare_key(
         KeyRange(1, 247), name="id", default=1, meaning="Station number set at the inverter."
     )
-    comm_loss: float = declare_key(
+    communication_timeout_s: float = declare_key(
         KeyRange(0.2, 10.0, FileUnit.SECONDS),
         name="comm_loss_s",
         default=1.5,
@@ -54,7 +54,7 @@ class InverterTable:
         KeyRange(0.001, 1.0),
         meaning="Output frequency in Hz per rpm of the spindle: pole pairs ÷ 60 × belt ratio.",
     )
-    rated: float = declare_key(
+    rated_current_a: float = declare_key(
         KeyRange(0.1, 1000.0),
         name="rated_a",
         default=0.0,
@@ -84,8 +84,8 @@ def _check_family(file: MachineFileReading) -> Iterator[FileFinding]:
     """
     path = f"{_TABLE_PATH}.family"
     if (
-        file.values.has_values(path)
-        and (name := file.values.text(path)) not in FAMILY_NAMES
+        file.file_values.has_values(path)
+        and (name := file.file_values.text(path)) not in FAMILY_NAMES
         and name[-5:] != ".toml"
     ):
         text = "expected one of {families}, or the name of a .toml file in the folder of the machine file"
@@ -99,7 +99,7 @@ DRIVER = DriverDeclaration(
         DriverTable(
             _TABLE_PATH,
             InverterTable,
-            lambda file: {"rpm_max": file.values.read_pair("spindle.rpm")[1]},
+            lambda file: {"rpm_max": file.file_values.read_pair("spindle.rpm")[1]},
             check_rules=_check_family,
             serial_port_key=f"{_TABLE_PATH}.port",
             purpose='The inverter of the spindle on a serial line (`driver = "vfd"` of [spindle]).',

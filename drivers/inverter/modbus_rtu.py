@@ -42,7 +42,7 @@ def has_valid_crc(frame: bytes) -> bool:
     )
 
 
-def encode_read(function: int, address: int, count: int) -> bytes:
+def encode_read_request(function: int, address: int, count: int) -> bytes:
     """Return the function code and the data of a read request."""
     return struct.pack(">BHH", function, address, count)
 
@@ -63,7 +63,7 @@ def encode_write_registers(address: int, values: Sequence[int]) -> bytes:
     return head + struct.pack(f">{len(values)}H", *values)
 
 
-def encode_loopback(value: int) -> bytes:
+def encode_echo_request(value: int) -> bytes:
     """Return the function code and the data of an echo request (08, subfunction 0)."""
     return struct.pack(">BHH", LOOPBACK, 0, value)
 
@@ -118,7 +118,7 @@ _EXCEPTION_TEXTS = {
 }
 
 
-def return_false() -> bool:
+def report_no_pending_stop() -> bool:
     """Return False, because no stop can be pending."""
     return False
 
@@ -143,7 +143,7 @@ class ModbusMaster:
         self._free = clock.now()
         self._doubt = False  # A late response may still arrive.
         self._echo = 0
-        self.is_stop_pending: Callable[[], bool] = return_false
+        self.is_stop_pending: Callable[[], bool] = report_no_pending_stop
         self.valid_response_count = 0  # Consecutive responses.
         self.failure_count = 0  # Failures since the start.
 
@@ -152,12 +152,12 @@ class ModbusMaster:
 
         All methods raise NoResponseError, RequestRejectedError or SerialLineError if the exchange fails.
         """
-        frame = self._send_read(encode_read(READ_REGISTERS, address, count), 2 * count)
+        frame = self._send_read(encode_read_request(READ_REGISTERS, address, count), 2 * count)
         return [word for (word,) in struct.iter_unpack(">H", frame[3:-2])]
 
     def read_coils(self, address: int, count: int = 1) -> list[bool]:
         """Read coils (01), and return their states."""
-        packed = self._send_read(encode_read(READ_COILS, address, count), (count + 7) // 8)[3:-2]
+        packed = self._send_read(encode_read_request(READ_COILS, address, count), (count + 7) // 8)[3:-2]
         return [bool(int.from_bytes(packed, "little") >> number & 1) for number in range(count)]
 
     def write_coil(
@@ -222,7 +222,7 @@ class ModbusMaster:
     def _resynchronize(self) -> None:
         """Exchange an echo with a new value, so that late responses are detected."""
         self._echo = self._echo % 0xFFFF + 1
-        pdu = encode_loopback(self._echo)
+        pdu = encode_echo_request(self._echo)
         try:
             frame = self._once(pdu)
         except RequestRejectedError:

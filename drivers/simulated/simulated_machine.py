@@ -20,9 +20,9 @@ from core.ports import (
 )
 from drivers.port_checks import (
     LOG_ROWS,
-    SampleLog,
-    require_axis,
+    SampleRingBuffer,
     require_estop_released,
+    require_existing_axis,
     require_spindle_ready,
     require_stopped_spindle,
 )
@@ -94,7 +94,7 @@ class SimAxes(_PlantPort):
 
         Raises DriverError when switching on in E-stop or with a fault. Switching off is always possible.
         """
-        self._plant.set_power(is_on)
+        self._plant.set_drive_power(is_on)
 
     def stop(self, mode: StopMode) -> None:
         """Stop the axes by the ramps of the drives."""
@@ -105,7 +105,7 @@ class SimAxes(_PlantPort):
 
         ``sample().homed`` becomes True when homing is done.
         """
-        require_axis(axis, self.axes)
+        require_existing_axis(axis, self.axes)
         self._plant.home_axis(axis)
 
     def clear_fault(self) -> None:
@@ -114,7 +114,7 @@ class SimAxes(_PlantPort):
             self._plant.clear_fault()
 
 
-class SimGear(_PlantPort):
+class SimSpindleGear(_PlantPort):
     """Port for axes that follow the spindle (``core.ports.SpindleGear``) on the simulated machine."""
 
     def mesh(self, cam: Cam) -> None:
@@ -133,7 +133,7 @@ class SimGear(_PlantPort):
             return self._plant.setpoint_queue.read_gear_state()
 
 
-class SimSamples(_PlantPort):
+class SimSampleSource(_PlantPort):
     """Scope samples (``core.ports.SampleSource``) of the simulated machine.
 
     Sampling starts with the first request.
@@ -141,14 +141,14 @@ class SimSamples(_PlantPort):
 
     def __init__(self, plant: SimulatedPlant) -> None:
         super().__init__(plant)
-        self.sample_rate_hz = 1.0 / plant.config.step_s
+        self.sample_rate_hz = 1.0 / plant.config.model_step_s
 
-    def take(self, max_rows: int = LOG_ROWS) -> FloatArray:
+    def take_samples(self, max_rows: int = LOG_ROWS) -> FloatArray:
         """Return at most ``max_rows`` samples since the last call, oldest first."""
         plant = self._plant
         with plant.lock:
             if plant.sample_log is None:
-                plant.sample_log = SampleLog(len(plant.axis_names))
+                plant.sample_log = SampleRingBuffer(len(plant.axis_names))
             return plant.sample_log.pop_rows(max_rows)
 
 
@@ -200,7 +200,7 @@ def _require_spindle(plant: SimulatedPlant) -> None:
     require_spindle_ready(plant.spindle.faults.fault_text)
 
 
-class SimOrientation(_PlantPort):
+class SimOrientingSpindle(_PlantPort):
     """Port that orients the spindle (``core.ports.OrientingSpindle``) of the simulated machine."""
 
     def orient_spindle(self, angle: float, direction: int = 0) -> None:
@@ -253,7 +253,7 @@ class SimIO(_PlantPort):
             self._plant.terminals.switch_to_safe_state(self._plant.advance())
 
 
-class SimTouch(_PlantPort):
+class SimTouchInput(_PlantPort):
     """Probe port (``core.ports.TouchInput``) of the simulated machine.
 
     The time resolution of a touch is that of the model.
@@ -272,18 +272,18 @@ class SimTouch(_PlantPort):
             self._plant.advance()
             setter = self._plant.terminals.setter
             kept = setter.kept if setter is not None else None
-            return TouchLatch(*kept, self._plant.config.step_s) if kept is not None else None
+            return TouchLatch(*kept, self._plant.config.model_step_s) if kept is not None else None
 
 
 class SimStation(_PlantPort):
-    """Operator station (``core.ports.Station``) of the simulated machine."""
+    """Operator station (``core.ports.OperatorStation``) of the simulated machine."""
 
     def read_state(self) -> StationState:
         """Return the current state of the operator station."""
         plant = self._plant
         with plant.lock:
-            state, _ = plant.read_station(plant.clock.now())
-            load = plant.spindle.load_percent if plant.config.has_load_input else None
+            state, _ = plant.read_station_and_inputs(plant.clock.now())
+            load = plant.spindle.load_percent if plant.config.has_spindle_load_input else None
         return state if load is None else replace(state, spindle_load=load)
 
 
@@ -303,12 +303,12 @@ def build_simulation(config: SimConfig, clock: Clock) -> Simulation:
         spindle=SimSpindlePort(plant),
         io=SimIO(plant),
         station=SimStation(plant),
-        gear=SimGear(plant),
-        orientation=SimOrientation(plant) if config.spindle.can_orient else None,
+        gear=SimSpindleGear(plant),
+        orientation=SimOrientingSpindle(plant) if config.spindle.can_orient else None,
         halt_machine=plant.stop_machine,
         wakeup=plant.wakeup,
-        samples=SimSamples(plant),
-        touch=SimTouch(plant) if config.setter is not None else None,
+        samples=SimSampleSource(plant),
+        touch=SimTouchInput(plant) if config.setter is not None else None,
     )
     machine = PlantControls(plant)
     if config.planned_faults:

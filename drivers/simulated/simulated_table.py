@@ -12,8 +12,8 @@ from core.table_schema import (
     DriverTable,
     FileFinding,
     MachineFileReading,
-    TableReference,
-    read_table,
+    TableDescription,
+    read_table_values,
 )
 
 FAULT_KINDS = (
@@ -96,7 +96,9 @@ class SimulatedTable:
         meaning="true: a run without a screen also takes real time. false: it runs as fast as possible.",
     )
     faults: tuple[PlannedFault, ...] = ()
-    tips: tuple[tuple[float, float], ...] = ()  # Axis positions when a tip is at part zero, in mm.
+    tool_tip_positions: tuple[
+        tuple[float, float], ...
+    ] = ()  # Axis positions when a tip is at part zero, in mm.
 
 
 def _read(file: MachineFileReading) -> Iterator[FileFinding]:
@@ -106,7 +108,7 @@ def _read(file: MachineFileReading) -> Iterator[FileFinding]:
             yield FileFinding(name, format_toml_value(entries), "expected a list of tables, [{...}]")
             continue
         for path, entry in zip(_list_paths(file, name), entries or (), strict=True):
-            yield from read_table(entry, kind, path, file.values)
+            yield from read_table_values(entry, kind, path, file.file_values)
 
 
 def _list_paths(file: MachineFileReading, name: str = "sim.faults") -> list[str]:
@@ -116,7 +118,7 @@ def _list_paths(file: MachineFileReading, name: str = "sim.faults") -> list[str]
 
 
 def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
-    values, axes = file.values, file.axes
+    values, axes = file.file_values, file.axes
     for path in _list_paths(file):
         if not values.has_values(f"{path}.what", f"{path}.axis"):
             continue
@@ -137,8 +139,8 @@ def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _read_faults(file: MachineFileReading) -> dict[str, object]:
-    """Return the entries of the lists ``faults`` and ``tips`` of the table."""
-    values = file.values
+    """Return the entries of the lists ``faults`` and ``tool_tip_positions`` of the table."""
+    values = file.file_values
     tips = (
         (values.read_number(f"{path}.x"), values.read_number(f"{path}.z"))
         for path in _list_paths(file, "sim.tips")
@@ -161,13 +163,13 @@ DRIVER = DriverDeclaration(
             is_always_read=True,
             purpose='The simulated machine (`backend = "sim"`).',
             sub_tables=(
-                TableReference(
+                TableDescription(
                     "[sim.faults]",
                     "A fault of the simulated machine. Write the heading in double square brackets; this "
                     "table may occur any number of times.",
                     PlannedFault,
                 ),
-                TableReference(
+                TableDescription(
                     "[sim.tips]",
                     "A tool tip of the simulated machine, for testing a tool setter. The heading may "
                     "occur any number of times.",

@@ -275,7 +275,7 @@ class AxisDrive:
         if self.servo_axis.follow_setpoint(self.setpoint_position, self.setpoint_velocity, seconds):
             self._fail(EMCY_FOLLOWING)
         if self.setpoint_velocity == 0.0:
-            self.servo_axis.settle_at(self.setpoint_position)
+            self.servo_axis.settle_at_setpoint(self.setpoint_position)
 
     def _control(self, word: int) -> None:
         before = self.power_states.last_control_word

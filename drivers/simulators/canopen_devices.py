@@ -14,7 +14,7 @@ from canopen.objectdictionary import ODVariable
 
 from core.ports import Clock, StationState
 from drivers.canopen import canopen_objects as od
-from drivers.canopen.canopen_bus import open_interface
+from drivers.canopen.canopen_bus import open_can_interface
 from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_nodes import CanNode, CanTerminal
 from drivers.canopen.drive_profiles import DriveProfile
@@ -40,17 +40,17 @@ class SimulatedIoModule:
         self._wired: dict[int, list[tuple[str, CanTerminal]]] = {}  # Inputs by sub-index.
         for name_of_input, where in config.inputs.items():
             if where.node_name == name:
-                self._wired.setdefault(where.subindex, []).append((name_of_input, where))
+                self._wired.setdefault(where.object_subindex, []).append((name_of_input, where))
         self._hands: object = None  # State of the plant that ``_bytes`` represents.
         self._bytes: dict[int, int] = {}
         self._pots = {
-            pot.terminal.subindex: (of, pot)
+            pot.terminal.object_subindex: (of, pot)
             for of, pot in config.pots.items()
             if pot.terminal.node_name == name
         }
         for output, model in config.outputs.items():
             if plant.terminals.output_states.get(output):
-                self.output_bytes[model.terminal.subindex - 1] |= 1 << model.terminal.bit_number
+                self.output_bytes[model.terminal.object_subindex - 1] |= 1 << model.terminal.bit_number
 
     def read(self, index: int, subindex: int) -> int | None:
         """Return the calculated value of an object, or None if the stored value is to be used."""
@@ -96,13 +96,13 @@ class SimulatedIoModule:
             board = self._plant.terminals
             if (
                 where.node_name == self._name
-                and where.subindex == sub
+                and where.object_subindex == sub
                 and board.output_states.get(name) is not on
             ):
                 board.write(name, on, now)
 
     def _inputs(self, sub: int) -> int:
-        hands = self._plant.read_station(self._plant.clock.now())
+        hands = self._plant.read_station_and_inputs(self._plant.clock.now())
         if hands is not self._hands:
             self._hands, self._bytes = hands, {}
         if sub not in self._bytes:
@@ -120,7 +120,7 @@ class SimulatedIoModule:
         if sub not in self._pots:
             return 0
         name, pot = self._pots[sub]
-        state, _ = self._plant.read_station(self._plant.clock.now())
+        state, _ = self._plant.read_station_and_inputs(self._plant.clock.now())
         if name == "handwheel":
             return (state.handwheel + 2**15) % 2**16 - 2**15
         shown = self._plant.spindle.load_percent if name == "spindle_load" else getattr(state, name)
@@ -200,7 +200,7 @@ class CanopenPlant(SimulatedPlant):
         now = self.clock.now()
         with self.lock:
             self._apply_faults(now)
-            step, rests = self.config.step_s, False
+            step, rests = self.config.model_step_s, False
             while self._at + step <= now + _SETTLED_S:
                 self._at += step
                 if not rests:
@@ -258,7 +258,7 @@ class CanopenDevices:
         self.machine = PlantControls(self.plant)
         if sim.planned_faults:
             self.plant.apply_due_faults = FaultSchedule(self.machine, sim.planned_faults).apply_due_actions
-        self.network = DeviceNetwork(open_interface(config.bus_settings))
+        self.network = DeviceNetwork(open_can_interface(config.bus_settings))
         self.nodes: dict[str, DeviceNode] = {}
         self.encoder: SimulatedEncoder | None = None
         self.is_cable_disconnected = False  # The cable is disconnected.
@@ -292,7 +292,7 @@ class CanopenDevices:
 
     def _deliver(self, can_id: int, data: bytes) -> None:
         for node in self.nodes.values():
-            if can_id in node.accepted_ids:
+            if can_id in node.accepted_can_ids:
                 node.handle_frame(can_id, data)
 
     def cable(self, *, is_disconnected: bool) -> None:

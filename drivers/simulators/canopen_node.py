@@ -99,14 +99,14 @@ class _Communication(NamedTuple):
     Times are in seconds; a time of 0 disables the function.
     """
 
-    heartbeat_s: float
-    monitored_id: int  # COB-ID of the monitored heartbeat.
+    heartbeat_period_s: float
+    monitored_cob_id: int  # COB-ID of the monitored heartbeat.
     heartbeat_timeout_s: float
     sync_period_s: float
     max_setpoint_gap_s: float  # Longest time between two frames of the first RPDO.
-    received_pdos: dict[int, _ReceivePdo]
-    sent_pdos: list[_TransmitPdo]
-    accepted_ids: frozenset[int]
+    receive_pdos: dict[int, _ReceivePdo]
+    transmit_pdos: list[_TransmitPdo]
+    accepted_can_ids: frozenset[int]
 
 
 class DeviceNode:
@@ -150,9 +150,9 @@ class DeviceNode:
         self.network.send_message(0x700 + self.node_id, b"\x00")
 
     @property
-    def accepted_ids(self) -> frozenset[int]:
+    def accepted_can_ids(self) -> frozenset[int]:
         """Return the identifiers of the frames that the node accepts."""
-        return self._get_communication().accepted_ids
+        return self._get_communication().accepted_can_ids
 
     def handle_frame(self, can_id: int, data: bytes) -> None:
         """Handle one received frame that the node accepts."""
@@ -163,7 +163,7 @@ class DeviceNode:
             self._command(data[0])
         elif can_id == 0x600 + self.node_id and self.state != _STOPPED:
             self.local_node.sdo.on_request(can_id, bytearray(data), self.time_s)
-        elif can_id == communication.monitored_id:
+        elif can_id == communication.monitored_cob_id:
             self._host_heard = self.time_s
         elif self.state == _OPERATIONAL:
             self._process_data(can_id, data, communication)
@@ -172,8 +172,8 @@ class DeviceNode:
         """Send the heartbeat when it is due, and check the heartbeat and the setpoints of the host."""
         self.time_s = now
         communication = self._get_communication()
-        if communication.heartbeat_s and now >= self._next_beat and not self.is_silent:
-            self._next_beat = now + communication.heartbeat_s
+        if communication.heartbeat_period_s and now >= self._next_beat and not self.is_silent:
+            self._next_beat = now + communication.heartbeat_period_s
             self.network.send_message(0x700 + self.node_id, bytes([self.state]))
         if (
             communication.heartbeat_timeout_s
@@ -224,8 +224,8 @@ class DeviceNode:
                 self._apply(entries, waiting)
             self._waiting.clear()
             self._answer(communication)
-        elif can_id in communication.received_pdos:
-            number, waits, entries = communication.received_pdos[can_id]
+        elif can_id in communication.receive_pdos:
+            number, waits, entries = communication.receive_pdos[can_id]
             self._told_at = self._told_at if number else self.time_s
             if waits:
                 self._waiting[number] = entries, data
@@ -242,7 +242,7 @@ class DeviceNode:
             at += size
 
     def _answer(self, communication: _Communication) -> None:
-        for cob, kind, entries in communication.sent_pdos:
+        for cob, kind, entries in communication.transmit_pdos:
             if self._syncs % kind == 0:
                 self.network.send_message(cob, b"".join([self._encode_value(*entry) for entry in entries]))
 
@@ -282,14 +282,14 @@ class DeviceNode:
         ]
         watched = 0x700 + (stored(od.WATCHED, 1) >> 16 & 0x7F)
         return _Communication(
-            heartbeat_s=stored(od.HEARTBEAT, 0) / 1000.0,
-            monitored_id=watched,
+            heartbeat_period_s=stored(od.HEARTBEAT, 0) / 1000.0,
+            monitored_cob_id=watched,
             heartbeat_timeout_s=(stored(od.WATCHED, 1) & 0xFFFF) / 1000.0,
             sync_period_s=1e-6 * stored(od.SYNC_PERIOD, 0),
             max_setpoint_gap_s=0.001 * stored(od.COMMANDED, 5),
-            received_pdos=taken,
-            sent_pdos=sent,
-            accepted_ids=frozenset({0, 0x80, 0x600 + self.node_id, watched, *taken}),
+            receive_pdos=taken,
+            transmit_pdos=sent,
+            accepted_can_ids=frozenset({0, 0x80, 0x600 + self.node_id, watched, *taken}),
         )
 
     def _read_mapping(self, index: int) -> list[_Entry]:

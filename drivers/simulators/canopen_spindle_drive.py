@@ -36,11 +36,11 @@ class SpindleServo(SimulatedServo):
         """Return the angle in degrees, as the drive counts it."""
         return self._motor.revolutions * _DEGREES_PER_REV - self._zero
 
-    def adopt_motor_angle(self) -> None:
+    def copy_motor_angle(self) -> None:
         """Set the axis position to the motor angle; call this method after the spindle has turned."""
         self.p, self.v = self.place, 0.0
 
-    def set_switch_position(self, homing_method: int) -> None:
+    def set_home_position(self, homing_method: int) -> None:
         """Set the home position: the next index, or the current position if the method uses no index."""
         ahead = (math.floor(self._motor.revolutions + 1e-9) + 1) * _DEGREES_PER_REV - self._zero
         self.switch = ahead if homing_method in _INDEX else self.p
@@ -93,17 +93,19 @@ class SimulatedSpindleDrive:
             od.SUPPORTED: lambda: 0x64 if self.can_position else 0x04,
             od.STATUS: lambda: (
                 self.axis_drive.get_status_word()
-                if self.is_axis_mode
+                if self.is_in_axis_mode
                 else self.power_states.status_word | self._reached()
             ),
             od.MODE_SHOWN: lambda: self.operation_mode,
-            od.VELOCITY: lambda: round(self.spindle_servo.v / 6.0 if self.is_axis_mode else self.motor.speed),
-            od.ACTUAL_TORQUE: lambda: 0 if self.is_axis_mode else round(10.0 * self.motor.load_percent),
+            od.VELOCITY: lambda: round(
+                self.spindle_servo.v / 6.0 if self.is_in_axis_mode else self.motor.speed
+            ),
+            od.ACTUAL_TORQUE: lambda: 0 if self.is_in_axis_mode else round(10.0 * self.motor.load_percent),
             od.POSITION: self._position,
         }
 
     @property
-    def is_axis_mode(self) -> bool:
+    def is_in_axis_mode(self) -> bool:
         """Return whether the drive is in interpolated position mode or homing mode."""
         return self.operation_mode in {IP, HM}
 
@@ -128,12 +130,12 @@ class SimulatedSpindleDrive:
             self.target_rpm = value
         elif index != od.CONTROL:
             self.axis_drive.write(index, subindex, value)
-        elif self.is_axis_mode:
+        elif self.is_in_axis_mode:
             if self.operation_mode == HM and value & NEW and not self.power_states.last_control_word & NEW:
                 self.spindle_servo.offset = (
                     self.values.get((od.HOME_OFFSET, 0), 0) * _DEGREES_PER_REV / self._counts
                 )
-                self.spindle_servo.set_switch_position(self.values.get((od.HOME_METHOD, 0), 0))
+                self.spindle_servo.set_home_position(self.values.get((od.HOME_METHOD, 0), 0))
             self.axis_drive.write(index, subindex, value)
         else:
             self.power_states.apply_control_word(value)
@@ -144,8 +146,8 @@ class SimulatedSpindleDrive:
             return
         self.operation_mode = mode
         self.axis_drive.write(od.MODE, 0, mode)
-        if self.is_axis_mode:
-            self.spindle_servo.adopt_motor_angle()
+        if self.is_in_axis_mode:
+            self.spindle_servo.copy_motor_angle()
             self.axis_drive.setpoint_position, self.axis_drive.setpoint_velocity = self.spindle_servo.p, 0.0
 
     def handle_host_loss(self) -> None:
@@ -163,7 +165,7 @@ class SimulatedSpindleDrive:
     def is_idle(self) -> bool:
         """Return whether the drive will not change until a frame arrives or the motor speed changes."""
         obeyed = self.power_states.is_powered == (self._ordered is not None)
-        return obeyed and not self.is_axis_mode and not self.power_states.is_braking
+        return obeyed and not self.is_in_axis_mode and not self.power_states.is_braking
 
     def advance(self, now: float) -> None:
         """Command the motor speed that the mode and power state require; end braking at standstill."""
@@ -171,7 +173,7 @@ class SimulatedSpindleDrive:
         if self.motor.faults.fault_text and self.power_states.state is not DriveState.FAULT:
             self.power_states.enter_fault()
             self.send_emergency(EMCY_FAULT)
-        if self.is_axis_mode:
+        if self.is_in_axis_mode:
             self.axis_drive.advance(dt)
             self._ordered = None
             return

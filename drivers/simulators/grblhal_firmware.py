@@ -70,7 +70,7 @@ def _go_on(m: GrblFirmware) -> None:
     if m.is_spindle_paused and not int(m.registers[63]) & 2:
         m.programmed_rpm = 0.0
     m.is_spindle_paused = False
-    m.command_spindle(m.programmed_rpm)
+    m.command_spindle_speed(m.programmed_rpm)
 
 
 def _override(m: GrblFirmware, byte: int) -> None:
@@ -94,7 +94,7 @@ def _override(m: GrblFirmware, byte: int) -> None:
         and not (m.behavior.toggle_broken or m.program.active_wait)
     ):
         m.is_spindle_paused = not m.is_spindle_paused
-    m.command_spindle(m.programmed_rpm)
+    m.command_spindle_speed(m.programmed_rpm)
 
 
 # --- One step of the machine: homing, the wait for an index, motion and stops.
@@ -104,7 +104,7 @@ STEP_S = 0.001  # s
 _INDEX_TIMEOUT_S = 5.0  # Seconds that a thread waits for the index.
 
 
-def step_firmware(firmware: GrblFirmware) -> None:
+def advance_firmware_step(firmware: GrblFirmware) -> None:
     """Advance the controller by one step of ``STEP_S`` seconds."""
     if firmware.homing_end_and_axes is not None:
         _home(firmware, *firmware.homing_end_and_axes)
@@ -120,7 +120,12 @@ def step_firmware(firmware: GrblFirmware) -> None:
     resting = (firmware.is_in_hold or firmware.is_door_open) and not slides.is_moving
     if first is not None and not resting and _waits_for_index(firmware, first):
         return
-    if first is not None and first.is_per_rev and not first.is_thread and abs(firmware.spindle.speed) < 1.0:
+    if (
+        first is not None
+        and first.is_feed_per_revolution
+        and not first.is_thread
+        and abs(firmware.spindle.speed) < 1.0
+    ):
         firmware.raise_alarm(14)
         return
     slides.is_in_hold = firmware.is_in_hold or firmware.is_door_open or firmware.is_canceling_jog
@@ -135,8 +140,8 @@ def step_firmware(firmware: GrblFirmware) -> None:
 
 def _home(m: GrblFirmware, until: float, axes: int) -> None:
     if m.time_s >= until:
-        m.homing_end_and_axes, m.homed_axes = None, m.homed_axes | axes
-        m.alarm_number = 11 if int(m.registers[22]) & 4 and m.homed_axes & 5 != 5 else 0
+        m.homing_end_and_axes, m.homed_axis_mask = None, m.homed_axis_mask | axes
+        m.alarm_number = 11 if int(m.registers[22]) & 4 and m.homed_axis_mask & 5 != 5 else 0
         m.send_text("[MSG:]\r\n")
         m.acknowledge_line()
 
@@ -146,7 +151,7 @@ def _waits_for_index(m: GrblFirmware, block: PlannedBlock) -> bool:
 
     The controller processes no bytes during this wait. If the index is missing for 5 s, alarm 14 is raised.
     """
-    if not block.is_thread or m.motion.has_started:
+    if not block.is_thread or m.motion.has_block_started:
         return False
     if m.index_wait_start_s is None:
         m.index_wait_start_s, m.index_target_rev = m.time_s, math.floor(abs(m.spindle.revolutions)) + 2
@@ -183,7 +188,7 @@ class ReportGenerator:
 
     def format_report(self, firmware: GrblFirmware, *, full: bool) -> str:
         """Return the text of one report without its line end."""
-        busy = firmware.state.partition(":")[0] in _BUSY_STATES
+        busy = firmware.state_name.partition(":")[0] in _BUSY_STATES
         overrides = self._overrides(full, busy)
         offsets = self._offsets(full, overrides, busy)
         text = (
@@ -239,9 +244,11 @@ def _extras(m: GrblFirmware, offsets: bool, overrides: bool, full: bool) -> str:
     text += f"|A:{accessories}" if has_accessories else ""
     if not full:
         return text
-    homed = f"|H:{int(m.homed_axes & 5 == 5)}" + (f",{m.homed_axes}" if int(m.registers[22]) & 2 else "")
-    read = "" if m.input_result is None else f"|In:{m.input_result}"
-    lathe = f"|D:{int(m.program.modes.radius == 'G7')}" if m.registers.is_lathe_mode else ""
+    homed = f"|H:{int(m.homed_axis_mask & 5 == 5)}" + (
+        f",{m.homed_axis_mask}" if int(m.registers[22]) & 2 else ""
+    )
+    read = "" if m.last_input_result is None else f"|In:{m.last_input_result}"
+    lathe = f"|D:{int(m.program.modes.radius == 'G7')}" if m.registers.is_in_lathe_mode else ""
     return f"{text}|Sc:|MPG:0{homed}{lathe}|T:0|P:0|TLR:0{read}|FW:grblHAL"
 
 
@@ -269,8 +276,8 @@ class GrblFirmware:
         self.output_states: dict[str, bool] = {}
         self.active_pins = ""
         self.auxiliary_inputs: dict[int, bool] = {}
-        self.input_result: int | None = None  # Result of the last M66.
-        self.homed_axes = 0  # One bit per axis.
+        self.last_input_result: int | None = None  # Result of the last M66.
+        self.homed_axis_mask = 0  # One bit per axis.
         self.alarm_number = 11 if int(self.registers[22]) & 5 == 5 else 0
         self.is_reset_required = False  # After a critical alarm, only a reset is accepted.
         self.is_door_open = False
@@ -319,7 +326,7 @@ class GrblFirmware:
             if idle:
                 continue
             self.spindle.advance_to(self.time_s)
-            step_firmware(self)
+            advance_firmware_step(self)
             self._take_in()
             self.program.execute_lines()
         if idle:
@@ -339,9 +346,9 @@ class GrblFirmware:
         )
         self.restart(moved)
 
-    def power_cycle(self) -> None:
+    def cycle_power(self) -> None:
         """Switch the power off and on; the position is then 0, and the axes are no longer homed."""
-        self.alarm_number, self.homed_axes = 0, 0
+        self.alarm_number, self.homed_axis_mask = 0, 0
         self.is_door_open = self.is_reset_required = False
         self.motion.position = (0.0, 0.0)
         self.restart(False)
@@ -355,7 +362,7 @@ class GrblFirmware:
         busy = (
             self.motion.block_queue
             or self.homing_end_and_axes is not None
-            or not self.program.is_line_complete
+            or not self.program.is_previous_line_complete
         )
         return not (busy or self.receive_buffer or self._wire)
 
@@ -384,7 +391,7 @@ class GrblFirmware:
         self.feed_percent = self.rapid_percent = self.spindle_percent = 100
         self.report_generator = ReportGenerator()
         if position_lost:
-            self.alarm_number, self.homed_axes = 3, 0
+            self.alarm_number, self.homed_axis_mask = 3, 0
             self.send_text("ALARM:3\r\n")
         self.send_text(_BANNER_TEXT)
         if self.alarm_number:
@@ -398,7 +405,7 @@ class GrblFirmware:
             self.is_spindle_paused
         ) = False
         self.index_wait_start_s = self.homing_end_and_axes = None
-        self.command_spindle(0.0)
+        self.command_spindle_speed(0.0)
         self.output_states.update(flood=False, mist=False)
 
     # --- state: alarms, holds, spindle and pending lines ------------------------------------------------
@@ -409,7 +416,7 @@ class GrblFirmware:
         return _BUFFER_SIZE - len(self.receive_buffer)
 
     @property
-    def state(self) -> str:
+    def state_name(self) -> str:
         """Return the name of the state as in status reports."""
         if self.alarm_number:
             return f"Alarm:{self.alarm_number}"
@@ -429,7 +436,7 @@ class GrblFirmware:
         An alarm includes its number in a full report, or if setting ``$10`` requires the number.
         """
         numbered = full or int(self.registers[10]) & 0x400
-        return self.state if numbered else self.state.replace(f"Alarm:{self.alarm_number}", "Alarm")
+        return self.state_name if numbered else self.state_name.replace(f"Alarm:{self.alarm_number}", "Alarm")
 
     @property
     def is_waiting_for_index(self) -> bool:
@@ -437,7 +444,7 @@ class GrblFirmware:
         return self.index_wait_start_s is not None
 
     @property
-    def is_reading(self) -> bool:
+    def is_reading_lines(self) -> bool:
         """Return whether the controller currently reads lines."""
         held = (self.is_in_hold or self.is_door_open) and not self.alarm_number
         return not (self.is_waiting_for_index or self.homing_end_and_axes is not None or held)
@@ -490,7 +497,7 @@ class GrblFirmware:
         else:
             self.send_text(f"error:{error_code}\r\n" if error_code else "ok\r\n")
 
-    def command_spindle(self, rpm: float) -> None:
+    def command_spindle_speed(self, rpm: float) -> None:
         """Command the spindle speed in rpm, signed."""
         self.report_generator.are_accessories_due = self.report_generator.are_accessories_due or (
             rpm > 0.0

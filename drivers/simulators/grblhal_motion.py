@@ -26,8 +26,8 @@ _STRAIGHT = 0.999999  # Cosine beyond which a corner counts as straight or as a 
 class PlannedBlock:
     """Block in the planner, with its path as a function of the distance traveled in mm.
 
-    If ``is_per_rev`` is true, ``max_speed`` is in mm per revolution. A block with ``is_thread`` waits for
-    the spindle index.
+    If ``is_feed_per_revolution`` is true, ``max_speed`` is in mm per revolution. A block with ``is_thread``
+    waits for the spindle index.
     """
 
     line_number: int
@@ -35,7 +35,7 @@ class PlannedBlock:
     max_speed: float
     path: Callable[[float], Position]
     is_rapid: bool = False
-    is_per_rev: bool = False
+    is_feed_per_revolution: bool = False
     is_thread: bool = False
     is_jog: bool = False
     speed_and_accel_limits: tuple[float, float] | None = None  # Limits of the axes: mm/s, mm/s².
@@ -92,11 +92,11 @@ def make_arc_path(
         sweep -= math.tau
     first = math.atan2(x0, z0)
 
-    def find_position(s: float) -> Position:
+    def calculate_position(s: float) -> Position:
         angle = first + math.copysign(s / radius, sweep)
         return center[0] + radius * math.sin(angle), center[1] + radius * math.cos(angle)
 
-    return radius * abs(sweep), find_position
+    return radius * abs(sweep), calculate_position
 
 
 class GrblMotion:
@@ -114,7 +114,7 @@ class GrblMotion:
         self._s = 0.0
 
     @property
-    def has_started(self) -> bool:
+    def has_block_started(self) -> bool:
         """Return whether the first block has started; a block remains started during a feed hold."""
         return self._s > 0.0 or self.speed > 0.0
 
@@ -166,7 +166,9 @@ class GrblMotion:
 
         Overrides do not affect jogs and threading blocks.
         """
-        speed = min(block.max_speed * turns_per_s if block.is_per_rev else block.max_speed, max_speed)
+        speed = min(
+            block.max_speed * turns_per_s if block.is_feed_per_revolution else block.max_speed, max_speed
+        )
         if block.is_rapid:
             return speed * self.rapid_override
         return speed if block.is_jog or block.is_thread else min(speed * self.feed_override, max_speed)

@@ -16,11 +16,11 @@ from drivers.simulators.grblhal_motion import (
     make_line_path,
 )
 from drivers.simulators.grblhal_settings import (
-    FunctionWait,
     SettingRegisters,
     SimulatorBehavior,
-    create_coolant_wait,
+    SpindleOrCoolantWait,
     create_spindle_wait,
+    make_coolant_delay,
 )
 from drivers.simulators.spindle_motor import SimulatedSpindle
 
@@ -37,9 +37,9 @@ class ProgramController(Protocol):
     active_pins: str
     alarm_number: int
     is_reset_required: bool
-    homed_axes: int
+    homed_axis_mask: int
     is_jogging: bool
-    input_result: int | None
+    last_input_result: int | None
     programmed_rpm: float
     spindle_percent: int
     time_s: float
@@ -49,10 +49,10 @@ class ProgramController(Protocol):
     def commanded_rpm(self) -> float: ...
 
     @property
-    def state(self) -> str: ...
+    def state_name(self) -> str: ...
 
     @property
-    def is_reading(self) -> bool: ...
+    def is_reading_lines(self) -> bool: ...
 
     def start_homing(self, axis_mask: int) -> None: ...
 
@@ -64,7 +64,7 @@ class ProgramController(Protocol):
 
     def acknowledge_line(self, error_code: int = 0) -> None: ...
 
-    def command_spindle(self, rpm: float) -> None: ...
+    def command_spindle_speed(self, rpm: float) -> None: ...
 
     def raise_alarm(self, number: int) -> None: ...
 
@@ -136,7 +136,7 @@ def format_identity(controller: ProgramController) -> list[str]:
     If the controller has no auxiliary ports, the line for them is omitted.
     """
     quirks = controller.behavior
-    lathe = "LATHE," if controller.registers.is_lathe_mode else ""
+    lathe = "LATHE," if controller.registers.is_in_lathe_mode else ""
     home = "HOME," if int(controller.registers[22]) & 1 else ""
     ports = [f"[AUX IO:{quirks.inputs},{quirks.outputs},0,0]"] if quirks.inputs + quirks.outputs else []
     return [
@@ -172,7 +172,7 @@ def execute_system_command(controller: ProgramController, line: str, modes: str)
     found = re.fullmatch(r"\$(\d+)=(.*)", line)
     if found is None:
         return 3
-    idle = controller.state == "Idle" or controller.alarm_number
+    idle = controller.state_name == "Idle" or controller.alarm_number
     return controller.registers.store_setting(int(found[1]), found[2]) if idle else 8
 
 
@@ -189,7 +189,7 @@ def _unlock(m: ProgramController) -> int:
         return 0
     if "E" in m.active_pins:
         return 50
-    if int(m.registers[22]) & 5 == 5 and m.homed_axes & 5 != 5:
+    if int(m.registers[22]) & 5 == 5 and m.homed_axis_mask & 5 != 5:
         return 46
     m.alarm_number = 0
     m.send_text("[MSG:Caution: Unlocked]\r\n")
@@ -228,13 +228,15 @@ class LineInterpreter:
         self._f = 0.0
         self._waits: str | None = None  # Line that waits for a standstill.
         self._cuts = False  # A thread, which is acknowledged at its end.
-        self.active_wait: FunctionWait | None = None  # Wait of a function, which is acknowledged at its end.
+        self.active_wait: SpindleOrCoolantWait | None = (
+            None  # Wait of a function, which is acknowledged at its end.
+        )
 
     def format_modes(self) -> str:
         """Return the text of the reply to ``$G``."""
         m = self._m
         return self.modes.format_modes(
-            m.programmed_rpm, self._f, m.output_states, is_lathe_mode=m.registers.is_lathe_mode
+            m.programmed_rpm, self._f, m.output_states, is_lathe_mode=m.registers.is_in_lathe_mode
         )
 
     def discard_lines(self) -> None:
@@ -255,27 +257,31 @@ class LineInterpreter:
         if self._waits is not None:
             line, self._waits = self._waits, None
             self._carry_out(line)
-        while self.is_line_complete and machine.is_reading and machine.motion.free_block_count > 0:
+        while (
+            self.is_previous_line_complete
+            and machine.is_reading_lines
+            and machine.motion.free_block_count > 0
+        ):
             line_ = machine.read_next_line()
             if line_ is None:
                 return
             self._line(line_)
 
     @property
-    def is_line_complete(self) -> bool:
+    def is_previous_line_complete(self) -> bool:
         """Return whether the execution of the previous line is complete."""
         return self._waits is None and not self._cuts and self.active_wait is None
 
-    def _end_wait(self, wait: FunctionWait) -> bool:
+    def _end_wait(self, wait: SpindleOrCoolantWait) -> bool:
         """Acknowledge the function if its wait has ended, and return whether the wait has ended.
 
         If the spindle did not reach its speed during the wait, alarm 14 is raised.
         """
-        if not wait.update_and_check(self._m):
+        if not wait.update_and_check_end(self._m):
             return False
         self.active_wait = None
         if wait.has_failed:
-            self._m.command_spindle(0.0)
+            self._m.command_spindle_speed(0.0)
             self._m.raise_alarm(14)
         self._m.acknowledge_line()
         return True
@@ -335,7 +341,7 @@ class LineInterpreter:
         if "G95" in codes and not self._m.behavior.encoder:
             return 20
         for code in (code for code in codes if code[0] == "G"):
-            error = self.modes.apply_code(code, is_lathe_mode=self._m.registers.is_lathe_mode)
+            error = self.modes.apply_code(code, is_lathe_mode=self._m.registers.is_in_lathe_mode)
             if error:
                 return error
         if "G10" in codes:
@@ -357,7 +363,7 @@ class LineInterpreter:
             self._apply_spindle(code, words.get("S", abs(machine.programmed_rpm)))
         elif code in {"M7", "M8"}:
             machine.output_states["mist" if code == "M7" else "flood"] = True
-            self.active_wait = create_coolant_wait(machine)
+            self.active_wait = make_coolant_delay(machine)
         elif code == "M9":
             machine.output_states.update(mist=False, flood=False)
         elif code == "M53":
@@ -367,7 +373,7 @@ class LineInterpreter:
                 return 39
             machine.output_states[f"out.{port}"] = code == "M64"
         elif code == "M66" and machine.behavior.inputs:
-            machine.input_result = int(machine.auxiliary_inputs.get(port, False))
+            machine.last_input_result = int(machine.auxiliary_inputs.get(port, False))
         else:
             return 20
         return 0
@@ -377,7 +383,7 @@ class LineInterpreter:
         machine = self._m
         before = math.copysign(1.0, machine.programmed_rpm) if machine.programmed_rpm else 0.0
         direction = {"M3": 1.0, "M4": -1.0, "M5": 0.0}[code]
-        machine.command_spindle(direction * rpm)
+        machine.command_spindle_speed(direction * rpm)
         if direction != before:
             self.active_wait = create_spindle_wait(machine, is_spindle_on=code != "M5")
 
@@ -421,14 +427,16 @@ class LineInterpreter:
         if motion == "G33":
             self._cuts = True
             self._m.spindle_percent = 100
-            self._m.command_spindle(self._m.programmed_rpm)
-            block = PlannedBlock(number, length, words.get("K", 0.0), path, is_per_rev=True, is_thread=True)
+            self._m.command_spindle_speed(self._m.programmed_rpm)
+            block = PlannedBlock(
+                number, length, words.get("K", 0.0), path, is_feed_per_revolution=True, is_thread=True
+            )
         elif motion == "G0":
             block = PlannedBlock(number, length, 1e9, path, is_rapid=True)
         else:
             per_rev = self.modes.feed_mode == "G95"
             block = PlannedBlock(
-                number, length, self._f if per_rev else self._f / 60.0, path, is_per_rev=per_rev
+                number, length, self._f if per_rev else self._f / 60.0, path, is_feed_per_revolution=per_rev
             )
         self._m.queue_block(block)
 

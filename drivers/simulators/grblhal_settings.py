@@ -78,7 +78,7 @@ class SettingRegisters:
         return self._values[number]
 
     @property
-    def is_lathe_mode(self) -> bool:
+    def is_in_lathe_mode(self) -> bool:
         """Return whether the controller is in lathe mode."""
         return self._values.get(_MODE, _LATHE) == _LATHE
 
@@ -131,7 +131,7 @@ class WaitContext(Protocol):
 
 
 @dataclass(slots=True)
-class FunctionWait:
+class SpindleOrCoolantWait:
     """Wait of an M function; it ends after ``remaining_s`` seconds or when the spindle is at speed.
 
     The wait ends at speed only if ``tolerance_percent`` is greater than 0.
@@ -143,7 +143,7 @@ class FunctionWait:
     time_to_check_s: float = _CHECK_PERIOD_S
     has_failed: bool = False  # The speed was not reached (ALARM:14).
 
-    def update_and_check(self, context: WaitContext) -> bool:
+    def update_and_check_end(self, context: WaitContext) -> bool:
         """Update the wait to the controller's current time, and return whether the wait has ended."""
         passed, self.last_update_s = context.time_s - self.last_update_s, context.time_s
         if context.is_in_hold:
@@ -159,7 +159,7 @@ class FunctionWait:
         return self.has_failed or abs(context.spindle.speed - context.commanded_rpm) <= slack
 
 
-def create_spindle_wait(context: WaitContext, *, is_spindle_on: bool) -> FunctionWait | None:
+def create_spindle_wait(context: WaitContext, *, is_spindle_on: bool) -> SpindleOrCoolantWait | None:
     """Create the wait of M3, M4 or M5, or return None if the settings for the wait are 0."""
     delay, tolerance = (
         context.registers[SPINDLE_ON if is_spindle_on else SPINDLE_OFF],
@@ -167,10 +167,10 @@ def create_spindle_wait(context: WaitContext, *, is_spindle_on: bool) -> Functio
     )
     if not delay and not tolerance:
         return None
-    return FunctionWait(delay or _MAX_WAIT_S, tolerance, context.time_s)
+    return SpindleOrCoolantWait(delay or _MAX_WAIT_S, tolerance, context.time_s)
 
 
-def create_coolant_wait(context: WaitContext) -> FunctionWait | None:
+def make_coolant_delay(context: WaitContext) -> SpindleOrCoolantWait | None:
     """Create the wait of M7 or M8, or return None if the setting for the wait is 0."""
     delay = context.registers[COOLANT_ON]
-    return FunctionWait(delay, 0.0, context.time_s) if delay else None
+    return SpindleOrCoolantWait(delay, 0.0, context.time_s) if delay else None

@@ -111,13 +111,13 @@ def _flipflop(
 ) -> PeriodFunction:
     set_, reset, out = (at(f"{name}.{pin}") for pin in ("set", "reset", "out"))
 
-    def step(_period: float) -> None:
+    def update_flipflop(_period: float) -> None:
         if cells[reset]:
             cells[out] = False
         elif cells[set_]:
             cells[out] = True
 
-    return step
+    return update_flipflop
 
 
 def _latch(cells: SignalCells, name: str, at: FindCellName, _value: Callable[[str], float]) -> PeriodFunction:
@@ -126,7 +126,7 @@ def _latch(cells: SignalCells, name: str, at: FindCellName, _value: Callable[[st
     )
     before = [False]
 
-    def step(_period: float) -> None:
+    def update_latch(_period: float) -> None:
         rising, before[0] = cells[reset] and not before[0], bool(cells[reset])
         if not cells[ok_in] or cells[fault_in]:
             cells[ok_out] = False
@@ -135,7 +135,7 @@ def _latch(cells: SignalCells, name: str, at: FindCellName, _value: Callable[[st
         if cells[ok_out]:
             cells[watchdog] = not cells[watchdog]
 
-    return step
+    return update_latch
 
 
 def _timedelay(
@@ -144,11 +144,11 @@ def _timedelay(
     in_, out, longest = at(f"{name}.in"), at(f"{name}.out"), value(f"{name}.on-delay")
     on = [0.0]
 
-    def step(period: float) -> None:
+    def update_time_delay(period: float) -> None:
         on[0] = on[0] + period if cells[in_] else 0.0
         cells[out] = on[0] > longest
 
-    return step
+    return update_time_delay
 
 
 def _create_limit3(
@@ -162,7 +162,7 @@ def _create_limit3(
     maxv, maxa = value(f"{name}.maxv"), value(f"{name}.maxa")
     was = [0.0, 0.0]  # The last input and the speed of the output.
 
-    def step(period: float) -> None:
+    def update_limited_output(period: float) -> None:
         wanted, place, speed = cells[in_], cells[out], was[1]
         goal_speed, was[0] = (wanted - was[0]) / period, wanted
         need = (wanted - place) / period
@@ -181,7 +181,7 @@ def _create_limit3(
         was[1] = min(max(chase, speed - room), speed + room)
         cells[out] = place + was[1] * period
 
-    return step
+    return update_limited_output
 
 
 _COMPONENT_STEPS = {
@@ -198,21 +198,21 @@ def create_streamer(cells: SignalCells, fifo: RowFifo, enable_pin: str, pins: li
     The function writes only while ``enable_pin`` is on. Without a new row, the pins retain their values.
     """
 
-    def step(_period: float) -> None:
+    def write_row_to_pins(_period: float) -> None:
         if cells[enable_pin] and fifo.readable:
             for pin, figure in zip(pins, fifo.read(), strict=True):
                 cells[pin] = figure
 
-    return step
+    return write_row_to_pins
 
 
 def create_sampler(cells: SignalCells, fifo: RowFifo, pins: list[str]) -> PeriodFunction:
     """Return a function that appends the values of the pins to ``fifo`` in each period."""
 
-    def step(_period: float) -> None:
+    def append_sample(_period: float) -> None:
         fifo.write(tuple([cells[pin] for pin in pins]))
 
-    return step
+    return append_sample
 
 
 def watchdog(
@@ -224,7 +224,7 @@ def watchdog(
     """
     was = [0.0, False, False]  # Seconds since the last change, the input, and enable.
 
-    def step(period: float) -> None:
+    def update_watchdog(period: float) -> None:
         since, last, enabled = was
         now, on = cells[input_pin], bool(cells[enable_pin])
         since = 0.0 if bool(now) is not last else since + period
@@ -234,4 +234,4 @@ def watchdog(
             cells[ok_pin] = False
         was[:] = [since, bool(now), on]
 
-    return step
+    return update_watchdog

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from core.ports import Clock, DriverError
 from drivers.hal.bridge.hal_bridge import HalBridge
 from drivers.hal.hal_config import HalAxis, HalConfig
-from drivers.hal.hal_section import HalSection, build_section
+from drivers.hal.hal_section import HalSection, build_hal_section
 from drivers.hal.hal_session import create_bridge_config
 from drivers.process_messages import ReceivedMessage, decode_message
 from drivers.simulators.hal_components import (
@@ -65,7 +65,7 @@ class ServoThread:
             program.compile_calls()
         )  # Runs one period of the thread; the argument is its length in s.
 
-    def find_cell(self, pin: str) -> str:
+    def find_cell_name(self, pin: str) -> str:
         """Return the name of the cell for one of TurnDesk's pins.
 
         The cell is created if it does not exist.
@@ -80,17 +80,21 @@ class ServoThread:
         if call.startswith("streamer."):
             fifo = self.setpoint_fifos[int(call.removeprefix("streamer."))]
             program.add_call(
-                create_streamer(self.cells, fifo, self.find_cell(f"{call}.enable"), self._list_pins(call))
+                create_streamer(
+                    self.cells, fifo, self.find_cell_name(f"{call}.enable"), self._list_pins(call)
+                )
             )
         elif call == "sampler.0":
             program.add_call(create_sampler(self.cells, self.sample_fifo, self._list_pins(call)))
         elif call == "watchdog.process":
             input_, enable, out = (
-                self.find_cell(f"watchdog.{pin}") for pin in ("input-0", "enable-in", "ok-out")
+                self.find_cell_name(f"watchdog.{pin}") for pin in ("input-0", "enable-in", "ok-out")
             )
             program.add_call(watchdog(self.cells, input_, enable, out, values["watchdog.timeout-0"]))
         elif call in component:
-            program.add_component(component[call], call, self.find_cell, lambda pin: values.get(pin, 0.0))
+            program.add_component(
+                component[call], call, self.find_cell_name, lambda pin: values.get(pin, 0.0)
+            )
 
     def _list_pins(self, call: str) -> list[str]:
         """Return the cells of the numbered pins of a streamer or sampler, in the order of their numbers."""
@@ -104,7 +108,7 @@ class BridgePins:
 
     def __init__(self, thread: ServoThread) -> None:
         self._cells = thread.cells
-        self._at = cache(lambda name: thread.find_cell(f"turndesk.{name}"))
+        self._at = cache(lambda name: thread.find_cell_name(f"turndesk.{name}"))
 
     def __getitem__(self, name: str) -> float:
         return self._cells[self._at(name)]
@@ -116,13 +120,13 @@ class BridgePins:
 class _AxisCells(NamedTuple):
     """Names of the cells for the pins of one axis; an empty name means that the pin does not exist."""
 
-    name: str
+    axis_name: str
     servo: SimulatedServo
-    feedback: str
-    fault: str
-    home: str
-    command: str
-    enable: str
+    feedback_cell: str
+    fault_cell: str
+    home_cell: str
+    command_cell: str
+    enable_cell: str
 
 
 class HalPlant(SimulatedPlant):
@@ -138,8 +142,8 @@ class HalPlant(SimulatedPlant):
         now = self.clock.now()
         with self.lock:
             self._apply_faults(now)
-            while self._at + self.config.step_s <= now + _COMPARE_TOLERANCE:
-                self._at += self.config.step_s
+            while self._at + self.config.model_step_s <= now + _COMPARE_TOLERANCE:
+                self._at += self.config.model_step_s
                 self.spindle.advance_to(max(self._at, self.spindle.time_s))
                 self.run_periods(self._at)
         return now
@@ -171,7 +175,7 @@ class HalSimulator:
         self.plant.faulty_axes = set()
         self.plant.run_periods = self._period
         self.plant_controls = PlantControls(self.plant)
-        self.servo_thread = ServoThread(build_section(config))
+        self.servo_thread = ServoThread(build_hal_section(config))
         self.is_bridge_killed = False  # The process of the bridge has ended.
         self.is_bridge_suspended = False  # The process of the bridge is suspended.
         self.is_thread_stopped = False  # The servo thread is stopped.
@@ -221,7 +225,7 @@ class HalSimulator:
         self.board_error_count = 0
         if self.is_bridge_killed or self.bridge.has_driver_ended:
             self.is_bridge_killed = False
-            self.servo_thread, self._hands = ServoThread(build_section(self.config)), None
+            self.servo_thread, self._hands = ServoThread(build_hal_section(self.config)), None
             self.bridge = self._start()
         self._outbox.clear()
         return self
@@ -317,11 +321,11 @@ class HalSimulator:
         plant, config, cells = self.plant, self.config, self.servo_thread.cells
         for axis in self._axes:
             servo = axis.servo
-            cells[axis.feedback] = servo.reading
-            if axis.fault:
-                cells[axis.fault] = axis.name in plant.faulty_axes
-            if axis.home:
-                cells[axis.home] = servo.p <= servo.switch
+            cells[axis.feedback_cell] = servo.reading
+            if axis.fault_cell:
+                cells[axis.fault_cell] = axis.axis_name in plant.faulty_axes
+            if axis.home_cell:
+                cells[axis.home_cell] = servo.p <= servo.switch
         if config.spindle.pins.position:
             self._set_encoder(plant.spindle.counted_revolutions)
         self._set(config.spindle.pins.velocity, plant.spindle.speed / 60.0)
@@ -329,7 +333,7 @@ class HalSimulator:
 
     def _read_station(self, t: float) -> None:
         """Copy the inputs and pots of the operator station to the cells if they may have changed."""
-        hands = self.plant.read_station(t)
+        hands = self.plant.read_station_and_inputs(t)
         if hands is self._hands:
             return
         self._hands = hands
@@ -369,12 +373,12 @@ class HalSimulator:
         plant, config, cells = self.plant, self.config, self.servo_thread.cells
         powered = not self.is_thread_stopped and not plant.station_panel.estop
         for axis in self._axes:
-            servo, goal, last = axis.servo, cells[axis.command], self._place[axis.name]
-            self._place[axis.name] = goal
-            if powered and cells[axis.enable]:
+            servo, goal, last = axis.servo, cells[axis.command_cell], self._place[axis.axis_name]
+            self._place[axis.axis_name] = goal
+            if powered and cells[axis.enable_cell]:
                 servo.follow_setpoint(goal, (goal - last) / period, period)
                 if goal == last:
-                    servo.settle_at(goal)
+                    servo.settle_at_setpoint(goal)
             else:
                 servo.roll(period)
         rpm = 0.0 if self.is_thread_stopped else self._get(config.spindle.pins.speed)

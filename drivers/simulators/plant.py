@@ -22,7 +22,7 @@ from core.ports import (
     StopMode,
 )
 from drivers.operator_station import PanelState
-from drivers.port_checks import SampleLog, require_no_fault, require_no_homing, require_power
+from drivers.port_checks import SampleRingBuffer, require_drive_power, require_no_fault, require_no_homing
 from drivers.setpoint_queue import plan_axis_move
 from drivers.simulators.plant_config import SimConfig
 from drivers.simulators.plant_terminals import SimulatedTerminals, SimulatedToolSetter
@@ -52,16 +52,16 @@ class SimulatedPlant:
         self.config = config
         self.clock = clock
         self.lock = threading.RLock()
-        self.wakeup = LocalWakeup(self.is_settled)
+        self.wakeup = LocalWakeup(self.is_state_constant)
         self.action_lock = ActionLock(
             self.lock, self.wakeup.request_poll
         )  # For operator actions and for faults.
-        self.servos = tuple(SimulatedServo(axis, config.step_s) for axis in config.axes)
+        self.servos = tuple(SimulatedServo(axis, config.model_step_s) for axis in config.axes)
         self.axis_names = tuple(axis.name for axis in config.axes)
         self.spindle = SpindleMotor(config.spindle)
         self.terminals = SimulatedTerminals(config.outputs, config.inputs, config.collet, config.random_seed)
         self.terminals.setter = SimulatedToolSetter(config.setter) if config.setter is not None else None
-        self.station_panel = PanelState(config.palm_window_s, config.start_pulse_s, config.random_seed)
+        self.station_panel = PanelState(config.palm_window_s, config.min_start_pulse_s, config.random_seed)
         self.setpoint_queue = GearedQueue(
             GearAxes.from_axes(config.axes, config.commit_time_s), self._readings()
         )
@@ -72,14 +72,16 @@ class SimulatedPlant:
         self.apply_due_faults: Callable[[float], None] | None = (
             None  # Applies the scheduled faults that are due.
         )
-        self.sample_log: SampleLog | None = None  # Samples of all grid points from the first request on.
+        self.sample_log: SampleRingBuffer | None = (
+            None  # Samples of all grid points from the first request on.
+        )
         self._turned: tuple[float, ...] = (
             0.0,
             0.0,
             0.0,
         )  # speed, turns and load of the spindle at the present grid point
         self._changed = True  # The last sample was not at rest.
-        self._k = int(clock.now() / config.step_s)
+        self._k = int(clock.now() / config.model_step_s)
         self.spindle.time_s = clock.now()
         self._hands: tuple[StationState, Mapping[str, bool]] | None = None
         # Number of changes at the last reading. None: they can change at any time.
@@ -90,7 +92,7 @@ class SimulatedPlant:
     @property
     def model_time_s(self) -> float:
         """Return the time of the last calculated grid point in seconds."""
-        return self._k * self.config.step_s
+        return self._k * self.config.model_step_s
 
     def advance(self) -> float:
         """Advance the model to the current time of the clock, and return this time in seconds."""
@@ -100,7 +102,7 @@ class SimulatedPlant:
                 return now
             self._apply_faults(now)
             self._looked_at = now
-            last = int(now / self.config.step_s + 1e-6)
+            last = int(now / self.config.model_step_s + 1e-6)
             if last > self._k:
                 self._advance_axes(last)
                 self.setpoint_queue.discard_pieces_before(self.model_time_s - _HISTORY_S)
@@ -108,7 +110,7 @@ class SimulatedPlant:
                 self.spindle.advance_to(now)
         return now
 
-    def read_station(self, time_s: float) -> tuple[StationState, Mapping[str, bool]]:
+    def read_station_and_inputs(self, time_s: float) -> tuple[StationState, Mapping[str, bool]]:
         """Return the state of the operator station and the inputs at time ``time_s`` in seconds.
 
         They are calculated again only if they may have changed since the last call.
@@ -117,14 +119,14 @@ class SimulatedPlant:
         if self._hands is None or changes != self._hands_at:
             still = (
                 self.terminals.setter is None
-                and self.terminals.is_settled(time_s)
-                and self.station_panel.is_settled(time_s)
+                and self.terminals.is_collet_motion_complete(time_s)
+                and self.station_panel.is_state_constant(time_s)
             )
             self._hands_at = changes if still else None
             self._hands = self.station_panel.state(time_s), self.terminals.read_inputs(time_s)
         return self._hands
 
-    def is_settled(self) -> bool:
+    def is_state_constant(self) -> bool:
         """Return whether the machine will not change until an operator or a test acts.
 
         A machine with scheduled faults is never settled.
@@ -133,7 +135,11 @@ class SimulatedPlant:
             now = self.advance()
             waits = self.apply_due_faults is not None or self._off_at < _NO_TIME or self._homing is not None
             moves = waits or not self.spindle.is_at_rest or not self._resting()
-            return not moves and self.terminals.is_settled(now) and self.station_panel.is_settled(now)
+            return (
+                not moves
+                and self.terminals.is_collet_motion_complete(now)
+                and self.station_panel.is_state_constant(now)
+            )
 
     def _apply_faults(self, now: float) -> None:
         """Apply the faults that are due at time ``now``; nested calls are prevented."""
@@ -169,7 +175,7 @@ class SimulatedPlant:
                 cam, SpindlePhaseFilter(now, self.spindle.counted_revolutions, self.spindle.speed / 60.0), now
             )
 
-    def set_power(self, is_on: bool) -> None:
+    def set_drive_power(self, is_on: bool) -> None:
         """Switch the drives on at their current positions, or off.
 
         Raises DriverError if the drives are to be switched on while the E-stop is pressed or a fault is
@@ -186,7 +192,7 @@ class SimulatedPlant:
                 )
             require_no_fault(self.fault)
             if not self.enabled:
-                self.setpoint_queue.reset_to(self._readings())
+                self.setpoint_queue.reset_to_position(self._readings())
             self.enabled, self._off_at = True, _NO_TIME
 
     def stop(self, mode: StopMode) -> None:
@@ -269,12 +275,12 @@ class SimulatedPlant:
         return tuple(servo.reading for servo in self.servos)
 
     def _need_power(self) -> None:
-        require_power(self.fault, self.enabled and self._off_at >= _NO_TIME)
+        require_drive_power(self.fault, self.enabled and self._off_at >= _NO_TIME)
         require_no_homing(self._homing[0].axis.name if self._homing is not None else "")
 
     def _power_off(self) -> None:
         self.enabled, self._off_at, self._homing = False, _NO_TIME, None
-        self.setpoint_queue.reset_to(self._readings())
+        self.setpoint_queue.reset_to_position(self._readings())
         for servo in self.servos:
             servo.handle_power_loss()
 
@@ -297,7 +303,7 @@ class SimulatedPlant:
         self.spindle.is_cutting = False
         if self.spindle.slip_fraction:
             self.spindle.set_cutting(self.model_time_s, is_cutting=False)
-        until = max(self._k + 1, int(min(self._off_at / self.config.step_s + 1, last)))
+        until = max(self._k + 1, int(min(self._off_at / self.config.model_step_s + 1, last)))
         if self.sample_log is not None:
             self._store_rest_samples(until)
         self._k = until
@@ -320,7 +326,7 @@ class SimulatedPlant:
         ahead = self._ahead
         piece, until = self.setpoint_queue.find_piece_at(self.model_time_s)
         if ahead is None or not ahead.is_valid_at(piece, until, self._k):
-            ahead = self._ahead = predict_motion(self.servos, piece, until, self._k, self.config.step_s)
+            ahead = self._ahead = predict_motion(self.servos, piece, until, self._k, self.config.model_step_s)
         if ahead is None:
             return False
         last = min(last, ahead.last_point)
@@ -340,11 +346,11 @@ class SimulatedPlant:
         ):
             return False
         rest, _ = self.setpoint_queue.get_commanded_state(self.model_time_s)
-        settled = [servo.settle_at(p) for servo, p in zip(self.servos, rest, strict=True)]
+        settled = [servo.settle_at_setpoint(p) for servo, p in zip(self.servos, rest, strict=True)]
         return all(settled)
 
     def _step(self) -> None:
-        dt, t = self.config.step_s, self.model_time_s
+        dt, t = self.config.model_step_s, self.model_time_s
         if not self.enabled:
             self._store_sample(t, None)
             self._k += 1
@@ -417,7 +423,7 @@ class SimulatedPlant:
         actual = self._readings()
         row = [0.0, *(demand or actual), *actual, *(servo.load for servo in self.servos), *_SPINDLE_AT_REST]
         rows = np.tile(np.array(row), (end_point - self._k, 1))
-        rows[:, 0] = np.arange(self._k, end_point) * self.config.step_s
+        rows[:, 0] = np.arange(self._k, end_point) * self.config.model_step_s
         self._add_spindle_columns(rows, np.zeros(len(rows), dtype=np.bool_))
         self.sample_log.append_rows(rows)
         self._k, self._changed = end_point, True
@@ -438,7 +444,7 @@ class SimulatedPlant:
         """
         rows[:, -4:-1] = self._turned
         if self._turned[0] or not self.spindle.is_at_rest:
-            following = self.spindle.turn_to_times(rows[:, 0] + self.config.step_s, cuts)
+            following = self.spindle.advance_through_times(rows[:, 0] + self.config.model_step_s, cuts)
             rows[1:, -4:-1] = following[:-1]
             self._turned = tuple(following[-1].tolist())
 
@@ -477,4 +483,4 @@ class SimulatedPlant:
         if self._homing is not None and self.model_time_s >= self._homing[1]:
             self._homing[0].reference()
             self._homing = None
-            self.setpoint_queue.reset_to(self._readings())
+            self.setpoint_queue.reset_to_position(self._readings())

@@ -15,8 +15,8 @@ class SimAxis(AxisProperties):
 
     power_up_position: float = 0.0  # Position relative to home at power-up.
     bandwidth_hz: float = 40.0  # Bandwidth of the position loop in Hz.
-    feed_forward: float = 0.9  # Fraction of the velocity; the rest appears as following error.
-    accel_reserve: float = 1.3  # Factor by which the servo can exceed amax.
+    feed_forward_fraction: float = 0.9  # Fraction of the velocity; the rest appears as following error.
+    acceleration_reserve_factor: float = 1.3  # Factor by which the servo can exceed amax.
     own_drive: bool = False  # C only: the axis can be positioned while the spindle turns.
 
 
@@ -31,10 +31,10 @@ class SimSpindle:
     acceleration_rpm_per_s: float = 1500.0
     deceleration_rpm_per_s: float = 2500.0
     coast_deceleration_rpm_per_s: float = 600.0
-    latency_s: float = 0.08
+    command_latency_s: float = 0.08
     pulses_per_rev: int = 1024
-    can_orient: bool = False  # The drive can stop the spindle at an angle; it turns there at orient_rpm.
-    orient_rpm: float = 60.0
+    can_orient: bool = False  # The drive can stop the spindle at an angle; it turns there at orientation_rpm.
+    orientation_rpm: float = 60.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ class SimCollet:
     """
 
     output_name: str = "collet"
-    closed_input: str = "collet_closed"
+    closed_input_name: str = "collet_closed"
     open_time_s: float = 0.25
     close_time_s: float = 0.30
     time_variation_fraction: float = 0.2
@@ -72,7 +72,7 @@ class SimToolSetter:
 
     x_mm: float
     z_mm: float
-    width_mm: float
+    stylus_width_mm: float
     tip_positions: tuple[tuple[float, float], ...]
 
 
@@ -86,10 +86,10 @@ class SimConfig:
     outputs: Mapping[str, SimOutput] = field(default_factory=dict)
     inputs: tuple[str, ...] = ()
     commit_time_s: float = 0.03
-    step_s: float = 0.001  # Interval of the servo model in s.
+    model_step_s: float = 0.001  # Interval of the servo model in s.
     random_seed: int = 1
     planned_faults: tuple[PlannedFault, ...] = ()
     setter: SimToolSetter | None = None
-    has_load_input: bool = False  # An input measures the spindle load.
+    has_spindle_load_input: bool = False  # An input measures the spindle load.
     palm_window_s: float = 0.5  # Seconds within which both palm buttons must be pressed.
-    start_pulse_s: float = 0.1  # Minimum pulse of the two-hand relay in s.
+    min_start_pulse_s: float = 0.1  # Minimum pulse of the two-hand relay in s.

@@ -126,7 +126,7 @@ class PlantControls(StationControls):
     def spindle_ignores_stop(self, ignored: bool = True) -> None:
         """Make the inverter ignore commands for a lower speed, or end this fault."""
         with self._locked_time():
-            self._plant.spindle.faults.ignores_stop = ignored
+            self._plant.spindle.faults.is_stop_ignored = ignored
 
     def spindle_fault(self, text: str) -> None:
         """Trip the inverter with ``text`` as the fault text, so that the spindle coasts.
@@ -150,7 +150,7 @@ class PlantControls(StationControls):
     def station_silent(self, silent: bool = True) -> None:
         """Disconnect the operator station, or connect the station again."""
         with self._plant.action_lock:
-            self._plant.station_panel.set_disconnected(silent, self._plant.clock.now())
+            self._plant.station_panel.set_cable_disconnected(silent, self._plant.clock.now())
 
     def pot_noise(self, width: float) -> None:
         """Add noise with an amplitude of ``width`` to both pots, as a worn wiper does."""
@@ -159,7 +159,7 @@ class PlantControls(StationControls):
 
     # --- true states, known only in a simulation ----------------------------------------------------------
 
-    def get_true_position(self) -> tuple[float, ...]:
+    def get_true_positions(self) -> tuple[float, ...]:
         """Return the true positions of the axes, which do not depend on the encoders."""
         with self._plant.lock:
             self._plant.advance()

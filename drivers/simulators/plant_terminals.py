@@ -25,7 +25,7 @@ class SimulatedToolSetter:
         At a touch, the encoder readings are latched.
         """
         config = self._config
-        half = config.width_mm / 2.0
+        half = config.stylus_width_mm / 2.0
         depths = [
             half - max(abs(x - tip_x - config.x_mm), abs(z - tip_z - config.z_mm))
             for tip_x, tip_z in config.tip_positions
@@ -96,14 +96,14 @@ class SimulatedTerminals:
 
         The collet switch follows the collet, unless the switch is stuck.
         """
-        name = self._collet.closed_input
+        name = self._collet.closed_input_name
         if name in self.input_states and not self.is_collet_sensor_stuck:
             self.input_states[name] = self.is_collet_closed(now)
         if self.setter is not None and self.setter.is_touched and PROBE_INPUT in self.input_states:
             return {**self.input_states, PROBE_INPUT: True}
         return dict(self.input_states)
 
-    def is_settled(self, now: float) -> bool:
+    def is_collet_motion_complete(self, now: float) -> bool:
         """Return whether the collet has finished opening or closing."""
         return self._opened_at <= now and (self._closed_at <= now or self._closed_at == float("inf"))
 

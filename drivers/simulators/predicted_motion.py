@@ -95,7 +95,7 @@ class PredictedMotion:
         """Move the axes to their predicted state at grid point ``grid_point``."""
         steps = grid_point - self._points.start
         for servo, setpoints, response in self._moving:
-            servo.follow_response(setpoints, response, steps)
+            servo.apply_response(setpoints, response, steps)
         self._note(grid_point)
 
     def _note(self, k: int) -> None:

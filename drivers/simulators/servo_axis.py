@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from typing import NamedTuple, TypeVar
 
 from core.ports import Cam, DriverError, FloatArray, MotionSegments
-from drivers.setpoint_queue import check_limits
+from drivers.setpoint_queue import check_setpoint_limits
 from drivers.simulators.plant_config import SimAxis
 
 # Lowest speed in mm/s and fraction of the rapid between which an axis is assumed to cut.
@@ -43,7 +43,9 @@ class SimulatedServo:
         self.load = 0.0  # Percent of the drive's capacity, signed.
         self.feeds = (_FEEDS, _CUTS * axis.vmax)  # Speed range in which the axis is assumed to cut.
         self._wn = 2 * math.pi * axis.bandwidth_hz
-        self._loop = ServoLoop(self._wn * step_s, axis.feed_forward) if self._wn * step_s < 0.5 else None
+        self._loop = (
+            ServoLoop(self._wn * step_s, axis.feed_forward_fraction) if self._wn * step_s < 0.5 else None
+        )
 
     @property
     def reading(self) -> float:
@@ -92,7 +94,8 @@ class SimulatedServo:
         acceleration a.
         """
         return (
-            position + (2.0 * (1.0 - self.axis.feed_forward) * velocity + acceleration / self._wn) / self._wn
+            position
+            + (2.0 * (1.0 - self.axis.feed_forward_fraction) * velocity + acceleration / self._wn) / self._wn
         )
 
     def follow_setpoint(self, position: float, velocity: float, seconds: float) -> bool:
@@ -104,8 +107,8 @@ class SimulatedServo:
         """
         wn, axis = self._wn, self.axis
         seen = self.p if self.stuck is None and not self.worn.has_encoder_error else self._encoder_reading()
-        limit = axis.amax * axis.accel_reserve
-        force = wn * (wn * (position - seen) + 2 * (axis.feed_forward * velocity - self.v))
+        limit = axis.amax * axis.acceleration_reserve_factor
+        force = wn * (wn * (position - seen) + 2 * (axis.feed_forward_fraction * velocity - self.v))
         # Faster than min and max; this code runs three times per millisecond.
         if not -limit <= force <= limit:
             force = math.copysign(limit, force)
@@ -145,13 +148,13 @@ class SimulatedServo:
         if abs(lag) + abs(drift) * point_count + slow + fast > axis.following_window:
             return None
         bent = 2.0 * abs(ddp) + slow * loop.slow_curvature + fast * loop.fast_curvature
-        first = self._wn * (self._wn * (p - self.p) + 2.0 * (axis.feed_forward * dp / dt - self.v))
-        if max(bent / (dt * dt), abs(first)) > axis.amax * axis.accel_reserve:
+        first = self._wn * (self._wn * (p - self.p) + 2.0 * (axis.feed_forward_fraction * dp / dt - self.v))
+        if max(bent / (dt * dt), abs(first)) > axis.amax * axis.acceleration_reserve_factor:
             return None
         fastest = max(abs(dp), abs(dp + 2.0 * ddp * point_count)) + abs(drift) + slow + fast
         return response if fastest <= axis.vmax * 1.1 * dt else None
 
-    def follow_response(
+    def apply_response(
         self, setpoints: SetpointPolynomial, response: ServoResponse, point_count: int
     ) -> None:
         """Move the axis as ``point_count`` calls of ``follow_setpoint`` would do.
@@ -171,7 +174,11 @@ class SimulatedServo:
         assert self._loop is not None
         dt = self._step
         place, moved, bent = self._loop.calculate_states_at(setpoints, response, point_count)
-        return place, moved / dt, 100.0 * bent / (dt * dt) / (self.axis.amax * self.axis.accel_reserve)
+        return (
+            place,
+            moved / dt,
+            100.0 * bent / (dt * dt) / (self.axis.amax * self.axis.acceleration_reserve_factor),
+        )
 
     def _encoder_reading(self) -> float:
         """Return the position that the drive measures."""
@@ -188,7 +195,7 @@ class SimulatedServo:
             self.worn.move_slide(self.p, self.v)
         self.over = self.load = 0.0
 
-    def settle_at(self, position: float) -> bool:
+    def settle_at_setpoint(self, position: float) -> bool:
         """Settle the axis at ``position`` if it is almost there, and return whether it is at rest."""
         if self.jammed or self.stuck is not None or self.runaway:
             return False
@@ -228,7 +235,9 @@ def check_drive_limits(segments: MotionSegments, servos: Sequence[SimulatedServo
     DriverError if C moves on the spindle drive while the spindle is turning; C with its own drive may move.
     """
     axes = [servo.axis for servo in servos]
-    check_limits(segments, axes, [servo.homed for servo in servos], [servo.reading for servo in servos])
+    check_setpoint_limits(
+        segments, axes, [servo.homed for servo in servos], [servo.reading for servo in servos]
+    )
     for i, axis in enumerate(axes):
         if (
             axis.name == "C"

@@ -23,7 +23,7 @@ class SpindleFaults:
     """Faults of the spindle that tests can set."""
 
     speed_fraction: float = 1.0  # fraction of the commanded speed that the motor reaches
-    ignores_stop: bool = False
+    is_stop_ignored: bool = False
     oscillation_fraction: float = 0.0  # Amplitude of the speed oscillation as a fraction.
     oscillation_period_s: float = 2.0  # s
     belt_slip_fraction: float = 0.0  # fraction of the speed that a slipping belt loses in the cut
@@ -31,7 +31,7 @@ class SpindleFaults:
     is_never_oriented: bool = False  # The drive does not report that the angle is reached.
 
 
-class OrientCommand(NamedTuple):
+class OrientationCommand(NamedTuple):
     """Command to orient the spindle to ``angle_deg`` degrees from the index.
 
     ``direction`` is 1 for the direction of M03, -1 for that of M04, and 0 for the shortest path.
@@ -86,7 +86,7 @@ class SpindleMotor:
         self._target = 0.0
         self._coasting = False
         self._orders: deque[tuple[float, float, bool]] = deque()
-        self._orient: OrientCommand | None = None  # The spindle is at this angle or turning to it.
+        self._orient: OrientationCommand | None = None  # The spindle is at this angle or turning to it.
         self._begins = 0.0  # Start time of the orientation.
 
     @property
@@ -147,13 +147,15 @@ class SpindleMotor:
 
         A stop cancels pending speed commands. With ``should_coast``, the spindle stops without a ramp.
         """
-        if self.faults.ignores_stop and abs(rpm) < abs(self._target):
+        if self.faults.is_stop_ignored and abs(rpm) < abs(self._target):
             return
         limit = self.config.max_rpm
         self.cancel_orientation()
         if rpm == 0.0:
             self._orders = deque(waiting for waiting in self._orders if waiting[1] == 0.0)
-        self._orders.append((time_s + self.config.latency_s, min(max(rpm, -limit), limit), should_coast))
+        self._orders.append(
+            (time_s + self.config.command_latency_s, min(max(rpm, -limit), limit), should_coast)
+        )
 
     def remove_power(self, now: float) -> None:
         """Remove the power of the motor, so that the spindle coasts."""
@@ -168,7 +170,10 @@ class SpindleMotor:
 
         The motion starts after the latency of the inverter.
         """
-        self._orient, self._begins = OrientCommand(angle_deg, direction), now + self.config.latency_s
+        self._orient, self._begins = (
+            OrientationCommand(angle_deg, direction),
+            now + self.config.command_latency_s,
+        )
 
     def cancel_orientation(self) -> None:
         """Cancel the orientation; the spindle stays at its current angle."""
@@ -192,7 +197,7 @@ class SpindleMotor:
         if order is None or self.time_s < self._begins or self._even or self.faults.fault_text:
             return 0.0
         travel_rev = order.get_revolutions_to_angle(self.revolutions)
-        return math.copysign(self.config.orient_rpm, travel_rev) if travel_rev else 0.0
+        return math.copysign(self.config.orientation_rpm, travel_rev) if travel_rev else 0.0
 
     def _turn_to_angle(self, now: float) -> None:
         """Turn toward the commanded angle at a constant speed, without simulating the acceleration."""
@@ -200,7 +205,7 @@ class SpindleMotor:
         if order is None or self._even or self.faults.fault_text or now <= begins:
             return
         travel_rev = order.get_revolutions_to_angle(self.revolutions)
-        done = self.config.orient_rpm / 60.0 * (now - begins)
+        done = self.config.orientation_rpm / 60.0 * (now - begins)
         if done >= abs(travel_rev):
             self.revolutions = (
                 round(self.revolutions + travel_rev - order.angle_deg / 360.0) + order.angle_deg / 360.0
@@ -220,7 +225,7 @@ class SpindleMotor:
             self._turn_to_angle(now)
         self.time_s = now
 
-    def turn_to_times(self, times: FloatArray, cutting_flags: BoolArray) -> FloatArray:
+    def advance_through_times(self, times: FloatArray, cutting_flags: BoolArray) -> FloatArray:
         """Turn to the last of ``times``, and return the speed, counted revolutions and load at each time.
 
         The times are in seconds, and the result has the shape (n, 3). ``cutting_flags`` specifies for each

@@ -19,7 +19,7 @@ class TransferSettings:
     """Settings for the transfer of a program, in addition to the line settings.
 
     - ``delimiter`` is the line before and after a program. If it is empty, only silence marks the end.
-    - ``sends_dc_codes``: DC2 and DC4 are sent before and after a program, DC1 and DC3 before and after
+    - ``has_dc_codes``: DC2 and DC4 are sent before and after a program, DC1 and DC3 before and after
       reception.
     - ``needs_dc1``: sending starts only after DC1 from the other side.
     - ``leader_nul_count`` is the number of NULs before and after a program.
@@ -28,12 +28,12 @@ class TransferSettings:
     line_settings: LineSettings
     delimiter: str = "%"
     line_end: str = "\r\n"
-    sends_dc_codes: bool = False
+    has_dc_codes: bool = False
     needs_dc1: bool = False
     leader_nul_count: int = 0
 
     @property
-    def checks_parity(self) -> bool:
+    def is_parity_checked(self) -> bool:
         """Return whether TurnDesk checks the parity itself.
 
         The line then has eight bits and carries seven bits with parity.
@@ -56,7 +56,7 @@ class TransferSettings:
         The port does not use XON/XOFF, because the input is read immediately.
         """
         flow = "rtscts" if self.line_settings.flow_control == "rtscts" else "none"
-        if self.checks_parity:
+        if self.is_parity_checked:
             return replace(self.line_settings, data_bits=8, parity="N", flow_control=flow)
         return replace(self.line_settings, flow_control=flow)
 
@@ -112,7 +112,7 @@ class ReceptionPhase(StrEnum):
     COMPLETE = "whole"
 
 
-class IncompleteError(DriverError):
+class IncompleteProgramError(DriverError):
     """Error raised if the received program is incomplete or invalid, so that nothing is saved."""
 
 
@@ -120,11 +120,11 @@ class IncompleteError(DriverError):
 class ReceivedText:
     """A complete received program.
 
-    ``name`` is empty if the program does not contain a name.
+    ``program_name`` is empty if the program does not contain a name.
     """
 
     program_bytes: bytes
-    name: str
+    program_name: str
     line_count: int
     sha256: str  # SHA-256
     is_seven_bit: bool  # Received with even parity through a line of eight bits.
@@ -142,7 +142,7 @@ class ProgramParser:
     def __init__(self, settings: TransferSettings) -> None:
         self._settings = settings
         self._wrap = settings.delimiter.encode("ascii")
-        self._parity = PARITY_VALUES[settings.line_settings.parity] if settings.checks_parity else None
+        self._parity = PARITY_VALUES[settings.line_settings.parity] if settings.is_parity_checked else None
         self._raw = bytearray()  # Characters with parity bits, after the first %.
         self._skipped = 0
         self._before = bytearray()  # Last characters before the first %, without leaders.
@@ -157,7 +157,7 @@ class ProgramParser:
         return "".join(self._told())
 
     @property
-    def is_noise(self) -> bool:
+    def is_input_noise(self) -> bool:
         """Return whether most characters before the first % are not text in seven or eight bits."""
         return sum(len(one) > 1 for one in self._told()) * 2 > len(self._before)
 
@@ -173,12 +173,13 @@ class ProgramParser:
     def add_characters(self, received: bytes) -> None:
         """Add received characters.
 
-        Raises IncompleteError at the first parity error within the program, at an end code of the sender
-        before the final %, and after more than 50 MB. ``build_program`` detects invalid control characters.
+        Raises IncompleteProgramError at the first parity error within the program, at an end code of the
+        sender before the final %, and after more than 50 MB. ``build_program`` detects invalid control
+        characters.
         """
         self.character_count += len(received)
         if self.character_count > MAX_PROGRAM_BYTES:
-            raise IncompleteError(
+            raise IncompleteProgramError(
                 "more than {largest} MB were received; the received data is not a program",
                 largest=MAX_PROGRAM_BYTES // 1000000,
             )
@@ -191,8 +192,8 @@ class ProgramParser:
     def handle_silence(self) -> None:
         """End the program after a silence, which marks the end of the input.
 
-        A final % needs no line end. Raises IncompleteError if the program has not begun or the final % is
-        missing. Without a delimiter, no final % is required.
+        A final % needs no line end. Raises IncompleteProgramError if the program has not begun or the final
+        % is missing. Without a delimiter, no final % is required.
         """
         if self.phase is ReceptionPhase.COMPLETE:
             return
@@ -203,8 +204,8 @@ class ProgramParser:
     def build_program(self) -> ReceivedText:
         """Return the complete program.
 
-        Raises IncompleteError if its text is empty, contains an invalid control character, or contains more
-        than one program.
+        Raises IncompleteProgramError if its text is empty, contains an invalid control character, or
+        contains more than one program.
         """
         raw = bytes(self._raw)
         seven = self._parity is not None or (not self._wrap and _has_even_parity(raw))
@@ -214,8 +215,10 @@ class ProgramParser:
             self._check(line, number)
         whole = b"".join(line + b"\n" for line in lines)
         if not whole.strip():
-            raise IncompleteError("the received program is empty; send the program again", reason="empty")
-        detected = seven and not self._settings.checks_parity
+            raise IncompleteProgramError(
+                "the received program is empty; send the program again", reason="empty"
+            )
+        detected = seven and not self._settings.is_parity_checked
         digest = sha256(whole).hexdigest()
         return ReceivedText(
             whole, find_program_name(head, lines), len(lines), digest, detected, self._skipped
@@ -232,7 +235,7 @@ class ProgramParser:
 
     def _check(self, line: bytes, number: int) -> None:
         if self._wrap and line.lstrip().startswith(self._wrap):
-            raise IncompleteError(
+            raise IncompleteProgramError(
                 "line {number} begins with {wrap}, so more than one program was received; send "
                 "only one program",
                 reason="several",
@@ -241,7 +244,7 @@ class ProgramParser:
             )
         for character in line:
             if character < 0x20 and character != _TAB:
-                raise IncompleteError(
+                raise IncompleteProgramError(
                     "line {number} contains the control character {character} because of "
                     "interference on the serial line. Nothing was saved; send the program again",
                     reason="control-character",
@@ -293,15 +296,15 @@ class ProgramParser:
         """Handle a parity error.
 
         In noise before an eight-bit program, a character may look like a % with parity. Reception then
-        starts again. Otherwise, raises IncompleteError.
+        starts again. Otherwise, raises IncompleteProgramError.
         """
-        if not self._settings.checks_parity and not self.line_count:
+        if not self._settings.is_parity_checked and not self.line_count:
             self._skipped += len(self._raw) + 1
             self._raw.clear()
             self._parity, self.phase = None, ReceptionPhase.WAITING
             self._wait(character)
             return
-        raise IncompleteError(
+        raise IncompleteProgramError(
             "parity error in line {lines}; nothing was saved. Check the serial port "
             "settings ({line}) and the shield and ground of the cable, then send the "
             "program again",
@@ -315,7 +318,7 @@ class ProgramParser:
         line = bytes(character & _SEVEN_BIT_MASK for character in self._raw[self._begins :])
         return bool(self._begins) and line.translate(None, _SKIPPED_CODES).strip() == self._wrap
 
-    def _lacking(self) -> IncompleteError:
+    def _lacking(self) -> IncompleteProgramError:
         wrap = self._settings.delimiter
         if self.phase is ReceptionPhase.WAITING:
             came = (
@@ -327,12 +330,12 @@ class ProgramParser:
                 if self.character_count
                 else "nothing came"
             )
-            return IncompleteError(
+            return IncompleteProgramError(
                 "{came}; check the serial port settings and the other device, then send the program again",
                 reason="no-begin" if self.character_count else "nothing",
                 came=came,
             )
-        return IncompleteError(
+        return IncompleteProgramError(
             "the end character {wrap} is missing after {lines} lines: the program is incomplete "
             "and was not saved; send the program again",
             reason="no-end",
@@ -386,7 +389,7 @@ def encode_program(text: bytes, settings: TransferSettings) -> bytes:
     framed = [wrap, *lines, wrap] if wrap else lines
     body = b"".join(line + eol for line in framed)
     nulls = bytes(settings.leader_nul_count)
-    return nulls + (DC2 + body + DC4 if settings.sends_dc_codes else body) + nulls
+    return nulls + (DC2 + body + DC4 if settings.has_dc_codes else body) + nulls
 
 
 def _strip_framing(lines: list[bytes], wrap: bytes) -> list[bytes]:

@@ -14,7 +14,7 @@ from drivers.transfer.program_framing import (
     DC1,
     DC3,
     DC4,
-    IncompleteError,
+    IncompleteProgramError,
     ProgramParser,
     ReceivedText,
     ReceptionPhase,
@@ -49,15 +49,15 @@ class TransferState:
     """The progress of a transfer: bytes, lines, and the reason for waiting.
 
     ``total_byte_count`` is 0 if the total is unknown. ``wait_reason`` is an empty string or one of the
-    reasons that this module defines, such as WAITING_FOR_DC1. ``received_text`` is the text received before
+    reasons that this module defines, such as WAITING_FOR_DC1. ``leading_text`` is the text received before
     the first %, which is not part of the program.
     """
 
-    done_byte_count: int = 0
+    transferred_byte_count: int = 0
     total_byte_count: int = 0
-    line_count: int = 0
+    transferred_line_count: int = 0
     wait_reason: str = ""
-    received_text: str = ""
+    leading_text: str = ""
 
 
 class _Transfer:
@@ -137,9 +137,9 @@ class SendTransfer(_Transfer):
         self._moved = self._clock.now()
         while out < len(self._data):
             self._go_on()
-            if not self._held and not self._wire.count_unsent() and taken < len(self._data):
-                taken += self._wire.send_available(self._data[taken : taken + CHUNK_BYTES])
-            before, out = out, taken - self._wire.count_unsent()
+            if not self._held and not self._wire.count_unsent_bytes() and taken < len(self._data):
+                taken += self._wire.send_available_bytes(self._data[taken : taken + CHUNK_BYTES])
+            before, out = out, taken - self._wire.count_unsent_bytes()
             self._watch(out, moved=out > before)
             if out >= self._needed and (self._held or self.progress.wait_reason == STOPPED_BY_RECEIVER):
                 return  # DC3 after the final %: the program is complete.
@@ -180,7 +180,7 @@ class SendTransfer(_Transfer):
 
     def _tell(self, out: int, what: str) -> None:
         line_end = self._settings.line_end[-1].encode("ascii")
-        self._lines += self._data.count(line_end, self.progress.done_byte_count, out)
+        self._lines += self._data.count(line_end, self.progress.transferred_byte_count, out)
         self.progress = TransferState(out, len(self._data), self._lines, what)
 
 
@@ -190,7 +190,7 @@ class ReceiveTransfer(_Transfer):
     def receive_program(self) -> ReceivedText:
         """Receive a program and return it.
 
-        Raises TransferCanceledError, IncompleteError or SerialLineError; nothing is then saved.
+        Raises TransferCanceledError, IncompleteProgramError or SerialLineError; nothing is then saved.
         """
         try:
             return self._receive()
@@ -219,8 +219,8 @@ class ReceiveTransfer(_Transfer):
 
     def _take(self, incoming: ProgramParser, come: bytes) -> None:
         incoming.add_characters(come)
-        if self._wire.damaged_count and incoming.phase is not ReceptionPhase.WAITING:
-            raise IncompleteError(
+        if self._wire.damaged_character_count and incoming.phase is not ReceptionPhase.WAITING:
+            raise IncompleteProgramError(
                 "a character in line {lines} is damaged; nothing was saved. Check the serial "
                 "port settings and the shield and ground of the cable, then send the program "
                 "again",
@@ -230,7 +230,11 @@ class ReceiveTransfer(_Transfer):
         if incoming.phase is not ReceptionPhase.WAITING:
             self.progress = TransferState(incoming.character_count, 0, incoming.line_count)
             return
-        what = RECEIVED_NOISE if incoming.is_noise or self._wire.damaged_count else WAITING_FOR_FRAME
+        what = (
+            RECEIVED_NOISE
+            if incoming.is_input_noise or self._wire.damaged_character_count
+            else WAITING_FOR_FRAME
+        )
         self.progress = TransferState(
             incoming.character_count, 0, incoming.line_count, what, incoming.leading_text
         )
@@ -244,18 +248,18 @@ class ReceiveTransfer(_Transfer):
             return
         try:
             incoming.handle_silence()
-        except IncompleteError:
+        except IncompleteProgramError:
             if is_silent:
                 raise
 
     def _ask(self) -> None:
-        if not self.progress.received_text:
+        if not self.progress.leading_text:
             self.progress = TransferState(wait_reason=WAITING_FOR_SENDER)
         self._say(DC1)
 
     def _say(self, code: bytes) -> None:
-        if self._settings.sends_dc_codes or self._settings.line_settings.flow_control == "xonxoff":
-            own = self._settings.checks_parity
-            self._wire.send_available(
+        if self._settings.has_dc_codes or self._settings.line_settings.flow_control == "xonxoff":
+            own = self._settings.is_parity_checked
+            self._wire.send_available_bytes(
                 code.translate(create_parity_table(self._settings.line_settings.parity)) if own else code
             )

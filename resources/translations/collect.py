@@ -341,7 +341,9 @@ def _of_codes() -> list[str]:
     All other texts in the table are documentation.
     """
     codes = [code for _, chapter in CODE_CHAPTERS for code in chapter]
-    said = {code.mdi_error_text for code in codes if code.mdi_error_text} | {code.group for code in codes}
+    said = {code.mdi_error_text for code in codes if code.mdi_error_text} | {
+        code.mode_group for code in codes
+    }
     for refusal in (each for code in codes for each in code.entry_errors):
         said |= {refusal.text, refusal.hint}
     rules = [rule for code in codes for rule in code.word_rules.values()]
@@ -354,7 +356,7 @@ def _of_books() -> list[str]:
     books = [get_code_book(dialect) for dialect in Dialect]
     chapters = {title for book in books for title, _ in book.chapters}
     shown = chapters | {entry.what for book in books for entry in book.entries}
-    shown |= {what for book in books for entry in book.entries for _, what in book.list_words(entry)}
+    shown |= {what for book in books for entry in book.entries for _, what in book.list_word_meanings(entry)}
     refused = {*UNSUPPORTED_WORDS.values(), *UNSUPPORTED_CYCLES.values()}
     refused |= {
         name for key, name in vars(klartext_faults).items() if key.isupper() and isinstance(name, str)

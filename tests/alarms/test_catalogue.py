@@ -13,7 +13,7 @@ from typing import Literal, get_args, get_origin
 
 import pytest
 
-from core.alarms import ALARM_SUBJECTS, CATALOG, AlarmEntry, Reaction
+from core.alarms import ALARM_SUBJECTS, CATALOG, AlarmEntry, AlarmReaction
 from core.alarms.alarm_entry import AlarmCode, ControlAlarmCode
 from core.faults import FaultCode
 
@@ -72,7 +72,7 @@ def test_catalog_entry_has_short_text_causes_and_remedy(code: AlarmCode) -> None
 def test_remedy_names_cycle_start_for_hold_and_reset_for_stop(code: AlarmCode) -> None:
     """What stops with an alarm is acknowledged by Reset, what holds goes on by Cycle Start."""
     entry = CATALOG[code]
-    if entry.reaction is Reaction.HOLD:
+    if entry.reaction is AlarmReaction.HOLD:
         assert "Cycle Start" in entry.remedy
 
 
@@ -135,4 +135,4 @@ def test_alarm_objects_are_created_in_one_module_only() -> None:
 
 
 def test_alarm_entry_does_not_show_detail_by_default() -> None:
-    assert AlarmEntry(999, "text", ("cause",), "remedy", Reaction.STOP).shows_detail is False
+    assert AlarmEntry(999, "text", ("cause",), "remedy", AlarmReaction.STOP).shows_detail is False

@@ -13,8 +13,8 @@ from dataclasses import replace
 from unittest import mock
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
-from app.compose.part_data import read_known_part
+from app.compose.machine.machine_setup import create_power_up_setup
+from app.compose.part_data import make_part_settings
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import ProgramSource
 from core.part.cutter import Cutter
@@ -25,7 +25,7 @@ from core.proving.checks.cut_checks import AirCutChecks
 from core.proving.checks.edge_checks import EdgeChecks
 from core.proving.checks.part_findings import PartFindings
 from core.proving.checks.thread_checks import ThreadChecks
-from core.proving.part_proof import prove_with_part
+from core.proving.part_proof import prove_program_and_part
 from core.proving.program_tools import PartSettings
 from core.proving.prove_program import prove
 
@@ -89,13 +89,13 @@ def main() -> int:
     """Prints the table."""
     machine = load_machine(None)
     tools = {n: ToolOffset(-12.7 - 60.0 * (n - 1), -50.8) for n in SHAPES}
-    setup = create_setup(machine, tool_offsets=tools, secondary_offsets={})
-    known = read_known_part(machine, tools, SHAPES)
+    setup = create_power_up_setup(machine, tool_offsets=tools, secondary_offsets={})
+    known = make_part_settings(machine, tools, SHAPES)
     setting = replace(known, clamping=Clamping(100.0, 40.0, 10.0, 60.0, 5000.0))
     text = ProgramSource("CHECKS", program())
 
     def proved(by: PartSettings) -> float:
-        return spent(lambda: prove_with_part(text, setup, machine, by))
+        return spent(lambda: prove_program_and_part(text, setup, machine, by))
 
     plain, whole = spent(lambda: prove(text, setup, machine)), proved(setting)
     rows = [("the proof without the part", plain), ("with the part and all checks", whole)]

@@ -43,12 +43,12 @@ from app.compose.backends.driver_host_process import create_host_drivers
 from app.compose.backends.simulated_devices import simulate_devices
 from app.compose.machine.machine_files import load_machine
 from core.ports import DriverError, FloatArray, MachinePorts, MotionSegments
-from drivers.canopen.position_modes import CyclicFollower, SyncSchedule
+from drivers.canopen.position_modes import CyclicSetpointFollower, SyncSchedule
 from drivers.driver_host.host_connection import HostConnection, SocketLink
 from drivers.driver_host.host_loop import (
     REAL_TIME_PRIORITY,
     lock_host_memory,
-    request_real_time,
+    request_real_time_scheduling,
     run_driver_host,
 )
 from drivers.driver_host.host_messages import NO_NUMBERS, Message, encode_message
@@ -138,20 +138,20 @@ def host(arguments: list[str]) -> None:
     on_pair(int(bus))
     late: list[tuple[float, float]] = []
     gaps: list[float] = []
-    sent, waited = SyncSchedule.record_sync, CyclicFollower.delay_path
+    sent, waited = SyncSchedule.record_sync, CyclicSetpointFollower.delay_path
 
     def noted(schedule: SyncSchedule, now: float) -> float:
         late.append((schedule.due_time_s + float(zero), now - schedule.due_time_s))
         return sent(schedule, now)
 
-    def missed(follower: CyclicFollower, away: float) -> None:
+    def missed(follower: CyclicSetpointFollower, away: float) -> None:
         before = follower.gap_count
         waited(follower, away)
         if follower.gap_count > before:
             gaps.append(away)
 
     if fifo == "yes":
-        request_real_time()
+        request_real_time_scheduling()
     lock_host_memory()
     owned = create_host_drivers(load_machine(Path(file)), RealClock(float(zero)))
     gc.freeze()
@@ -161,7 +161,7 @@ def host(arguments: list[str]) -> None:
     begun, used = time.monotonic(), time.process_time()
     with (
         mock.patch.object(SyncSchedule, "record_sync", noted),
-        mock.patch.object(CyclicFollower, "delay_path", missed),
+        mock.patch.object(CyclicSetpointFollower, "delay_path", missed),
     ):
         run_driver_host(sock, owned, [])
     share = (time.process_time() - used) / (time.monotonic() - begun)
@@ -185,7 +185,7 @@ def witness(core: int, out: str) -> None:
     """How late a process is that only waits, until its input ends."""
     with contextlib.suppress(OSError):
         os.sched_setaffinity(0, {core})
-    request_real_time(REAL_TIME_PRIORITY + 10)
+    request_real_time_scheduling(REAL_TIME_PRIORITY + 10)
     lock_host_memory()
     say("ready")
     due, late = time.monotonic(), []

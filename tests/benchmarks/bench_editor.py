@@ -23,7 +23,7 @@ from PySide6.QtWidgets import QApplication
 
 from app.compose.program_proving import get_samples_folder
 from app.compose.screen_desk import build_desk
-from app.compose.stored_offsets import read_offsets
+from app.compose.stored_offsets import read_offsets_file
 from app.editor.editor_view import EditorPage
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme, load_fonts, style_application
@@ -56,7 +56,7 @@ def main() -> None:
         folder = Path(home) / "programs"
         folder.mkdir()
         (folder / "long.nc").write_text(program())
-        desk = build_desk(None, lambda: read_offsets(get_samples_folder() / "offsets.toml"))
+        desk = build_desk(None, lambda: read_offsets_file(get_samples_folder() / "offsets.toml"))
         window = MainWindow(ScreenTheme(DARK_PALETTE))
         window.resize(1920, 1080)
         window.show()

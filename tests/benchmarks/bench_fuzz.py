@@ -11,7 +11,7 @@ import sys
 import time
 
 from app.compose.machine.machine_files import load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Dialect, ProgramSource
 from core.machine.machine_model import Machine
@@ -35,7 +35,7 @@ def main() -> None:
 
 
 def _fuzz(dialect: Dialect, machine: Machine, name: str, seconds: float) -> None:
-    setup = create_setup(machine, tool_offsets=OFFSETS, secondary_offsets=SECONDARY)
+    setup = create_power_up_setup(machine, tool_offsets=OFFSETS, secondary_offsets=SECONDARY)
     seed, end, slowest, accepted = 0, time.monotonic() + seconds, (0.0, 0), 0
     while time.monotonic() < end:
         seed += 1

@@ -26,12 +26,12 @@ PROOF = """
 import gc, sys
 gc.set_threshold(200_000)  # as the command does
 from pathlib import Path
-from app.compose.machine.machine_setup import create_setup, read_machine
+from app.compose.machine.machine_setup import create_power_up_setup, read_machine
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import load_source
 from core.proving.prove_program import prove
 machine = read_machine(None)
-setup = create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+setup = create_power_up_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
 prove(load_source(Path(sys.argv[1])), setup, machine)
 """
 

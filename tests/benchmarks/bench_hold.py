@@ -12,7 +12,7 @@ import sys
 import time
 
 from app.compose.backends.simulated_backend import create_simulation
-from app.compose.machine.machine_setup import create_setup, read_machine
+from app.compose.machine.machine_setup import create_power_up_setup, read_machine
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Proof, make_job
@@ -43,7 +43,7 @@ class Machine:
         self.clock = ManualClock()
         self.ports = create_simulation(self.machine, self.clock).ports
         self.executor = Executor(self.machine, self.ports, lambda _: None)
-        setup = create_setup(self.machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+        setup = create_power_up_setup(self.machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
         self.job = make_job(ProgramSource("bench", text), setup)
         self.tick()
         self.executor.post(EnableDrives())
@@ -63,7 +63,7 @@ class Machine:
     def hold(self) -> tuple[float, float]:
         """Press hold; (machine seconds until rest, mm/s at the first moment that can still be changed)."""
         t = self.clock.now()
-        (_, before) = self.ports.axes.demand_at(t + self.machine.timing.commit)
+        (_, before) = self.ports.axes.demand_at(t + self.machine.timing.commit_time_s)
         self.executor.post(FeedHold())
         self.tick()
         rest = self.ports.axes.horizon()
@@ -88,7 +88,7 @@ def _one_move(chance: random.Random) -> None:
         for _ in range(chance.randrange(40)):
             machine.tick()
         took, speed = machine.hold()
-        allowed = machine.machine.timing.commit + speed / machine.machine.axes[0].max_acceleration
+        allowed = machine.machine.timing.commit_time_s + speed / machine.machine.axes[0].max_acceleration
         times.append(took - allowed)
         x, z, _ = machine.executor.snapshot.demand
         off.append(abs(4 * x + 3 * z) / 5)  # distance from the line through (0, 0) and (3, -4)

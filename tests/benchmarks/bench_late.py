@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import resources
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, Jog, LoadJob, Reset
 from core.executor.job import Proof, make_job
 from core.interpreter.shared.job_setup import ToolOffset
@@ -87,7 +87,9 @@ class Child:
 
     def _load(self, text: str) -> None:
         self.programs += 1
-        setup = create_setup(self.lathe, tool_offsets={1: ToolOffset(0.0, 0.0)}, secondary_offsets={})
+        setup = create_power_up_setup(
+            self.lathe, tool_offsets={1: ToolOffset(0.0, 0.0)}, secondary_offsets={}
+        )
         job = make_job(ProgramSource(f"PART{self.programs}", text), setup)
         self.desk.post(LoadJob(job, Proof(job.digest, ())))
 
@@ -98,7 +100,7 @@ class Child:
             if isinstance(
                 played, PlantControls
             ):  # as the machine really is, also where nobody looks any more
-                rpm, at = played.get_spindle_rpm(), played.get_true_position()[:2]
+                rpm, at = played.get_spindle_rpm(), played.get_true_positions()[:2]
                 on = {name for name, lit in played.outputs().items() if lit}
             told = {
                 "t": time.monotonic(),
@@ -110,7 +112,7 @@ class Child:
                 "on": sorted(on - {"collet"}),
                 "alarms": [f"{alarm.number} {alarm.text}" for alarm in shot.alarms],
                 "starts": list(shot.announced),
-                "refused": shot.start_refusal,
+                "refused": shot.start_refusal_reason,
             }
             sys.stdout.write(json.dumps(told) + "\n")
             sys.stdout.flush()
@@ -124,7 +126,7 @@ class Child:
             if time.monotonic() - before > 0.3:
                 self.jogging = 0.0
             if self.jogging:
-                self.desk.post(Jog("Z", self.jogging, self.lathe.timing.lease))
+                self.desk.post(Jog("Z", self.jogging, self.lathe.timing.motion_lease_s))
 
 
 def _hog(seconds: float) -> None:

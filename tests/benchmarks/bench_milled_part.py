@@ -28,7 +28,7 @@ VIEWS = (
     ("from the side", SolidView(azimuth_deg=0.0)),
     ("30 towards the face", SolidView(azimuth_deg=30.0)),
     ("60 towards the face", SolidView(azimuth_deg=60.0)),
-    ("a quarter open", SolidView(azimuth_deg=30.0, open_range_deg=(0.0, 90.0))),
+    ("a quarter open", SolidView(azimuth_deg=30.0, cut_out_range_deg=(0.0, 90.0))),
 )
 
 
@@ -53,16 +53,16 @@ def operations() -> list[tuple[str, Callable[[MilledPart], object]]]:
         for side in np.radians(np.arange(0.0, 360.0, 60.0)):
             out, along = np.array([np.cos(side), np.sin(side)]), np.array([-np.sin(side), np.cos(side)])
             ends = np.array([16.0 * out - 30.0 * along, 16.0 * out + 30.0 * along])
-            part.mill_axial(np.column_stack([ends, [-45.0, -45.0]]), 4.0, cutting_length=13.0)
+            part.mill_axial_path(np.column_stack([ends, [-45.0, -45.0]]), 4.0, cutting_length=13.0)
 
     def face_holes(part: MilledPart) -> None:
         for place in np.radians(np.arange(30.0, 390.0, 60.0)):
-            part.mill_axial(np.array([[16.0 * math.cos(place), 16.0 * math.sin(place), -70.0]]), 1.2)
+            part.mill_axial_path(np.array([[16.0 * math.cos(place), 16.0 * math.sin(place), -70.0]]), 1.2)
 
     def pocket(part: MilledPart) -> None:
         turn = np.linspace(0.0, 2.0 * math.pi, 200)
         circle = np.column_stack([3.0 * np.cos(turn), 3.0 * np.sin(turn), np.full(200, -58.0)])
-        part.mill_axial(circle + np.array([12.0, 0.0, 0.0]), 1.5, cutting_length=3.0)
+        part.mill_axial_path(circle + np.array([12.0, 0.0, 0.0]), 1.5, cutting_length=3.0)
 
     return [
         ("hexagon by six sides", hexagon),
@@ -70,15 +70,15 @@ def operations() -> list[tuple[str, Callable[[MilledPart], object]]]:
         ("round groove in 200 chords", pocket),
         (
             "cross hole",
-            lambda part: part.mill_radial(np.array([[20.0, -10.0, 0.0], [-20.0, -10.0, 0.0]]), 2.5),
+            lambda part: part.mill_radial_path(np.array([[20.0, -10.0, 0.0], [-20.0, -10.0, 0.0]]), 2.5),
         ),
         (
             "key slot",
-            lambda part: part.mill_radial(np.array([[15.0, -55.0, 160.0], [15.0, -49.0, 160.0]]), 2.0),
+            lambda part: part.mill_radial_path(np.array([[15.0, -55.0, 160.0], [15.0, -49.0, 160.0]]), 2.0),
         ),
         (
             "helical slot, a turn",
-            lambda part: part.mill_radial(np.array([[12.0, -40.0, 0.0], [12.0, -30.0, 360.0]]), 1.0),
+            lambda part: part.mill_radial_path(np.array([[12.0, -40.0, 0.0], [12.0, -30.0, 360.0]]), 1.0),
         ),
         (
             "rapid past all of it",
@@ -108,7 +108,7 @@ def frame_ms(solid: Solid, view: SolidView, *, changes: bool, quick: bool) -> fl
     picture, taken = SolidPicture(), []
     for count in range(FRAMES):
         begin = time.process_time()
-        picture.draw(solid, view, WIDTH, HEIGHT, version=count * changes, is_preview=quick)
+        picture.draw_picture(solid, view, WIDTH, HEIGHT, version=count * changes, is_preview=quick)
         taken.append(time.process_time() - begin)
     return 1000.0 * statistics.median(taken[1:])
 

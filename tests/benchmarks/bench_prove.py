@@ -15,9 +15,9 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from app.compose.machine.machine_setup import create_setup, read_machine
+from app.compose.machine.machine_setup import create_power_up_setup, read_machine
 from core.interpreter.dialects import interpret_program
-from core.interpreter.shared.job_setup import Setup, ToolOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset
 from core.language.source import ProgramSource
 from core.proving.prove_program import prove
 from tests.benchmarks.installed import installed
@@ -49,7 +49,7 @@ def loop(passes: int) -> str:
     return f"{HEAD}X.5Z0\nLS{passes}\n{cuts(900)}LF\nG00X1\nZ1\nM30\n"
 
 
-def interpreted(source: ProgramSource, setup: Setup) -> None:
+def interpreted(source: ProgramSource, setup: InterpreterSetup) -> None:
     """Go through all blocks, and do nothing with them."""
     deque(interpret_program(source, setup).generate_series(), maxlen=0)
 
@@ -68,7 +68,7 @@ def median_of(work: Callable[[], object]) -> float:
 def main() -> None:
     """Print the table."""
     machine = read_machine(None)
-    setup = create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     with tempfile.TemporaryDirectory() as folder:
         small = Path(folder) / "small.nc"
         small.write_text(program(200))

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from core.part.cutter import CutSide, Cutter
-from core.part.stock import make_bar
+from core.part.stock import make_bar_stock
 from core.part.swept_edge import FloatArray, Point, find_axis_facing_edge, sweep_edge
 from core.part.turned_part import TurnedPart
 
@@ -52,7 +52,10 @@ def moves() -> list[Move]:
 
 def checked(work: list[Move]) -> float:
     """As the proof does it; the area that is left, mm²."""
-    part, cutter = TurnedPart(make_bar(2 * RADIUS, FRONT, BACK), STEP), Cutter([nose()], [], CutSide.OUTSIDE)
+    part, cutter = (
+        TurnedPart(make_bar_stock(2 * RADIUS, FRONT, BACK), STEP),
+        Cutter([nose()], [], CutSide.OUTSIDE),
+    )
     for start, end in work:
         cutter.cut_material(part, start, end)
     return float((part.outer_radii - part.inner_radii).sum()) * part.columns.step_mm
@@ -60,7 +63,7 @@ def checked(work: list[Move]) -> float:
 
 def alone(work: list[Move]) -> float:
     """The metal alone."""
-    part, edge = TurnedPart(make_bar(2 * RADIUS, FRONT, BACK), STEP), find_axis_facing_edge(nose())
+    part, edge = TurnedPart(make_bar_stock(2 * RADIUS, FRONT, BACK), STEP), find_axis_facing_edge(nose())
     for start, end in work:
         first, reach = sweep_edge(edge, start, end, part.columns)
         high = part.outer_radii[0, first : first + len(reach)]

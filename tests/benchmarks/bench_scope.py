@@ -64,9 +64,9 @@ class LiveSamples(PlayedSamples):
         """The newest sample."""
         return float(np.floor((time.monotonic() - self.began) * RATE) / RATE)
 
-    def read_between(self, start_s: float, end_s: float, _names: object = None) -> ScopeRecord:
+    def read_samples_between(self, start_s: float, end_s: float, _names: object = None) -> ScopeRecord:
         """Out of what was computed."""
-        return self.all.select_between(start_s, min(end_s, self.newest_time_s))
+        return self.all.select_time_range(start_s, min(end_s, self.newest_time_s))
 
 
 # --- samples that were computed ----------------------------------------------------------------------------
@@ -91,7 +91,7 @@ def played() -> None:
         page, scope = window.frame.current_page, desk.page_registry.find_model(ScopeModel)
         assert isinstance(page, ScopePage)
         assert scope is not None
-        scope.selected_keys = SHOWN
+        scope.selected_signal_keys = SHOWN
         scope.time_window.begin_s = -WINDOW
         _frames(window, page, 60)
         frames, drawn = _frames(window, page, FRAMES)
@@ -134,7 +134,7 @@ def running() -> None:
         scope = bench.desk.page_registry.find_model(ScopeModel)
         assert scope is not None
         bench.window.press_key("Scope")
-        scope.selected_keys = SHOWN
+        scope.selected_signal_keys = SHOWN
         scope.time_window.begin_s = -WINDOW
         bench.rest(WINDOW + 5.0)
         bench.frames.clear()

@@ -24,7 +24,7 @@ from PySide6.QtCore import QAbstractEventDispatcher, QEventLoop, QSize
 from PySide6.QtWidgets import QApplication
 
 from app.compose.screen_desk import build_desk
-from app.compose.stored_offsets import read_offsets
+from app.compose.stored_offsets import read_offsets_file
 from app.desk.programs.program_loading import LoadingPhase
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme, load_fonts, style_application
@@ -126,7 +126,7 @@ class Bench:
         style_application(DARK_PALETTE)
         offsets = home / "offsets.toml"
         offsets.write_text(OFFSETS)
-        self.desk = build_desk(None, lambda: read_offsets(offsets))
+        self.desk = build_desk(None, lambda: read_offsets_file(offsets))
         self.window = Window(ScreenTheme(DARK_PALETTE))
         self.window.resize(size)
         self.window.show()
@@ -186,7 +186,7 @@ class Bench:
         desk.station_controls.palm("left", is_down=True)
         desk.station_controls.palm("right", is_down=True)
         self.until(lambda: desk.read_snapshot().state is MachineState.RUN, 10)
-        desk.station_controls.release_all()
+        desk.station_controls.release_all_buttons()
 
     def hold(self) -> tuple[float, float, float]:
         """Press H; seconds until the screen says so, until it stands, and what is allowed for that."""

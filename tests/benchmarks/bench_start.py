@@ -46,7 +46,7 @@ HEADLESS = """
 import gc, os, sys
 gc.set_threshold(200_000)  # as the command does
 from pathlib import Path
-from app.compose.machine.machine_setup import create_setup, read_machine
+from app.compose.machine.machine_setup import create_power_up_setup, read_machine
 from app.compose.stored_offsets import make_offsets_reader
 from app.compose.backends.simulated_backend import create_simulation
 from core.executor.commands import CycleStart, EnableDrives, LoadJob
@@ -59,7 +59,7 @@ tools, secondary, *_ = make_offsets_reader(sys.argv[2])()
 clock = ManualClock()
 ports = create_simulation(machine, clock).ports
 executor = Executor(machine, ports, lambda event: None)
-setup = create_setup(machine, tool_offsets=tools, secondary_offsets=secondary)
+setup = create_power_up_setup(machine, tool_offsets=tools, secondary_offsets=secondary)
 job = make_job(load_source(Path(sys.argv[1])), setup)
 executor.tick()
 executor.post(EnableDrives())

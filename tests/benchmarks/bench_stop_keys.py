@@ -99,7 +99,7 @@ def _watch(desk: Any) -> None:
     keys = RawKeyReader()
     while True:
         select.select([keys], [], [])
-        for _key in keys.read_presses():
+        for _key in keys.read_key_presses():
             keys.find_focus_window()
             desk.post(FeedHold("thread"))
 

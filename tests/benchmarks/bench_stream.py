@@ -14,7 +14,7 @@ import time
 import numpy as np
 
 from app.compose.backends.connection import connect_machine
-from app.compose.machine.machine_setup import create_setup, read_machine
+from app.compose.machine.machine_setup import create_power_up_setup, read_machine
 from core.executor.commands import Command, CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Proof, make_job
@@ -40,7 +40,7 @@ def stream(minutes: float) -> tuple[list[float], int, list[LogEvent]]:
     clock, said, late = RealClock(), list[LogEvent](), list[float]()
     job = make_job(
         ProgramSource("bench", chords(CHORDS)),
-        create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
+        create_power_up_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
     )
     job.shared_program.start_pass(job.setup)  # as its proof would have read it
     connected = connect_machine(machine, clock)

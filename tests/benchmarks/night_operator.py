@@ -13,7 +13,7 @@ from typing import Any
 from app.desk.programs.program_loading import LoadingPhase
 from app.screen.page_table import ALL_PAGES, import_class
 from app.special.counter_functions import ToolLifeFunction
-from app.special.special_functions import SpecialFunction, SpecialFunctionList
+from app.special.special_functions import SpecialFunction, SpecialFunctionsModel
 from core.executor.commands import ForceOutput
 from core.executor.snapshot import MachineState
 from core.store.production import measured_parts, tool_lives
@@ -71,7 +71,7 @@ class Operator:
             ).result(PATIENCE)
         store.write(lambda c: measured_parts.save_feature(c, FEATURE)).result(PATIENCE)
         life = ToolLifeRow(1, limit_parts=INSERT, stops=True)
-        store.write(lambda c: tool_lives.save_limits(c, life)).result(PATIENCE)
+        store.write(lambda c: tool_lives.save_tool_life_limits(c, life)).result(PATIENCE)
         self.desk.offset_book.read_store()
         self.desk.enable_drives()
         self.shift.run(0.3)
@@ -158,7 +158,7 @@ class Operator:
         desk, shot = self.desk, self.shift.shot
         self._loaded()
         told = "LIFE" in desk.prompt_notice and "FRESH INSERT" not in desk.prompt_notice
-        if shot.next_barred or told or "life of T1" in shot.start_refusal:
+        if shot.next_barred or told or "life of T1" in shot.start_refusal_reason:
             self.fresh_insert()
         if not shot.cycle_repeat:
             desk.toggle_switch("cycle_repeat")
@@ -172,11 +172,11 @@ class Operator:
         self._palms()
 
     def _go_on(self) -> None:
-        if self._gives_up or COLLET_OPEN in self.shift.shot.start_refusal:
+        if self._gives_up or COLLET_OPEN in self.shift.shot.start_refusal_reason:
             self._gives_up = False
             self.desk.reset_control()
             self.shift.run(0.6)
-            self.desk.confirm_if_unchanged()
+            self.desk.confirm_question_if_unchanged()
             return
         if self._steps:
             self._steps -= 1
@@ -245,7 +245,7 @@ class Operator:
         found = (
             self.desk.page_registry.find_model(import_class(entry.model_class)) if entry is not None else None
         )
-        return found.functions if isinstance(found, SpecialFunctionList) else ()
+        return found.functions if isinstance(found, SpecialFunctionsModel) else ()
 
     def _measure(self) -> None:
         """Type what the gauge shows; behind a few readings ask for the correction and take it."""
@@ -265,10 +265,10 @@ class Operator:
         changes = self.desk.offset_book.changes
         for _ in range(20):
             readings.propose()
-            if not self.desk.confirm_key:
+            if not self.desk.confirmation_key:
                 return  # within the dead band
             self.shift.run(0.6)  # he reads what is asked
-            self.desk.confirm_if_unchanged()
+            self.desk.confirm_question_if_unchanged()
             if self.desk.offset_book.is_saving or self.desk.offset_book.changes != changes:
                 break
         self._kept()
@@ -280,11 +280,13 @@ class Operator:
         """What was typed is on the disk and read back, and the program proved with it."""
         desk, book = self.desk, self.shift.parts_book
         worker = desk.renewal.running_renewal.worker
-        self.shift.settle(lambda: book.is_settled and not desk.offset_book.is_saving and not worker.is_busy)
+        self.shift.settle(
+            lambda: book.is_up_to_date and not desk.offset_book.is_saving and not worker.is_busy
+        )
 
     def fresh_insert(self) -> None:
         """The insert has made its parts: a new one, and its wear is nought again."""
-        functions = self.desk.page_registry.find_model(SpecialFunctionList)
+        functions = self.desk.page_registry.find_model(SpecialFunctionsModel)
         assert functions is not None
         lives = next(
             each for each in (*self._sections(), *functions.functions) if isinstance(each, ToolLifeFunction)
@@ -298,7 +300,7 @@ class Operator:
         for _ in range(20):  # another answer may have taken the place of the question
             lives.confirm_new_insert()
             self.shift.run(0.6)
-            self.desk.confirm_if_unchanged()
+            self.desk.confirm_question_if_unchanged()
             self._kept()
             if self.shift.parts_book.current_data.tool_lives[1].parts < made:
                 break

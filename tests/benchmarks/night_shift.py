@@ -19,8 +19,8 @@ from app.compose.stored_offsets import read_stored_offsets
 from app.desk.data_folder import RECORDS_FOLDER_NAME, find_data_folder
 from app.desk.desk import Desk
 from app.desk.status.state_prompt import make_page_prompt
-from app.production.parts_book import PartsBook
-from app.production.parts_watch import PartsWatch
+from app.production.parts_book import ProductionRecords
+from app.production.parts_watch import ProductionMonitor
 from app.programs.atomic_files import write_program_file
 from core.executor.executor import Executor
 from core.executor.scope_recorder import ScopeRecorder
@@ -169,17 +169,17 @@ class NightShift:
         return self.desk.offset_book.store
 
     @property
-    def parts_book(self) -> PartsBook:
+    def parts_book(self) -> ProductionRecords:
         """Measured parts and lives."""
-        watch = self.desk.page_registry.find_model(PartsWatch)
+        watch = self.desk.page_registry.find_model(ProductionMonitor)
         assert watch is not None
-        return watch.parts_book
+        return watch.production_records
 
     def tick(self) -> None:
         """One tick of the executor, and every so often a frame of the desk."""
         self.clock.advance(TICK)
         self.executor.run_tick()
-        self.witness.look(self.shot, self._jobs(), self.lathe.get_true_position)
+        self.witness.look(self.shot, self._jobs(), self.lathe.get_true_positions)
         self._ticks += 1
         if self._ticks % FRAME == 0:
             self.frame()

@@ -25,13 +25,13 @@ from pathlib import Path
 from typing import Any
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
-from core.interpreter.shared.job_setup import Setup, ToolOffset
+from app.compose.machine.machine_setup import create_power_up_setup
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset
 from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
 from core.motion.axis_limits import MotionLimits
 from core.motion.motion_plan import plan_motion
-from core.page_contents import make_contents
+from core.page_contents import make_table_of_contents
 from core.proving.prove_program import prove
 from tests.benchmarks import bench_driver_host, bench_removal, bench_start
 from tests.benchmarks.bench_prove import feeds, program
@@ -111,7 +111,7 @@ def _head() -> str:
 This page lists the CPU time and memory that TurnDesk needs, with goals. If a goal is not met, the
 reason is given below the table.
 
-{make_contents(TITLES)}
+{make_table_of_contents(TITLES)}
 `python -m tests.benchmarks.speed_page docs/speed.md` created this page on {time.strftime("%Y-%m-%d")}:
 {_machine()}.
 
@@ -247,7 +247,7 @@ def _median_ms(work: Callable[[], object], rounds: int) -> str:
     return f"{1000.0 * statistics.median(taken):.1f}"
 
 
-def _proved(text: str, setup: Setup, machine: Machine) -> None:
+def _proved(text: str, setup: InterpreterSetup, machine: Machine) -> None:
     """Read and prove a text."""
     prove(ProgramSource("speed", text), setup, machine)
 
@@ -255,7 +255,7 @@ def _proved(text: str, setup: Setup, machine: Machine) -> None:
 def _warm() -> str:
     """Proofs in a process that has proved before, as the editor's."""
     machine = load_machine(None)
-    setup = create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     rows, figures = [], {}
     for count, rounds in ((200, 50), (20_000, 7)):
         text, name = program(count), f"prove {count:,} blocks, read again"

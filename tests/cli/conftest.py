@@ -18,7 +18,7 @@ from core.message import CodedError
 from core.store import user_records
 from core.store.production import measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
-from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.production.part_cycles import CycleRow, ProductionStopRow
 from core.store.store import Store
 from core.store.store_rows import format_utc
 from drivers.wakeups import ManualClock
@@ -113,9 +113,9 @@ def filled(home: Path) -> Path:
             store.runs.add_parts("peg.nc").result(60)
             reading = ReadingRow(0, of, part, 12.69 if part % 2 else 12.79, "in", at, "gauge", "mic")
             store.write(partial(measured_parts.add_reading, row=reading)).result(60)
-        stop = StopRow("s", "c1", "peg.nc", at, 4.0, "FEED HOLD", 7)
+        stop = ProductionStopRow("s", "c1", "peg.nc", at, 4.0, "FEED HOLD", 7)
         store.write(lambda c: part_cycles.save_stop(c, stop)).result(60)
-        store.write(lambda c: tool_lives.save_limits(c, tool_lives.ToolLifeRow(1, 50))).result(60)
+        store.write(lambda c: tool_lives.save_tool_life_limits(c, tool_lives.ToolLifeRow(1, 50))).result(60)
         store.write(lambda c: tool_lives.record_insert_change(c, 1, "worn")).result(60)
         store.offsets.tool_offsets.change_row(1, "first", {"x": 0.0, "z": 0.0}).result(60)
         store.offsets.tool_offsets.change_row(1, "wear", {"wear_x": -0.01}).result(60)

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from app.cli.main import main
-from app.compose.demo_store import find_demo_program, open_demo
-from app.compose.machine.machine_setup import create_setup, read_machine
+from app.compose.demo_store import find_demo_program, open_demo_data_folder
+from app.compose.machine.machine_setup import create_power_up_setup, read_machine
 from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import create_offset_book, read_stored_offsets
 from app.desk.command_errors import CommandError
@@ -34,7 +34,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_demo_offsets_match_the_samples_and_can_be_changed(home: Path) -> None:
-    folder = open_demo(None)
+    folder = open_demo_data_folder(None)
     assert folder == home / "demo"
     journal = Journal.open_default()
     book = create_offset_book(read_stored_offsets, journal)
@@ -45,7 +45,7 @@ def test_demo_offsets_match_the_samples_and_can_be_changed(home: Path) -> None:
 
 
 def test_lathe_demo_has_specified_stock_in_a_collet(home: Path) -> None:
-    with Store.open(open_demo(None), read_only=True) as store:
+    with Store.open(open_demo_data_folder(None), read_only=True) as store:
         kept = load_stored_part(store.settings.read_setting, "bushing.nc")
         assert load_stored_part(store.settings.read_setting, "pinbar.nc") == EMPTY_STORED_PART
     assert (kept.stock_text, kept.stick_out_mm) == ("tube:1.0:.4:2.4", pytest.approx(1.2 * INCH))
@@ -54,7 +54,7 @@ def test_lathe_demo_has_specified_stock_in_a_collet(home: Path) -> None:
 
 def test_mill_demo_tool_table_has_all_tools_of_its_samples(home: Path) -> None:
     """It showed 0 for tools whose length counted."""
-    with Store.open(open_demo("bc-table-mill")) as store:
+    with Store.open(open_demo_data_folder("bc-table-mill")) as store:
         lengths = {
             number: (row.length, round(row.radius, 3))
             for number, row in store.offsets.mill_tools.read_rows().items()
@@ -65,16 +65,16 @@ def test_mill_demo_tool_table_has_all_tools_of_its_samples(home: Path) -> None:
 def test_changes_in_demo_are_retained_when_it_is_reopened(
     home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    with Store.open(open_demo(None)) as store:
+    with Store.open(open_demo_data_folder(None)) as store:
         store.offsets.tool_offsets.change_row(1, values={"x": 3.0}, why="test", who="test").result()
     monkeypatch.setenv("TURNDESK_HOME", str(home))  # the next start
-    with Store.open(open_demo(None), read_only=True) as store:
+    with Store.open(open_demo_data_folder(None), read_only=True) as store:
         assert store.offsets.tool_offsets.read_rows()[1].x == 3.0
 
 
 def test_demo_is_rejected_for_a_real_machine(home: Path) -> None:
     with raises_code(CommandError, "real-machine", "gt75-grblhal.toml"):
-        open_demo("gt75-grblhal")
+        open_demo_data_folder("gt75-grblhal")
     assert os.environ["TURNDESK_HOME"] == str(home)
     assert not (home / "demo").exists()
 
@@ -105,7 +105,7 @@ def test_demo_program_proves_without_errors_on_its_machine(machine: str | None) 
     """A mill's desk began with a lathe's part, which it refuses."""
     source = load_source(Path(find_demo_program(machine)))
     found = read_machine(machine)
-    report = prove(source, create_setup(found, tool_offsets={}, secondary_offsets={}), found)
+    report = prove(source, create_power_up_setup(found, tool_offsets={}, secondary_offsets={}), found)
     assert [each for each in report.diagnostics if each.severity is Severity.ERROR] == []
     assert str(source.dialect) == found.mdi_language
 
@@ -113,7 +113,7 @@ def test_demo_program_proves_without_errors_on_its_machine(machine: str | None) 
 def test_demo_reopens_with_last_program_and_first_job_step(
     home: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    open_demo(None)
+    open_demo_data_folder(None)
     own = home / "demo" / "mine.nc"
     own.write_text("M30\n")
     journal = Journal.open_default()
@@ -122,7 +122,7 @@ def test_demo_reopens_with_last_program_and_first_job_step(
     journal.save_setting(LAST_PROGRAM_SETTING, str(own))
     journal.close()
     monkeypatch.setenv("TURNDESK_HOME", str(home))  # the next start
-    open_demo(None)
+    open_demo_data_folder(None)
     assert find_demo_program(None) == str(own)
     journal = Journal.open_default()
     assert FirstJobCard.from_store(journal).step_index == 3

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.cli.program_options import read_inputs_file
-from app.compose.stored_offsets import NO_OFFSETS, read_offsets
+from app.compose.stored_offsets import NO_OFFSETS, read_offsets_file
 from app.desk.command_errors import CommandError
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from tests.coded import raises_code
@@ -21,13 +21,13 @@ def written(tmp_path: Path, text: str) -> Path:
 
 def test_offsets_file_in_inches_is_converted_to_millimeters(tmp_path: Path) -> None:
     text = "[tool.1]\nx = 1\nz = -0.5\nnose_radius = 0.015\n[secondary.32]\nx = -0.015\n"
-    tools, secondary, *_ = read_offsets(written(tmp_path, text))
+    tools, secondary, *_ = read_offsets_file(written(tmp_path, text))
     assert tools == {1: ToolOffset(25.4, -12.7, 0.015 * 25.4)}
     assert secondary == {32: SecondaryOffset(-0.015 * 25.4, 0.0, 0.0)}
 
 
 def test_empty_file_sets_nothing(tmp_path: Path) -> None:
-    assert read_offsets(written(tmp_path, "")) == NO_OFFSETS
+    assert read_offsets_file(written(tmp_path, "")) == NO_OFFSETS
 
 
 @pytest.mark.parametrize(
@@ -52,13 +52,13 @@ def test_empty_file_sets_nothing(tmp_path: Path) -> None:
 )
 def test_bad_offsets_are_refused(tmp_path: Path, text: str, code: str, value: str) -> None:
     with raises_code(CommandError, code, value):
-        read_offsets(written(tmp_path, text))
+        read_offsets_file(written(tmp_path, text))
 
 
 def test_all_mistakes_in_offsets_file_are_reported_at_once(tmp_path: Path) -> None:
     codes = "out-of-range unknown-key unknown-number"
     with raises_code(CommandError, codes, "tool.1.x = 99", "[tool.1] y", "[secondary.40]"):
-        read_offsets(written(tmp_path, "[tool.1]\nx = 99\ny = 1\n[secondary.40]\n"))
+        read_offsets_file(written(tmp_path, "[tool.1]\nx = 99\ny = 1\n[secondary.40]\n"))
 
 
 def test_inputs_file_accepts_number_or_terminal_name(tmp_path: Path) -> None:
@@ -107,7 +107,7 @@ def test_inputs_that_the_machine_does_not_have_are_rejected(tmp_path: Path) -> N
 
 def test_missing_file_is_refused(tmp_path: Path) -> None:
     with raises_code(CommandError, "unreadable"):
-        read_offsets(tmp_path / "none.toml")
+        read_offsets_file(tmp_path / "none.toml")
 
 
 def test_wear_in_offsets_file_is_added_to_tool_offset(tmp_path: Path) -> None:
@@ -115,7 +115,7 @@ def test_wear_in_offsets_file_is_added_to_tool_offset(tmp_path: Path) -> None:
     path.write_text(
         '[tool.2]\nx = 1.5\nz = -2\nwear_x = -0.001\nwear_z = 0.002\nquadrant = 3\nremark = "new"\n'
     )
-    tools, *_ = read_offsets(path)
+    tools, *_ = read_offsets_file(path)
     assert tools[2].x == pytest.approx(1.499 * 25.4)
     assert tools[2].z == pytest.approx(-1.998 * 25.4)
 
@@ -123,7 +123,7 @@ def test_wear_in_offsets_file_is_added_to_tool_offset(tmp_path: Path) -> None:
 def test_all_mistakes_of_offsets_and_zeros_are_reported_together(tmp_path: Path) -> None:
     path = written(tmp_path, '[tool.1]\nwear_x = 0.2\n[zero.54]\nx = "1"\n')
     with pytest.raises(CommandError) as raised:
-        read_offsets(path)
+        read_offsets_file(path)
     assert "tool.1.wear_x" in str(raised.value)
     assert "zero.54.x" in str(raised.value)
 
@@ -144,4 +144,4 @@ def test_unknown_field_in_offsets_file_is_reported(tmp_path: Path, text: str, co
     path = tmp_path / "offsets.toml"
     path.write_text(text)
     with raises_code(CommandError, code, value):
-        read_offsets(path)
+        read_offsets_file(path)

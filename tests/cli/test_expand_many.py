@@ -19,7 +19,7 @@ from app.cli.outputs.omniturn_output import (
     round_exactly,
 )
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.shared.elementary_blocks import StraightMoveSeries, TimedSeries
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import ProgramSource
@@ -36,7 +36,7 @@ MOVES = "".join(f"X{0.5 + k % 7 * 0.01:.4f}Z{-0.0001 * k:.5f}\n" for k in range(
 
 def moves_of(head: str) -> tuple[TimedSeries, list[TimedBlock]]:
     """The program's plain moves as a series, and the same one by one."""
-    setup = create_setup(
+    setup = create_power_up_setup(
         MACHINE,
         tool_offsets={1: ToolOffset(x=-3.1, z=2.7)},
         secondary_offsets={1: SecondaryOffset(x=0.0133, z=-0.02)},

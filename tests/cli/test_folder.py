@@ -19,7 +19,7 @@ from app.cli.proofs.proof_cache import ProofCache, format_for_hash
 from app.cli.proofs.proof_job import ProofJob
 from app.cli.proofs.proof_pool import WORKER_KILLED_TEXT, LocalWorkers, WorkDistributor
 from app.cli.proofs.proof_work import Proof
-from app.compose.machine.machine_setup import create_setup, read_machine
+from app.compose.machine.machine_setup import create_power_up_setup, read_machine
 from core.language.source import ProgramSource
 from core.proving.program_tools import PartSettings
 from tests.benchmarks.bench_folder import program
@@ -149,19 +149,21 @@ def test_damaged_cached_proof_is_replaced(turndesk: Turndesk, parts: Path, offse
 @pytest.fixture
 def job() -> ProofJob:
     machine = read_machine(None)
-    return ProofJob(machine, create_setup(machine, tool_offsets={}, secondary_offsets={}), PartSettings())
+    return ProofJob(
+        machine, create_power_up_setup(machine, tool_offsets={}, secondary_offsets={}), PartSettings()
+    )
 
 
 def test_oldest_cached_proofs_are_deleted_above_size_limit(tmp_path: Path, job: ProofJob) -> None:
     cache = ProofCache(tmp_path, job, max_bytes=2000)
-    keys = [cache.get_key(ProgramSource(f"{n}.nc", GOOD)) for n in range(40)]
+    keys = [cache.get_cache_key(ProgramSource(f"{n}.nc", GOOD)) for n in range(40)]
     for age, key in enumerate(keys):
         cache.save_proof(key, Proof({"file": os.urandom(40).hex(), "diagnostics": []}))
         os.utime(tmp_path / key[:2] / key[2:], (1000.0 - age, 1000.0 - age))
     aside = tmp_path / keys[0][:2] / "left.1.part"
     aside.write_text("half")
     os.utime(aside, (1.0, 1.0))
-    cache.delete_oldest()
+    cache.delete_oldest_proofs()
     sizes = [path.stat().st_size for path in tmp_path.glob("??/*")]
     assert 1000 < sum(sizes) <= 1600
     assert [cache.find_proof(key) is not None for key in (keys[0], keys[-1])] == [True, False]

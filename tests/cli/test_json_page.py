@@ -10,7 +10,7 @@ import pytest
 
 import resources
 from app.cli.json_reference import json_keys, offsets_keys
-from app.cli.json_reference.json_page import generate_page, main
+from app.cli.json_reference.json_page import generate_json_page, main
 from app.shopfloor import json_keys as floor_keys
 from core.json_keys import declare_keys, declare_row_keys
 from core.store.store import Store
@@ -29,14 +29,14 @@ HEAD = "G90G94F300\nM03S600\nT1\n"
 
 @WHOLE_PRODUCT
 def test_the_page_is_up_to_date() -> None:
-    assert PAGE.read_text("utf-8") == generate_page(), (
+    assert PAGE.read_text("utf-8") == generate_json_page(), (
         "python -m app.cli.json_reference.json_page docs/json.md"
     )
 
 
 def test_json_page_is_written_to_given_path(tmp_path: Path) -> None:
     assert main([str(tmp_path / "page.md")]) == 0
-    assert (tmp_path / "page.md").read_text("utf-8") == generate_page()
+    assert (tmp_path / "page.md").read_text("utf-8") == generate_json_page()
 
 
 def test_key_meanings_are_sentences() -> None:
@@ -158,7 +158,7 @@ def test_machine_check_json_has_the_declared_keys(turndesk: Turndesk, tmp_path: 
     path = tmp_path / "own.toml"
     text = resources.read_machine_file("gt75.toml")
     path.write_text(text)
-    assert turndesk("machine", "accept", path).status == 0
+    assert turndesk("machine", "accept_machine_file", path).status == 0
     path.write_text(text.replace("vmax = 300", "vmax = 280").replace("max_feed = 300", "max_feed = 250"))
     good = whole(turndesk("machine", "check", path, "--json"))
     path.write_text(text.replace("vmax = 300", "vmax = -1"))

@@ -11,7 +11,7 @@ import resources
 from app.cli.machine_command import format_check_table, summarize_names
 from app.cli.main import main
 from app.compose.backends import simulated_backend
-from app.compose.backends.backend_entry import FAILED_STATES, Backend, CheckRow, find_backend
+from app.compose.backends.backend_entry import FAILED_STATES, Backend, MachineCheckRow, find_backend
 from app.compose.machine.machine_files import load_shipped_machine
 from drivers.simulated.simulated_machine import SimIO
 
@@ -84,7 +84,7 @@ def test_the_table_fits_a_terminal() -> None:
 def board(monkeypatch: pytest.MonkeyPatch, *measured: str) -> None:
     """Replace the simulated backend by a real one, whose hardware reports these rows."""
     backend = Backend(
-        "board", connect=simulated_backend.BACKEND.connect, list_measured_rows=lambda _machine: measured
+        "board", connect=simulated_backend.BACKEND.connect, list_measured_row_names=lambda _machine: measured
     )
     monkeypatch.setattr(simulated_backend, "BACKEND", backend)
 
@@ -115,7 +115,7 @@ def test_driver_without_a_connection_is_reported_as_not_checked(
 
 @pytest.mark.parametrize("state", FAILED_STATES)
 def test_failed_row_remains_failed_if_nothing_was_measured(state: str) -> None:
-    row = CheckRow("X", "", state, "why").mark_unchecked(())
+    row = MachineCheckRow("X", "", state, "why").mark_unchecked(())
     assert (row.result_text, row.state, row.detail) == ("FAIL", state, "why")
 
 
@@ -135,7 +135,7 @@ def test_failed_row_remains_failed_if_nothing_was_measured(state: str) -> None:
 )
 def test_only_ports_with_feedback_are_listed_as_measured(name: str, measured: set[str]) -> None:
     machine = load_shipped_machine(name)
-    rows = set(find_backend(machine).list_measured_rows(machine))
+    rows = set(find_backend(machine).list_measured_row_names(machine))
     inputs = {f"input {each}" for each in machine.inputs} if measured else set()
     assert rows == measured | inputs
 

@@ -9,19 +9,19 @@ import pytest
 from core.store.production import tool_lives
 from core.store.production.tool_lives import ToolLifeRow
 from core.store.store import Store
-from core.store.store_rows import MillRow, OffsetKind, PresetRow
+from core.store.store_rows import MillToolRow, OffsetKind, PresetRow
 from tests.cli.conftest import Turndesk
 from tests.texts import shows
 
 TOOL = ("offsets", "set", "TOOL7", "L=60", "R=12/2", "DL=-.02", "name=Mill 12", "time2=90", "stop=1")
 PRESET = ("offsets", "set", "preset3", "x=230", "y=210", "z=-350", "rot=2.5", "c=-30")
 ROWS = (
-    MillRow("Mill 12", 60.0, 6.0, dl=-0.02, life=90.0, stops=True),
+    MillToolRow("Mill 12", 60.0, 6.0, dl=-0.02, life=90.0, stops=True),
     PresetRow(230.0, 210.0, -350.0, 2.5, c=-30.0),
 )
 
 
-def rows(home: Path) -> tuple[MillRow, PresetRow]:
+def rows(home: Path) -> tuple[MillToolRow, PresetRow]:
     with Store.open(home, read_only=True) as store:
         return store.offsets.mill_tools.read_rows()[7], store.offsets.presets.read_rows()[3]
 

@@ -12,12 +12,12 @@ import pytest
 
 from app.cli.main import main
 from app.compose.desk_assembly import create_desk_and_executor
-from app.compose.machine.machine_setup import store_machine
+from app.compose.machine.machine_setup import save_machine_in_use
 from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import read_stored_offsets
 from core.message import CodedError
 from core.store.store import Store
-from core.store.store_rows import SecondaryRow, ToolRow
+from core.store.store_rows import SecondaryOffsetRow, ToolOffsetRow
 from drivers.wakeups import ManualClock
 from tests.coded import recorded_refusals
 
@@ -70,8 +70,10 @@ def test_offsets_are_set_and_shown_in_inches(capsys: Captured, home: Path) -> No
         "secondary": {"4": {"x": -0.0005, "z": 0.0, "r": 0.0}},
     }
     with Store.open(home, read_only=True) as store:  # millimetres inside; D's x is the radius as given
-        assert store.offsets.tool_offsets.read_rows() == {3: ToolRow(1.25 * 25.4, -0.5 * 25.4, 0.0)}
-        assert store.offsets.secondary_offsets.read_rows() == {4: SecondaryRow(-0.0005 * 25.4, 0.0, 0.0)}
+        assert store.offsets.tool_offsets.read_rows() == {3: ToolOffsetRow(1.25 * 25.4, -0.5 * 25.4, 0.0)}
+        assert store.offsets.secondary_offsets.read_rows() == {
+            4: SecondaryOffsetRow(-0.0005 * 25.4, 0.0, 0.0)
+        }
 
 
 def test_second_entry_retains_fields_it_does_not_name(capsys: Captured) -> None:
@@ -368,7 +370,7 @@ def test_offsets_cannot_be_set_if_machine_file_is_missing(
 ) -> None:
     machine = shorter(tmp_path)
     journal = Journal(home)
-    store_machine(str(machine), journal)
+    save_machine_in_use(str(machine), journal)
     journal.close()
     machine.unlink()
     assert "--machine" in str(refused(capsys, "set", "T1", "x=1", "z=0"))

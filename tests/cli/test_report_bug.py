@@ -11,7 +11,7 @@ import pytest
 
 from app import VERSION
 from app.cli.bug_report import bug_report
-from app.cli.bug_report.private_texts import mask_machine_file, mask_program_texts, remove_record_name
+from app.cli.bug_report.private_texts import mask_machine_file, mask_program_texts, remove_scope_record_name
 from app.cli.bug_report.replaced_names import PrivateValueReplacer
 from core.message import Message
 from core.store.store import Store
@@ -51,7 +51,7 @@ def shop(home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         store.settings.save_setting("machine in use", str(tmp_path / "hopkins.toml")).result(60)
         store.people.save_user(UserRow("QUIMBY", 3, b"", b"")).result(60)
         store.programs.save_version("WIDGET 77.nc", PROGRAM.encode(), "saved", author="Quimby").result(60)
-        store.runs.record_start("WIDGET 77.nc").result(60)
+        store.runs.record_run_start("WIDGET 77.nc").result(60)
         text = Message("{name} loaded by {who}, {count} blocks", name="WIDGET 77", who="QUIMBY", count=12)
         store.events.log_event("load", text).result(60)
         store.events.log_event("refused", "WIDGET 77 NOT FOUND").result(60)
@@ -228,6 +228,8 @@ def test_machine_file_strings_are_masked(line: str, expected: str) -> None:
 
 
 def test_log_line_that_is_not_json_is_unchanged() -> None:
-    assert remove_record_name("{broken") == "{broken"
-    assert remove_record_name("[1]") == "[1]"
-    assert json.loads(remove_record_name('{"text": "READY", "record": "PIN.scope"}')) == {"text": "READY"}
+    assert remove_scope_record_name("{broken") == "{broken"
+    assert remove_scope_record_name("[1]") == "[1]"
+    assert json.loads(remove_scope_record_name('{"text": "READY", "record": "PIN.scope"}')) == {
+        "text": "READY"
+    }

@@ -34,7 +34,7 @@ def life(home: Path, number: int = 1) -> ToolLifeRow:
 def limited(home: Path, parts: int, *, stops: bool) -> None:
     with Store.open(home) as store:
         row = ToolLifeRow(1, limit_parts=parts, stops=stops)
-        store.write(lambda connection: tool_lives.save_limits(connection, row)).result(60)
+        store.write(lambda connection: tool_lives.save_tool_life_limits(connection, row)).result(60)
 
 
 def test_real_time_run_counts_part_and_feed_time(
@@ -99,7 +99,7 @@ def test_used_up_tool_that_the_program_does_not_use_does_not_bar_run(
 ) -> None:
     limited(home, 1, stops=True)
     with Store.open(home) as store:
-        store.write(lambda connection: tool_lives.save_use(connection, 1, 5, 10.0)).result(60)
+        store.write(lambda connection: tool_lives.save_insert_use(connection, 1, 5, 10.0)).result(60)
     path: Callable[[str], Path] = tmp_path.joinpath
     other = path("other.nc")
     other.write_text(TEXT.replace("T1", "T2"))

@@ -71,7 +71,7 @@ def test_check_disabled_for_the_program_does_not_refuse_run(
     path = written(tmp_path, SLIP)
     kept = StoredPart("bar:1:2+.02", silenced_checks={"rapid-into-stock": "soft wax"})
     with Store.open(home) as store:
-        for key, value in kept.make_settings(path.name).items():
+        for key, value in kept.make_stored_settings(path.name).items():
             store.settings.save_setting(key, value).result()
     told = turndesk("run", path, "--headless", "--json", "--offsets", offsets, "--tools", tools)
     assert state(told) == (0, "complete")

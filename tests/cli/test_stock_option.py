@@ -292,7 +292,7 @@ def test_check_disabled_for_a_program_applies_to_that_program_only(
         kept = StoredPart(
             silenced_checks={"rapid-into-stock": "drilled before", "through-part": "drilled before"}
         )
-        for key, value in kept.make_settings("part.nc").items():
+        for key, value in kept.make_stored_settings("part.nc").items():
             store.settings.save_setting(key, value).result()
     told = turndesk("prove", path, *given)
     assert (told.status, wording("findings.check-off", why="drilled before") in told.out) == (0, True)

@@ -12,7 +12,7 @@ from app.cli.main import main
 from core.message import CodedError
 from core.store import database
 from core.store.store import Store
-from core.store.store_rows import SecondaryRow, ToolRow
+from core.store.store_rows import SecondaryOffsetRow, ToolOffsetRow
 from tests.coded import recorded_refusals
 from tests.texts import text as wording
 
@@ -108,8 +108,8 @@ def test_export_and_import_into_an_empty_home(
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "second"))
     assert main(["store", "import", folder]) == 0
     with Store.open(tmp_path / "second") as store:
-        assert store.offsets.tool_offsets.read_rows() == {1: ToolRow(31.75, 0.0, 0.015 * 25.4)}
-        assert store.offsets.secondary_offsets.read_rows() == {4: SecondaryRow(-0.0127, 0.0, 0.0)}
+        assert store.offsets.tool_offsets.read_rows() == {1: ToolOffsetRow(31.75, 0.0, 0.015 * 25.4)}
+        assert store.offsets.secondary_offsets.read_rows() == {4: SecondaryOffsetRow(-0.0127, 0.0, 0.0)}
         assert store.programs.load_version("PIN.nc") == b"G90\r\n"
         assert store.offsets.read_history()[0].why == wording("cli.import-from", folder="out")
 
@@ -117,7 +117,7 @@ def test_export_and_import_into_an_empty_home(
 def test_export_and_import_transfer_every_offset_field(
     capsys: Captured, filled: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    row = ToolRow(1.0, 2.0, 0.4, -0.01, 0.02, 3, 'a "rough" one, 45°', master=True)
+    row = ToolOffsetRow(1.0, 2.0, 0.4, -0.01, 0.02, 3, 'a "rough" one, 45°', master=True)
     with Store.open(filled) as store:
         store.offsets.tool_offsets.change_row(2, "x", row._asdict()).result()
     folder = tmp_path / "out"

@@ -12,9 +12,9 @@ from app.cli.main import main
 from app.desk.command_errors import CommandError
 from app.offsets.offsets_file import read_offset_rows, read_shape_rows, read_tool_shapes
 from core.message import CodedError
-from core.part.tool_shape import Hand, ToolKind, ToolShape
+from core.part.tool_shape import ToolHand, ToolKind, ToolShape
 from core.store.store import Store
-from core.store.store_rows import TOOL_HANDS, TOOL_KINDS, ShapeRow, ToolRow
+from core.store.store_rows import TOOL_HANDS, TOOL_KINDS, ToolOffsetRow, ToolShapeRow
 from tests.coded import recorded_refusals
 
 Captured = pytest.CaptureFixture[str]
@@ -35,7 +35,7 @@ kind = "form"
 profile = "0,0 2.5,0 1.25,1.5"
 rear = true
 """
-CNMG = ToolShape(ToolKind.TURNING, Hand.RIGHT, 3, 0.0313 * 25.4, insert="CNMG432", holder="MCLNR-124B")
+CNMG = ToolShape(ToolKind.TURNING, ToolHand.RIGHT, 3, 0.0313 * 25.4, insert="CNMG432", holder="MCLNR-124B")
 
 
 @pytest.fixture(autouse=True)
@@ -82,9 +82,9 @@ def refused(capsys: Captured, *argv: str) -> CodedError:
 
 def test_stored_tool_kinds_and_defaults_match_the_part_model() -> None:
     assert tuple(ToolKind) == TOOL_KINDS
-    assert tuple(Hand) == TOOL_HANDS
+    assert tuple(ToolHand) == TOOL_HANDS
     stated = {each.name: each.default for each in fields(ToolShape)}
-    assert stated == ShapeRow()._asdict() | {
+    assert stated == ToolShapeRow()._asdict() | {
         "kind": ToolKind.TURNING,  # a row without a kind is no shape yet
         "tip": 0,
         "nose_radius": 0.0,
@@ -110,7 +110,7 @@ def test_tool_shapes_are_read_from_the_offsets_file(tmp_path: Path) -> None:
         encoding="utf-8",
     )
     tools, secondary, zero = read_offset_rows(path)
-    assert tools == {1: ToolRow(), 2: ToolRow(25.4)}
+    assert tools == {1: ToolOffsetRow(), 2: ToolOffsetRow(25.4)}
     assert (sorted(secondary), sorted(zero)) == ([1], [54])
     assert sorted(read_tool_shapes(path)) == [1]
 
@@ -199,7 +199,7 @@ def test_tool_shape_is_set_shown_and_logged(capsys: Captured, home: Path) -> Non
     assert told["shape"]["5"]["diameter"] == 0.25
     assert told["shape"]["3"]["holder"] == "MCLNR-124B"
     with Store.open(home, read_only=True) as store:
-        assert store.offsets.tool_shapes.read_rows()[5] == ShapeRow("drill", diameter=6.35, point=118.0)
+        assert store.offsets.tool_shapes.read_rows()[5] == ToolShapeRow("drill", diameter=6.35, point=118.0)
 
 
 def test_tool_shape_change_is_in_history_and_can_be_undone(capsys: Captured, home: Path) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from app.desk.command_errors import CommandError
 from app.offsets.offsets_file import read_offset_rows
-from core.store.store_rows import ZeroRow
+from core.store.store_rows import ZeroOffsetRow
 from tests.cli.conftest import Turndesk
 from tests.coded import raises_code
 
@@ -44,7 +44,7 @@ def test_zero_offset_of_a_file_shifts_machine_positions(turndesk: Turndesk, tmp_
 
 def test_zero_offsets_are_read_from_an_offsets_file(tmp_path: Path) -> None:
     path = written(tmp_path, "[zero.54]\nc = 5\n[zero.59]\nz = 1\n[secondary.1]\nx = 0.1\n")
-    assert read_offset_rows(path)[2] == {54: ZeroRow(c=5.0), 59: ZeroRow(z=1.0)}
+    assert read_offset_rows(path)[2] == {54: ZeroOffsetRow(c=5.0), 59: ZeroOffsetRow(z=1.0)}
     assert sorted(read_offset_rows(path)[1]) == [1]
 
 

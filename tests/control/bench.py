@@ -23,10 +23,17 @@ from app.compose.control.control_server import ControlServer
 from app.compose.control.descriptor_passing import SharedMemory, receive_descriptor
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import get_control_limits
-from core.executor.commands import Clearance, Command, CycleStart, EnableDrives, LoadJob, ReplaceClearances
+from core.executor.commands import (
+    Command,
+    CycleStart,
+    EnableDrives,
+    LoadJob,
+    ReplaceStartClearances,
+    StartClearance,
+)
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import MachineState, Snapshot
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
 from drivers.wakeups import RealClock
@@ -57,7 +64,7 @@ def one_button(*, alone: bool = False) -> Machine:
 
 def job_of(text: str, machine: Machine, **changes: object) -> Job:
     """The job of this program on this machine."""
-    setup = Setup(
+    setup = InterpreterSetup(
         limits=get_control_limits(machine),
         last_rapid=machine.limits.manual_rapid,
         **changes,  # type: ignore[arg-type]
@@ -156,7 +163,7 @@ class Bench:
     def looks(self, times: int) -> None:
         """Look at the screen so many times, each some ticks after the other."""
         for _ in range(times):
-            self.server.check_screen()
+            self.server.check_screen_response()
         ticks = self.server.executor.tick_count
         until(lambda: self.server.executor.tick_count > ticks + 2)
 
@@ -169,7 +176,7 @@ class Bench:
 
     def until(self, *states: MachineState) -> None:
         """Wait for one of these states."""
-        until(lambda: self.shot.state in states, lambda: (self.shot.state, self.shot.start_refusal))
+        until(lambda: self.shot.state in states, lambda: (self.shot.state, self.shot.start_refusal_reason))
 
     def run(self, screen: Screen, text: str = LONG) -> Job:
         """Drives on, program loaded and started."""
@@ -187,7 +194,7 @@ class Bench:
         last = self.clock.now()
         until(lambda: self.clock.now() > last + 0.4)  # a start right behind the last one is its bounce
         shot = self.shot
-        screen.post(ReplaceClearances((Clearance(job.digest, shot.demand, shot.begun),)))
+        screen.post(ReplaceStartClearances((StartClearance(job.digest, shot.demand, shot.begun),)))
         screen.post(CycleStart(), late)
 
     def close(self) -> None:

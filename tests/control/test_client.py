@@ -13,7 +13,7 @@ import pytest
 from app.compose.control.control_client import (
     ControlClient,
     ControlEventHandlers,
-    ControlStationControls,
+    RemoteStationControls,
 )
 from app.compose.control.control_messages import (
     PROTOCOL_VERSION,
@@ -22,7 +22,7 @@ from app.compose.control.control_messages import (
     EventMessage,
     EventStoredMessage,
     HelloMessage,
-    InterruptedJobNote,
+    InterruptedJobMessage,
     MachineClosedMessage,
     ScreenAliveMessage,
     SnapshotMessage,
@@ -31,8 +31,8 @@ from app.compose.control.control_messages import (
 )
 from app.compose.control.control_start import StartedControl
 from app.compose.control.descriptor_passing import SharedMemory, send_descriptor
-from app.compose.runs.receipt import Receipt
-from core.executor.commands import LoadJob, SetSwitch, SupplyProof
+from app.compose.runs.receipt import EventReceipt
+from core.executor.commands import LoadJob, SetSwitch, SupplyJobProof
 from core.executor.job import Proof
 from core.executor.snapshot import InterruptedJob, LogEvent, MachineState, Snapshot
 from core.machine.machine_model import Machine
@@ -107,7 +107,7 @@ class Ear:
     stirs: list[int] = field(default_factory=list)
     fails: bool = False
 
-    def hear(self, event: LogEvent, receipt: Receipt | None) -> None:
+    def hear(self, event: LogEvent, receipt: EventReceipt | None) -> None:
         """An event, which cannot be kept while this fails."""
         if self.fails:
             raise ValueError
@@ -173,7 +173,7 @@ def test_events_are_acknowledged_and_interruption_notes_forwarded(pair: Pair) ->
     pair.peer.end.send(EventMessage(3, LogEvent(1.0, "part", "part 1")))
     assert pair.peer.next(EventStoredMessage) == EventStoredMessage(3)
     assert pair.ear.origins == [EventOrigin("a control", 3)]
-    pair.peer.end.send(InterruptedJobNote(job))
+    pair.peer.end.send(InterruptedJobMessage(job))
     pair.peer.end.send(ThreadEndedMessage("recorder"))
     pair.mark()
     assert [event.kind for event in pair.ear.events] == ["part", "test"]
@@ -185,7 +185,7 @@ def test_unknown_message_and_failing_listener_do_not_end_the_connection(pair: Pa
     pair.peer.end.send("what is this?")
     pair.ear.fails = True
     later = replace(idle, t=77.0)
-    pair.peer.end.send(InterruptedJobNote(None))
+    pair.peer.end.send(InterruptedJobMessage(None))
     pair.peer.end.send(SnapshotMessage(later, has_changed=True))
     pair.peer.end.send(ThreadEndedMessage("a mark"))
     until(lambda: bool(pair.ear.ended))
@@ -209,14 +209,14 @@ def test_command_that_cannot_be_pickled_does_not_block_later_commands(pair: Pair
 
 
 def test_station_actions_and_life_signs_are_sent_with_their_time(pair: Pair, idle: Snapshot) -> None:
-    ControlStationControls(pair.client.operate_station).press_left()
+    RemoteStationControls(pair.client.operate_station).press_left()
     hand = pair.peer.next(StationAction)
     assert isinstance(hand, StationAction)
     assert hand[:2] == ("press_left", ())
-    assert hand.acted_at_s == pytest.approx(pair.client.clock.now(), abs=PATIENCE)
-    pair.client.report_alive(idle)
+    assert hand.action_time_s == pytest.approx(pair.client.clock.now(), abs=PATIENCE)
+    pair.client.report_screen_alive(idle)
     assert pair.peer.next(ScreenAliveMessage) == ScreenAliveMessage()
-    pair.client.report_alive(idle)  # at once: it was told a moment ago
+    pair.client.report_screen_alive(idle)  # at once: it was told a moment ago
     assert pair.mark() == []
 
 
@@ -265,17 +265,17 @@ def test_program_loaded_during_a_cycle_is_sent_after_the_cycle(idle: Snapshot, t
     first, second = job_of(SHORT, MACHINE), job_of(SHORT + "\n", MACHINE)
     for job in (first, second):
         pair.client.post_command(LoadJob(job))
-    pair.client.post_command(SupplyProof(Proof(second.digest, ())))
+    pair.client.post_command(SupplyJobProof(Proof(second.digest, ())))
     pair.client.post_command(SetSwitch("single_block", True))
-    pair.client.report_alive(running)
+    pair.client.report_screen_alive(running)
     assert pair.mark() == [SetSwitch("single_block", True)]
     pair.peer.end.send(SnapshotMessage(idle, has_changed=False))
     pair.mark()
     pair.client.post_command(
-        SupplyProof(Proof(second.digest, (), block_count=3))
+        SupplyJobProof(Proof(second.digest, (), block_count=3))
     )  # not before the job that is kept
-    pair.client.report_alive(idle)
-    assert pair.mark() == [LoadJob(second), SupplyProof(Proof(second.digest, (), block_count=3))]
+    pair.client.report_screen_alive(idle)
+    assert pair.mark() == [LoadJob(second), SupplyJobProof(Proof(second.digest, (), block_count=3))]
     pair.client.post_command(LoadJob(first))
     assert pair.mark() == [LoadJob(first)]
     pair.peer.end.close()
@@ -292,20 +292,20 @@ def test_program_loaded_while_the_cycle_ends_is_not_lost(idle: Snapshot, tmp_pat
     def load() -> None:
         while not over.is_set():
             pair.client.post_command(LoadJob(job))
-            pair.client.post_command(SupplyProof(Proof(job.digest, ())))
+            pair.client.post_command(SupplyJobProof(Proof(job.digest, ())))
 
     worker = threading.Thread(target=load)
     worker.start()
     for _ in range(300):
         pair.client.snapshot = running
-        pair.client.report_alive(running)
+        pair.client.report_screen_alive(running)
         pair.client.snapshot = idle
-        pair.client.report_alive(idle)
+        pair.client.report_screen_alive(idle)
     over.set()
     worker.join()
     pair.client.snapshot = running
     pair.client.post_command(LoadJob(job))
-    pair.client.report_alive(idle)
+    pair.client.report_screen_alive(idle)
     assert pair.mark()[-1] == LoadJob(job)
     pair.peer.end.close()
     pair.client.stop_and_close()

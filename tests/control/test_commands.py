@@ -13,13 +13,12 @@ import pytest
 
 import resources
 from app.compose.control.control_messages import SnapshotMessage
-from app.compose.control.control_server import list_watched_threads
+from app.compose.control.control_server import list_watched_thread_names
 from app.compose.desk_services import SUPERVISED_THREAD_TEXTS
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import get_control_limits, read_machine
 from core.executor import commands
 from core.executor.commands import (
-    BlockNextPart,
     ChangeOffsets,
     Command,
     CycleStart,
@@ -27,7 +26,8 @@ from core.executor.commands import (
     EnableDrives,
     FeedHold,
     LoadJob,
-    PrepareStart,
+    PrepareCycleStart,
+    PreventNextPart,
     Reset,
     SetSwitch,
     StopJog,
@@ -38,7 +38,7 @@ from core.executor.job import Job, Proof, make_job, start_program_pass
 from core.executor.snapshot import LogEvent, MachineState, StartAction
 from core.interpreter.dialects import SharedProgram, interpret_mdi_line
 from core.interpreter.shared.checkpoint import Checkpoint, PassStart
-from core.interpreter.shared.job_setup import SecondaryOffset, Setup, ToolOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, SecondaryOffset, ToolOffset
 from core.interpreter.shared.modal_state import ModalState
 from core.language.source import Dialect, ProgramSource
 from core.machine.machine_model import Machine
@@ -92,8 +92,8 @@ def _values() -> Mapping[str, object]:
         "DriveTestMotion": _made(DriveTestMotion),
         "Mapping[int, ToolOffset]": {3: ToolOffset(1.0, 2.0)},
         "Mapping[int, SecondaryOffset]": {4: SecondaryOffset(1.0)},
-        "tuple[Clearance, ...]": (commands.Clearance(job.digest, (1.0, 2.0, 0.0), 3),),
-        "Clearance | None": commands.Clearance(job.digest, (1.0, 2.0, 0.0), 3),
+        "tuple[Clearance, ...]": (commands.StartClearance(job.digest, (1.0, 2.0, 0.0), 3),),
+        "Clearance | None": commands.StartClearance(job.digest, (1.0, 2.0, 0.0), 3),
         "StartAction": StartAction.MDI_LINE,
     }
 
@@ -119,7 +119,7 @@ def test_every_command_arrives_unchanged(kind: type[Command]) -> None:
 @pytest.mark.parametrize("source", [OMNITURN, SINUMERIK, KLARTEXT], ids=lambda source: source.name)
 def test_job_gives_the_same_blocks_in_both_processes(source: ProgramSource) -> None:
     machine = machine_of("ac-table-mill.toml" if source is KLARTEXT else "gt75.toml")
-    job = make_job(source, Setup(limits=get_control_limits(machine)))
+    job = make_job(source, InterpreterSetup(limits=get_control_limits(machine)))
     arrived: Job = pickle.loads(pickle.dumps(job))
     assert arrived == job
     assert arrived.shared_program.has_same_source(job.shared_program)
@@ -132,7 +132,8 @@ def test_job_gives_the_same_blocks_in_both_processes(source: ProgramSource) -> N
 def test_mdi_line_leaves_the_same_state_in_both_processes(machine: str) -> None:
     limits = get_control_limits(machine_of(machine))
     line = interpret_mdi_line(
-        LINES[machine], Setup(begin=PassStart(Checkpoint(ModalState()), is_mdi_line=True), limits=limits)
+        LINES[machine],
+        InterpreterSetup(begin=PassStart(Checkpoint(ModalState()), is_mdi_line=True), limits=limits),
     )
     list(line.generate_blocks())
     left = line.checkpoint
@@ -140,7 +141,7 @@ def test_mdi_line_leaves_the_same_state_in_both_processes(machine: str) -> None:
     assert arrived == left
     assert hash(arrived.kept) == hash(left.kept)
     here, there = (
-        make_job(LINES[machine], Setup(begin=PassStart(each, is_mdi_line=True), limits=limits))
+        make_job(LINES[machine], InterpreterSetup(begin=PassStart(each, is_mdi_line=True), limits=limits))
         for each in (left, arrived)
     )
     assert here.digest == there.digest
@@ -151,7 +152,7 @@ def test_mdi_line_leaves_the_same_state_in_both_processes(machine: str) -> None:
 
 def test_states_left_by_two_mdi_lines_are_not_equal() -> None:
     limits = get_control_limits(machine_of("sinumerik-live.toml"))
-    setup = Setup(begin=PassStart(Checkpoint(ModalState()), is_mdi_line=True), limits=limits)
+    setup = InterpreterSetup(begin=PassStart(Checkpoint(ModalState()), is_mdi_line=True), limits=limits)
     first, second = (interpret_mdi_line(LINES["sinumerik-live.toml"], setup) for _ in range(2))
     for line in (first, second):
         list(line.generate_blocks())
@@ -175,7 +176,7 @@ def test_snapshots_and_events_arrive_unchanged() -> None:
 
 
 def test_every_thread_reported_by_the_control_has_a_name_on_screen() -> None:
-    assert {"recorder", "pendant"} < set(list_watched_threads()) <= SUPERVISED_THREAD_TEXTS.keys()
+    assert {"recorder", "pendant"} < set(list_watched_thread_names()) <= SUPERVISED_THREAD_TEXTS.keys()
 
 
 def test_shipped_machine_file_reread_is_equal_to_itself_only() -> None:
@@ -264,7 +265,7 @@ def test_late_start_command_is_rejected_and_other_late_commands_are_not(bench: B
     screen = bench.screen()
     screen.meet()
     screen.post(EnableDrives(), late=0.6)
-    screen.post(BlockNextPart("WHY"), late=60.0)
+    screen.post(PreventNextPart("WHY"), late=60.0)
     until(lambda: bench.shot.next_barred == "WHY")
     assert bench.shot.state is MachineState.DISABLED
     assert len(screen.events("refused")) == 1
@@ -281,7 +282,7 @@ def test_program_text_is_parsed_once_for_all_its_commands(
     worn = job_of(SHORT, bench.machine, tools={1: ToolOffset(1.0)})
     screen.post(LoadJob(job, Proof(job.digest, ())))
     screen.post(ChangeOffsets(worn, Proof(worn.digest, ())))
-    screen.post(PrepareStart(StartAction.PROGRAM))
+    screen.post(PrepareCycleStart(StartAction.PROGRAM))
     screen.post(LoadJob(job_of(SHORT + "\n", bench.machine)))
     screen.post(SetSwitch("optional_stop", True))
     screen.take(SnapshotMessage, lambda each: each.snapshot.optional_stop)

@@ -18,14 +18,14 @@ from unittest.mock import Mock
 import pytest
 
 from app.compose.control import control_client
-from app.compose.control.control_client import ControlClient, find_control
+from app.compose.control.control_client import ControlClient, find_running_control
 from app.compose.control.control_messages import (
     PROTOCOL_VERSION,
     SCREEN_CONNECTED,
     CloseRequest,
     ControlFailedMessage,
     SnapshotMessage,
-    is_own_user,
+    is_same_user,
 )
 from app.compose.control.control_start import StartedControl, list_socket_paths, start_control
 from core.executor.snapshot import MachineState, Snapshot
@@ -66,19 +66,19 @@ def find(tmp_path: Path, path: Path, serve: Callable[[Connection], object]) -> C
     """Look for the control there, whose end does ``serve``."""
     listening = Listening(path, serve)
     try:
-        return find_control(MACHINE, tmp_path, path)
+        return find_running_control(MACHINE, tmp_path, path)
     finally:
         listening.close()
 
 
 def test_stale_socket_is_not_a_running_control(tmp_path: Path, path: Path) -> None:
-    assert find_control(MACHINE, tmp_path, path) is None
+    assert find_running_control(MACHINE, tmp_path, path) is None
     path.write_text("no socket")
-    assert find_control(MACHINE, tmp_path, path) is None
+    assert find_running_control(MACHINE, tmp_path, path) is None
     path.unlink()
     with socket.socket(socket.AF_UNIX) as left:
         left.bind(str(path))  # of a control that was killed
-    assert find_control(MACHINE, tmp_path, path) is None
+    assert find_running_control(MACHINE, tmp_path, path) is None
 
 
 def test_running_control_with_the_same_machine_file_is_joined(
@@ -166,7 +166,7 @@ def test_control_with_a_full_queue_is_rejected_after_timeout(
         with socket.socket(socket.AF_UNIX) as first:
             first.connect(str(path))
             with pytest.raises(DriverError):
-                find_control(MACHINE, tmp_path, path)
+                find_running_control(MACHINE, tmp_path, path)
 
 
 @pytest.mark.parametrize("why", [SCREEN_CONNECTED])
@@ -229,10 +229,10 @@ def test_peer_of_another_user_is_not_trusted(
     tmp_path: Path, path: Path, idle: Snapshot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ours, theirs = Pipe()
-    assert is_own_user(ours)
+    assert is_same_user(ours)
     user = os.geteuid()
     monkeypatch.setattr(os, "geteuid", lambda: user + 1)
-    assert not is_own_user(ours)
+    assert not is_same_user(ours)
     assert find(tmp_path, path, lambda end: Peer(end, idle).greet()) is None
     ours.close()
     theirs.close()

@@ -8,7 +8,6 @@ import pytest
 
 from app.compose.control.posted_state import PostedState
 from core.executor.commands import (
-    BlockNextPart,
     ChangeOffsets,
     Command,
     ConfirmStart,
@@ -17,16 +16,17 @@ from core.executor.commands import (
     HomeAxes,
     Jog,
     LoadJob,
-    PrepareStart,
-    ReplaceClearances,
+    PrepareCycleStart,
+    PreventNextPart,
+    ReplaceStartClearances,
     ReportInterruptedJob,
     Reset,
     SetFeedOverride,
     SetPartCount,
     SetSpindleLimit,
     SetSwitch,
-    SupplyProof,
-    UseOffsets,
+    SupplyJobProof,
+    UseOffsetTables,
 )
 from core.executor.job import Proof
 from core.executor.snapshot import MachineState, Snapshot, StartAction
@@ -40,8 +40,8 @@ FIRST, SECOND = job_of(SHORT, one_button()), job_of(LONG, one_button())
 def after(*posted: Command, last: Snapshot = LAST) -> list[Command]:
     state = PostedState(None)
     for command in posted:
-        state.note_command(command)
-    return state.list_commands(last)
+        state.record_command(command)
+    return state.list_restore_commands(last)
 
 
 def test_control_without_a_program_needs_no_commands() -> None:
@@ -50,13 +50,13 @@ def test_control_without_a_program_needs_no_commands() -> None:
 
 def test_loaded_program_is_repeated_with_its_proof_and_part_count() -> None:
     proof = Proof(FIRST.digest, ())
-    assert after(LoadJob(FIRST), SupplyProof(proof)) == [LoadJob(FIRST, proof), SetPartCount(17)]
+    assert after(LoadJob(FIRST), SupplyJobProof(proof)) == [LoadJob(FIRST, proof), SetPartCount(17)]
 
 
 def test_proof_of_another_program_is_not_repeated() -> None:
     old = Proof(FIRST.digest, ())
     assert after(LoadJob(FIRST, old), LoadJob(SECOND)) == [LoadJob(SECOND), SetPartCount(17)]
-    assert after(LoadJob(SECOND), SupplyProof(old)) == [LoadJob(SECOND), SetPartCount(17)]
+    assert after(LoadJob(SECOND), SupplyJobProof(old)) == [LoadJob(SECOND), SetPartCount(17)]
 
 
 def test_changed_offsets_replace_the_job_of_the_program() -> None:
@@ -81,8 +81,8 @@ def test_announced_offset_change_is_repeated_and_still_bars_the_start(announced:
         Jog("X", 1.0, 0.3),
         Reset(),
         ConfirmStart("now"),
-        ReplaceClearances(()),
-        PrepareStart(StartAction.PROGRAM),
+        ReplaceStartClearances(()),
+        PrepareCycleStart(StartAction.PROGRAM),
     ],
 )
 def test_motion_and_start_commands_are_not_repeated(command: Command) -> None:
@@ -91,9 +91,9 @@ def test_motion_and_start_commands_are_not_repeated(command: Command) -> None:
 
 @pytest.mark.parametrize("starts", [StartAction.MDI_LINE, StartAction.RESTART])
 def test_a_prepared_line_or_restart_must_be_prepared_again(starts: StartAction) -> None:
-    prepared = PrepareStart(starts, FIRST, Proof(FIRST.digest, ()))
-    assert after(prepared) == [PrepareStart(StartAction.MDI_LINE)]
-    assert after(prepared, PrepareStart(StartAction.PROGRAM)) == []
+    prepared = PrepareCycleStart(starts, FIRST, Proof(FIRST.digest, ()))
+    assert after(prepared) == [PrepareCycleStart(StartAction.MDI_LINE)]
+    assert after(prepared, PrepareCycleStart(StartAction.PROGRAM)) == []
 
 
 @pytest.mark.parametrize(
@@ -101,8 +101,8 @@ def test_a_prepared_line_or_restart_must_be_prepared_again(starts: StartAction) 
     [
         (SetSpindleLimit(3000.0), SetSpindleLimit(2000.0)),
         (SetFeedOverride(1.2), SetFeedOverride(0.5)),
-        (BlockNextPart("tool 3"), BlockNextPart("")),
-        (UseOffsets({}, {}), UseOffsets({}, {})),
+        (PreventNextPart("tool 3"), PreventNextPart("")),
+        (UseOffsetTables({}, {}), UseOffsetTables({}, {})),
     ],
 )
 def test_the_last_of_each_value_is_repeated(first: Command, last: Command) -> None:
@@ -119,9 +119,9 @@ def test_switches_are_as_last_shown_except_cycle_repeat() -> None:
 
 def test_interrupted_job_is_reported_again() -> None:
     state = PostedState(broken_off())
-    assert state.list_commands(LAST) == [ReportInterruptedJob(broken_off(), logged=True)]
+    assert state.list_restore_commands(LAST) == [ReportInterruptedJob(broken_off(), logged=True)]
     state.interrupted_job = None
-    assert state.list_commands(LAST) == []
+    assert state.list_restore_commands(LAST) == []
 
 
 def test_station_settings_are_repeated_without_momentary_presses() -> None:
@@ -135,11 +135,11 @@ def test_station_settings_are_repeated_without_momentary_presses() -> None:
         ("set_feed_pot", (0.5,)),
         ("set_spindle_auto", (False,)),
     ):
-        state.note_station_action(name, values)
-    assert state.list_station_actions() == [
+        state.record_station_action(name, values)
+    assert state.list_restore_station_actions() == [
         ("press_estop", ()),
         ("set_feed_pot", (0.5,)),
         ("set_spindle_auto", (False,)),
     ]
-    state.note_station_action("release_estop", ())
-    assert state.list_station_actions()[0] == ("release_estop", ())
+    state.record_station_action("release_estop", ())
+    assert state.list_restore_station_actions()[0] == ("release_estop", ())

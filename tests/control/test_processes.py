@@ -18,26 +18,26 @@ import pytest
 from app.compose.control.control_client import (
     ControlClient,
     ControlEventHandlers,
-    ControlStationControls,
-    find_control,
+    RemoteStationControls,
+    find_running_control,
 )
 from app.compose.control.control_start import list_socket_paths, start_control
 from app.compose.control.process_rights_check import READING_PRIORITY, REAL_TIME_PRIORITY
 from app.compose.control.unattended_notes import NOTE_FILE_NAME
 from app.compose.machine.machine_files import load_named_machine
 from app.compose.program_proving import create_line_prover
-from app.compose.runs.receipt import Receipt
+from app.compose.runs.receipt import EventReceipt
 from app.compose.stored_offsets import NO_OFFSETS
 from app.desk.data_folder import HOME_VARIABLE
 from app.desk.programs.prepared_line import ProveLine
 from core.executor.commands import (
-    Clearance,
     CycleStart,
     EnableDrives,
     LoadJob,
-    PrepareStart,
-    ReplaceClearances,
+    PrepareCycleStart,
+    ReplaceStartClearances,
     SetSwitch,
+    StartClearance,
 )
 from core.executor.job import Proof
 from core.executor.snapshot import LogEvent, MachineState, StartAction
@@ -60,7 +60,7 @@ class Desk:
         self.events = list[LogEvent]()
         client.start_threads(ControlEventHandlers(self.hear, lambda _: None, lambda _: None))
 
-    def hear(self, event: LogEvent, receipt: Receipt | None) -> None:
+    def hear(self, event: LogEvent, receipt: EventReceipt | None) -> None:
         self.events.append(event)
         if receipt is not None:
             receipt.confirm_storage()
@@ -71,7 +71,7 @@ class Desk:
 
     def see(self) -> bool:
         """A frame."""
-        self.client.report_alive(self.client.snapshot)
+        self.client.report_screen_alive(self.client.snapshot)
         return True
 
     def until(self, *states: MachineState) -> None:
@@ -86,7 +86,9 @@ class Desk:
         self.client.post_command(LoadJob(job, Proof(job.digest, ())))
         until(lambda: self.client.snapshot.program == "part.nc")
         shot = self.client.snapshot
-        self.client.post_command(ReplaceClearances((Clearance(job.digest, shot.demand, shot.begun),)))
+        self.client.post_command(
+            ReplaceStartClearances((StartClearance(job.digest, shot.demand, shot.begun),))
+        )
         self.client.post_command(CycleStart())
         self.until(MachineState.RUN)
 
@@ -97,8 +99,8 @@ class Desk:
         assert not proved.diagnostics
         began = self.client.clock.now()
         until(lambda: self.client.clock.now() > began + 0.4)  # a start right after another is its bounce
-        clearance = Clearance(job.digest, before.demand, before.begun)
-        self.client.post_command(PrepareStart(StartAction.MDI_LINE, job, proved.proof, clearance))
+        clearance = StartClearance(job.digest, before.demand, before.begun)
+        self.client.post_command(PrepareCycleStart(StartAction.MDI_LINE, job, proved.proof, clearance))
         self.client.post_command(CycleStart())
         until_long(
             lambda: self.see() and self.client.snapshot.kept != before.kept, lambda: self.client.snapshot
@@ -138,7 +140,7 @@ def found(folder: Path, place: int = 0) -> ControlClient:
     clients: list[ControlClient] = []
 
     def look() -> bool:
-        client = find_control(MACHINE, folder, path)
+        client = find_running_control(MACHINE, folder, path)
         clients.extend([client] if client is not None else [])
         return bool(clients)
 
@@ -193,7 +195,7 @@ def test_killed_control_raises_an_alarm_and_next_start_finds_no_control(folder: 
         screen.until(MachineState.FAULT)
     assert (folder / "control.sock").is_socket()
     path = list_socket_paths(folder)[0]
-    assert find_control(MACHINE, folder, path) is None
+    assert find_running_control(MACHINE, folder, path) is None
     with desk(folder) as (screen, process):
         until(lambda: _listens(path))
 
@@ -203,8 +205,8 @@ def test_control_resumes_after_being_suspended(folder: Path) -> None:
         screen.client.post_command(EnableDrives())
         screen.until(MachineState.IDLE)
         process.send_signal(signal.SIGSTOP)
-        ControlStationControls(screen.client.operate_station).press_left()
-        ControlStationControls(screen.client.operate_station).press_right()
+        RemoteStationControls(screen.client.operate_station).press_left()
+        RemoteStationControls(screen.client.operate_station).press_right()
         screen.client.post_command(CycleStart())
         for _ in range(3000):  # more than the socket holds: nobody waits
             screen.client.post_command(SetSwitch("optional_stop", False))
@@ -237,7 +239,7 @@ def test_second_start_gets_its_own_control_while_a_screen_is_connected(folder: P
         path = list_socket_paths(folder)[0]
         until(lambda: _listens(path))
         for _ in range(5):  # none of them is left in the queue
-            assert find_control(MACHINE, folder, path) is None
+            assert find_running_control(MACHINE, folder, path) is None
         with desk(folder) as (second, _):
             second.client.post_command(EnableDrives())
             second.until(MachineState.IDLE)
@@ -253,7 +255,7 @@ def test_second_control_of_a_folder_uses_its_own_socket(folder: Path) -> None:
         second.until(MachineState.IDLE)
         second.vanish()
         paths = list_socket_paths(folder)
-        assert find_control(MACHINE, folder, paths[0]) is None  # it has its screen
+        assert find_running_control(MACHINE, folder, paths[0]) is None  # it has its screen
         client = found(folder, 1)
         assert client.snapshot.state is MachineState.IDLE
         again = Desk(client)

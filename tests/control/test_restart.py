@@ -18,16 +18,16 @@ from app.compose.control.control_start import start_control
 from app.compose.control.live_control import LiveControl
 from app.compose.control.process_handle import ProcessHandle
 from app.desk.data_folder import HOME_VARIABLE
-from app.desk.stop_keys.stop_records import StopKind, StopPress
+from app.desk.stop_keys.stop_records import StopKeyPress, StopKind
 from core.executor.commands import (
-    Clearance,
     Command,
     CycleStart,
     EnableDrives,
     LoadJob,
-    ReplaceClearances,
+    ReplaceStartClearances,
     Reset,
     SetSwitch,
+    StartClearance,
 )
 from core.executor.job import Job, Proof
 from core.executor.snapshot import InterruptedJob, LogEvent, MachineState
@@ -70,7 +70,7 @@ class Desk:
 
     def wait(self, ready: Callable[[], bool]) -> None:
         def look() -> bool:
-            self.live.report_alive(self.live.snapshot)
+            self.live.report_screen_alive(self.live.snapshot)
             return ready()
 
         until(look, lambda: (self.live.snapshot, self.said))
@@ -86,7 +86,9 @@ class Desk:
         self.post(LoadJob(job, Proof(job.digest, ())))
         self.wait(lambda: self.live.snapshot.program == "part.nc")
         shot = self.live.snapshot
-        self.post(ReplaceClearances((Clearance(job.digest, shot.demand, shot.begun),)), CycleStart())
+        self.post(
+            ReplaceStartClearances((StartClearance(job.digest, shot.demand, shot.begun),)), CycleStart()
+        )
         self.until(MachineState.RUN)
         self.wait(lambda: bool(self.notes))
         return job
@@ -150,7 +152,7 @@ def test_reset_replaces_a_hanging_control(folder: Path) -> None:
         screen.run()
         hanging = screen.process
         os.kill(hanging, signal.SIGSTOP)
-        screen.wait(lambda: screen.live.client.silent_time_s > 0.5)
+        screen.wait(lambda: screen.live.client.silence_duration_s > 0.5)
         screen.live.restart()
         screen.live.restart()  # pressed twice
         screen.wait(lambda: screen.process != hanging and screen.live.snapshot.program == "part.nc")
@@ -208,7 +210,7 @@ def test_control_is_not_restarted_while_the_old_process_is_alive(
         process = screen.process
         monkeypatch.setattr(screen.live.client.handle, "kill_process", lambda _seconds: False)
         os.kill(process, signal.SIGSTOP)
-        screen.wait(lambda: screen.live.client.silent_time_s > 1.0)
+        screen.wait(lambda: screen.live.client.silence_duration_s > 1.0)
         screen.live.restart()
         screen.wait(lambda: not screen.live.is_restarting)
         assert screen.process == process
@@ -230,7 +232,7 @@ def test_the_estop_and_the_stop_keys_act_on_the_new_control(folder: Path) -> Non
         screen.until(MachineState.ESTOP)  # still pressed
         screen.live.hands.release_estop()
         screen.until(MachineState.DISABLED)
-        line.send(StopPress(StopKind.ESTOP, 1).to_bytes())
+        line.send(StopKeyPress(StopKind.ESTOP, 1).to_bytes())
         screen.until(MachineState.ESTOP)
         line.close()
 
@@ -309,7 +311,7 @@ def test_control_joined_from_another_screen_can_be_restarted(
     found: list[ControlClient] = []
 
     def look() -> bool:
-        client = control_client.find_control(MACHINE, folder, path)
+        client = control_client.find_running_control(MACHINE, folder, path)
         found.extend([client] if client is not None else [])
         return bool(found)
 
@@ -317,7 +319,7 @@ def test_control_joined_from_another_screen_can_be_restarted(
     screen = Desk(LiveControl(found[0], MACHINE, folder))
     screen.begin()
     os.kill(screen.process, signal.SIGSTOP)
-    screen.wait(lambda: screen.live.client.silent_time_s > 1.0)
+    screen.wait(lambda: screen.live.client.silence_duration_s > 1.0)
     screen.live.restart()
     hanging = started.process.pid
     screen.wait(lambda: screen.process != hanging)

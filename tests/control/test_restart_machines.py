@@ -16,13 +16,13 @@ import resources
 from app.compose.machine.machine_files import load_machine
 from app.desk.data_folder import HOME_VARIABLE
 from core.executor.commands import (
-    Clearance,
     ConfirmStart,
     CycleStart,
     EnableDrives,
     LoadJob,
-    ReplaceClearances,
+    ReplaceStartClearances,
     Reset,
+    StartClearance,
 )
 from core.executor.job import Proof
 from core.executor.snapshot import MachineState, Snapshot
@@ -102,7 +102,7 @@ def start(screen: Desk, machine: Machine) -> None:
         looked = live.client.clock.now() + 1.0
         screen.wait(lambda: live.client.clock.now() > looked)
     shot = live.snapshot
-    screen.post(ReplaceClearances((Clearance(job.digest, shot.demand, shot.begun),)), CycleStart())
+    screen.post(ReplaceStartClearances((StartClearance(job.digest, shot.demand, shot.begun),)), CycleStart())
     screen.until(MachineState.RUN)
     screen.wait(lambda: live.snapshot.demand[0] > shot.demand[0] + 1.0)
 

@@ -14,7 +14,7 @@ from app.compose.control.control_messages import (
     EventMessage,
     EventStoredMessage,
     InputChange,
-    InterruptedJobNote,
+    InterruptedJobMessage,
     SnapshotMessage,
 )
 from app.compose.control.control_server import REST_CHECK_COUNT, SILENT_CHECK_COUNT, STOPPED_CHECK_COUNT
@@ -23,18 +23,18 @@ from app.compose.control.unattended_notes import (
     NOTE_FILE_NAME,
     UnconfirmedEvent,
     UnconfirmedEvents,
-    pop_events,
-    read_note,
-    remove_note,
-    save_events,
-    save_note,
+    delete_interruption_note,
+    pop_interruption_note,
+    pop_unconfirmed_events,
+    save_interruption_note,
+    save_unconfirmed_events,
 )
 from app.compose.runs.journal import Journal
-from app.compose.runs.receipt import Receipt
-from core.executor.commands import BlockNextPart, SetSwitch
+from app.compose.runs.receipt import EventReceipt
+from core.executor.commands import PreventNextPart, SetSwitch
 from core.executor.snapshot import ACTIVE_STATES, InterruptedJob, LogEvent, MachineState
 from core.store.production import part_cycles
-from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.production.part_cycles import CycleRow, ProductionStopRow
 from core.store.store import Store
 from core.store.store_rows import EventOrigin, EventRow
 from tests.control.bench import SHORT, Bench, Screen, control, one_button, until
@@ -179,7 +179,7 @@ def test_screen_without_life_signs_causes_hold_even_if_threads_respond(bench: Be
     assert bench.shot.state in ACTIVE_STATES
     for _ in range(SILENT_CHECK_COUNT):
         screen.end.send(EventStoredMessage(0))
-        bench.server.check_screen()
+        bench.server.check_screen_response()
     bench.until(MachineState.HOLD)
 
 
@@ -188,11 +188,11 @@ def test_screen_with_life_signs_causes_no_hold(bench: Bench) -> None:
     screen.meet()
     bench.run(screen)
     for _ in range(SILENT_CHECK_COUNT - 2):
-        bench.server.check_screen()
+        bench.server.check_screen_response()
     bench.alive(screen)
     bench.looks(5)
     for _ in range(SILENT_CHECK_COUNT - 7):
-        bench.server.check_screen()
+        bench.server.check_screen_response()
     bench.looks(1)
     assert bench.shot.state in ACTIVE_STATES
 
@@ -221,8 +221,8 @@ def test_a_part_is_finished_without_a_screen_and_no_other_begins(tmp_path: Path)
         screen = bench.screen()
         screen.meet()
         screen.post(SetSwitch("cycle_repeat", True))
-        screen.post(BlockNextPart("NO MORE TODAY"))
-        screen.post(BlockNextPart(""))
+        screen.post(PreventNextPart("NO MORE TODAY"))
+        screen.post(PreventNextPart(""))
         bench.run(screen, SHORT)
         screen.lose()
         bench.looks(1)
@@ -249,12 +249,12 @@ def test_previous_bar_of_next_part_applies_again_when_screen_returns(tmp_path: P
         screen.meet()
         bench.alive(screen)
         if not late:
-            screen.post(BlockNextPart("TOOL 3 IS WORN"))
+            screen.post(PreventNextPart("TOOL 3 IS WORN"))
             until(lambda: bench.shot.next_barred == "TOOL 3 IS WORN")
         bench.looks(SILENT_CHECK_COUNT)
         until(lambda: bench.shot.next_barred not in {"", "TOOL 3 IS WORN"})
         if late:  # it is back, and nobody has looked yet
-            screen.post(BlockNextPart("TOOL 3 IS WORN"))
+            screen.post(PreventNextPart("TOOL 3 IS WORN"))
             until(lambda: bench.shot.next_barred == "TOOL 3 IS WORN")
         bench.alive(screen)
         bench.looks(1)
@@ -267,7 +267,7 @@ def test_control_at_rest_closes_without_a_screen(bench: Bench, looks: int, runs:
     screen.meet()
     screen.lose()
     for _ in range(looks):
-        bench.server.check_screen()
+        bench.server.check_screen_response()
     assert bench.server.closing_event.is_set() is (looks >= REST_CHECK_COUNT)
 
 
@@ -279,9 +279,9 @@ def test_control_in_feed_hold_waits_longer_for_a_screen(bench: Bench) -> None:
     bench.looks(1)
     bench.until(MachineState.HOLD)
     for _ in range(STOPPED_CHECK_COUNT - 2):
-        bench.server.check_screen()
+        bench.server.check_screen_response()
     assert not bench.server.closing_event.is_set()
-    bench.server.check_screen()
+    bench.server.check_screen_response()
     assert bench.server.closing_event.is_set()
 
 
@@ -292,16 +292,16 @@ def test_job_interrupted_without_a_screen_is_noted_for_next_start(bench: Bench, 
     screen = bench.screen()
     screen.meet()
     bench.run(screen)
-    noted = screen.take(InterruptedJobNote, lambda each: each.job is not None).job
+    noted = screen.take(InterruptedJobMessage, lambda each: each.job is not None).job
     assert not (tmp_path / NOTE_FILE_NAME).exists()
     screen.lose()
     bench.looks(1)
-    known, left = read_note(tmp_path)
+    known, left = pop_interruption_note(tmp_path)
     assert known
     assert left is not None
     assert noted is not None
     assert left.program == noted.program == "part.nc"
-    assert read_note(tmp_path) == (False, None)
+    assert pop_interruption_note(tmp_path) == (False, None)
 
 
 def test_absence_of_an_interrupted_job_is_noted_too(bench: Bench, tmp_path: Path) -> None:
@@ -326,7 +326,7 @@ def test_screen_that_disconnects_immediately_leaves_the_note(bench: Bench, tmp_p
     other.meet()
     other.lose()
     bench.looks(1)
-    known, left = read_note(tmp_path)
+    known, left = pop_interruption_note(tmp_path)
     assert known
     assert left is not None
 
@@ -355,9 +355,9 @@ def test_screen_that_connects_while_the_note_is_saved_removes_it(
 
     def slowly(folder: Path, job: InterruptedJob | None) -> None:
         bench.screen().meet()
-        save_note(folder, job)
+        save_interruption_note(folder, job)
 
-    monkeypatch.setattr("app.compose.control.control_server.save_note", slowly)
+    monkeypatch.setattr("app.compose.control.control_server.save_interruption_note", slowly)
     bench.looks(1)
     assert not (tmp_path / NOTE_FILE_NAME).exists()
 
@@ -372,15 +372,15 @@ def test_events_not_saved_by_any_screen_are_saved_when_control_closes(tmp_path: 
         screen.lose()
         bench.until(MachineState.IDLE)
         parts = bench.shot.parts
-    left = pop_events(tmp_path)
+    left = pop_unconfirmed_events(tmp_path)
     program, events = left
     rows = tuple(each.event_row for each in events)
     assert (program, parts) == ("part.nc", 1)
     assert [row.kind for row in rows].count("part") == 1
     assert "load" not in {row.kind for row in rows}
     assert rows[0].at < rows[-1].at
-    assert pop_events(tmp_path) == UnconfirmedEvents()
-    save_events(tmp_path, left)
+    assert pop_unconfirmed_events(tmp_path) == UnconfirmedEvents()
+    save_unconfirmed_events(tmp_path, left)
     for _ in range(2):
         Journal(tmp_path).close()
     with Store.open(tmp_path, read_only=True) as store:
@@ -405,8 +405,8 @@ def store_events(folder: Path, screen: Screen, messages: list[EventMessage]) -> 
     identity = screen.identity
     for each in messages:
         origin = EventOrigin(identity, each.event_number)
-        if not journal.has_stored(origin):
-            journal.hear(each.event, Receipt(origin, lambda: None, each.production_rows))
+        if not journal.has_stored_event(origin):
+            journal.hear(each.event, EventReceipt(origin, lambda: None, each.production_rows))
     journal.close()
 
 
@@ -451,9 +451,9 @@ def test_rows_of_stored_events_do_not_replace_newer_rows(tmp_path: Path) -> None
         UnconfirmedEvent(row, EventOrigin("control", number), (rows,))
         for number, rows in ((1, started), (2, ended))
     )
-    save_events(tmp_path, UnconfirmedEvents("part.nc", events))
+    save_unconfirmed_events(tmp_path, UnconfirmedEvents("part.nc", events))
     Journal(tmp_path).close()
-    save_events(tmp_path, UnconfirmedEvents("part.nc", events[:1]))
+    save_unconfirmed_events(tmp_path, UnconfirmedEvents("part.nc", events[:1]))
     Journal(tmp_path).close()
     with Store.open(tmp_path, read_only=True) as store, store.read() as connection:
         assert part_cycles.read_cycles(connection, None, 100) == (ended,)
@@ -463,12 +463,12 @@ def test_cycle_and_stop_rows_are_the_same_after_they_were_saved(tmp_path: Path) 
     rows = (
         CycleRow("key", "part.nc", 3, AT, AT, 9.5, "COMPLETE", 31.5),
         CycleRow("key 2", "part.nc", 0, AT),
-        StopRow("key 3", "key 2", "part.nc", AT, 4.0, "FEED HOLD", 7),
+        ProductionStopRow("key 3", "key 2", "part.nc", AT, 4.0, "FEED HOLD", 7),
     )
     event = UnconfirmedEvent(EventRow(AT, "part", "part 3"), EventOrigin("control", 5), rows)
     left = UnconfirmedEvents("part.nc", (event,))
-    save_events(tmp_path, left)
-    assert pop_events(tmp_path) == left
+    save_unconfirmed_events(tmp_path, left)
+    assert pop_unconfirmed_events(tmp_path) == left
 
 
 @pytest.mark.parametrize(
@@ -486,13 +486,13 @@ def test_cycle_and_stop_rows_are_the_same_after_they_were_saved(tmp_path: Path) 
 def test_damaged_cycle_rows_are_rejected_with_their_events(tmp_path: Path, rows: object) -> None:
     event = [AT, "part", "part 3", 0, "", "", "control", 5, rows]
     (tmp_path / EVENTS_FILE_NAME).write_text(json.dumps(["part.nc", [event]]))
-    assert pop_events(tmp_path) == UnconfirmedEvents()
+    assert pop_unconfirmed_events(tmp_path) == UnconfirmedEvents()
 
 
 def test_events_saved_before_rows_existed_are_read(tmp_path: Path) -> None:
     event = [AT, "part", "part 3", 0, "", "", "control", 5]
     (tmp_path / EVENTS_FILE_NAME).write_text(json.dumps(["part.nc", [event]]))
-    (left,) = pop_events(tmp_path).events
+    (left,) = pop_unconfirmed_events(tmp_path).events
     assert (left.event_row.text, left.origin.number, left.production_rows) == ("part 3", 5, ())
 
 
@@ -504,7 +504,7 @@ def test_interruption_note_overrides_the_older_store(tmp_path: Path, left: Inter
     before = Journal(tmp_path)
     before.note(broken_off(program="old.nc"))
     before.close()
-    save_note(tmp_path, left)
+    save_interruption_note(tmp_path, left)
     attached = Journal(tmp_path, control_running=True)  # the control that wrote it is running
     assert attached.left is None
     attached.close()
@@ -516,9 +516,11 @@ def test_interruption_note_overrides_the_older_store(tmp_path: Path, left: Inter
 
 
 def test_note_is_retained_if_the_store_cannot_be_opened(tmp_path: Path) -> None:
-    save_note(tmp_path, broken_off())
+    save_interruption_note(tmp_path, broken_off())
     row = EventRow("2026-05-04T09:30:00.000Z", "part", "part 1")
-    save_events(tmp_path, UnconfirmedEvents("part.nc", (UnconfirmedEvent(row, EventOrigin("control", 5)),)))
+    save_unconfirmed_events(
+        tmp_path, UnconfirmedEvents("part.nc", (UnconfirmedEvent(row, EventOrigin("control", 5)),))
+    )
     with Store.open(tmp_path):  # by another TurnDesk
         journal = Journal(tmp_path)
         assert journal.left is None
@@ -535,14 +537,18 @@ def test_unconfirmed_events_already_in_the_store_are_not_stored_again(tmp_path: 
     origins = tuple(EventOrigin("control", number) for number in (5, 6, 7))
     with Store.open(tmp_path) as store:
         store.runs.record_event(row, "part.nc", origins[1])  # and was killed before it confirmed it
-    save_events(tmp_path, UnconfirmedEvents("part.nc", tuple(UnconfirmedEvent(row, at) for at in origins)))
+    save_unconfirmed_events(
+        tmp_path, UnconfirmedEvents("part.nc", tuple(UnconfirmedEvent(row, at) for at in origins))
+    )
     journal = Journal(tmp_path)
     journal.close()
     with Store.open(tmp_path, read_only=True) as store:
         assert store.runs.read_part_count("part.nc") == 2
         assert store.runs.read_last_origin() == origins[2]
     other = tuple(EventOrigin("another", number) for number in (1, 2, 3))
-    save_events(tmp_path, UnconfirmedEvents("part.nc", tuple(UnconfirmedEvent(row, at) for at in other)))
+    save_unconfirmed_events(
+        tmp_path, UnconfirmedEvents("part.nc", tuple(UnconfirmedEvent(row, at) for at in other))
+    )
     Journal(tmp_path).close()
     with Store.open(tmp_path, read_only=True) as store:
         assert store.runs.read_part_count("part.nc") == 5
@@ -557,7 +563,7 @@ def test_confirmed_events_are_not_saved_again_when_control_closes(bench: Bench, 
     until(lambda: not bench.server.outbox.unconfirmed_events)
     screen.lose()
     bench.close()
-    assert pop_events(tmp_path) == UnconfirmedEvents()
+    assert pop_unconfirmed_events(tmp_path) == UnconfirmedEvents()
 
 
 @pytest.mark.parametrize(
@@ -566,27 +572,27 @@ def test_confirmed_events_are_not_saved_again_when_control_closes(bench: Bench, 
 )
 def test_damaged_unconfirmed_events_are_ignored_and_deleted(tmp_path: Path, data: bytes) -> None:
     (tmp_path / EVENTS_FILE_NAME).write_bytes(data)
-    assert pop_events(tmp_path) == UnconfirmedEvents()
+    assert pop_unconfirmed_events(tmp_path) == UnconfirmedEvents()
     assert not (tmp_path / EVENTS_FILE_NAME).exists()
 
 
 @pytest.mark.parametrize("data", [b"", b"{", b"\xff\xfe", b"[1"])
 def test_damaged_note_is_ignored(tmp_path: Path, data: bytes) -> None:
     (tmp_path / NOTE_FILE_NAME).write_bytes(data)
-    assert read_note(tmp_path) == (False, None)
+    assert pop_interruption_note(tmp_path) == (False, None)
 
 
 def test_note_without_a_valid_job_means_no_interrupted_job(tmp_path: Path) -> None:
     (tmp_path / NOTE_FILE_NAME).write_text('{"program": 3}')
-    assert read_note(tmp_path) == (True, None)
+    assert pop_interruption_note(tmp_path) == (True, None)
 
 
 def test_saved_note_is_read_back_unchanged(tmp_path: Path) -> None:
     job = broken_off(program="part.nc")
-    save_note(tmp_path, job)
-    assert read_note(tmp_path) == (True, job)
-    remove_note(tmp_path)
-    save_note(tmp_path / "part.nc" / "no folder", job)
+    save_interruption_note(tmp_path, job)
+    assert pop_interruption_note(tmp_path) == (True, job)
+    delete_interruption_note(tmp_path)
+    save_interruption_note(tmp_path / "part.nc" / "no folder", job)
     (tmp_path / "file").write_text("")
-    save_note(tmp_path / "file", job)  # a disk that fails
-    assert read_note(tmp_path / "file") == (False, None)
+    save_interruption_note(tmp_path / "file", job)  # a disk that fails
+    assert pop_interruption_note(tmp_path / "file") == (False, None)

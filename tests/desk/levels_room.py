@@ -16,7 +16,7 @@ from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import read_stored_offsets
 from app.desk.access import SignInSession, UserAccess
 from app.desk.desk import Desk
-from app.special.special_functions import SpecialFunction, SpecialFunctionList
+from app.special.special_functions import SpecialFunction, SpecialFunctionsModel
 from core.access.access_table import AccessLevel
 from core.executor.executor import Executor
 from core.executor.snapshot import Snapshot
@@ -61,7 +61,7 @@ class Room:
         self.desk.offset_book.poll_saving()
 
     def find(self, kind: type[T]) -> T:
-        special = self.desk.page_registry.find_model(SpecialFunctionList)
+        special = self.desk.page_registry.find_model(SpecialFunctionsModel)
         assert special is not None
         return next(each for each in special.functions if isinstance(each, kind))
 
@@ -74,7 +74,7 @@ class Room:
     def sign_in(self, name: str) -> None:
         """As if the PIN was entered."""
         self.access.user_name, self.access.access_level = name, LEVELS[name]
-        self.access.note_activity()
+        self.access.record_activity()
         self.settle()
 
     def log(self, kind: str) -> list[tuple[str, str]]:
@@ -85,7 +85,7 @@ class Room:
 class NoPins(SignInSession):
     """A session in which nothing happens, where signing in is not installed."""
 
-    def note_activity(self) -> None:
+    def record_activity(self) -> None:
         pass
 
     def update(self, snapshot: Snapshot) -> None:

@@ -13,7 +13,7 @@ import pytest
 from app.compose.runs.journal import Journal
 from app.editor.editor_model import EditorModel
 from app.offsets.offset_changes import ConfirmedOffsetChanges, OffsetHistory
-from app.production.parts_watch import PartsWatch
+from app.production.parts_watch import ProductionMonitor
 from app.programs.program_list_model import ProgramListModel
 from app.special.counter_functions import PartsCounterFunction
 from app.special.inputs_outputs import SignalListKind as Shown
@@ -24,7 +24,7 @@ from app.special.operator_settings import SpindleLimitFunction
 from app.special.setup_sheet_function import SetupSheetFunction
 from app.transfer.line_transfer import ReceivedProgram
 from app.transfer.serial_transfer import SerialTransferFunction
-from core.access.access_page import make_page
+from core.access.access_page import make_access_page
 from core.access.access_table import ACCESS_RULES, AccessLevel, ProtectedChange
 from core.executor.snapshot import MachineState
 from core.store import database
@@ -118,14 +118,14 @@ def test_each_level_allows_the_changes_of_the_access_table(room: Room) -> None:
     may = {}
     for level in AccessLevel:
         room.access.access_level = level
-        may[level] = {act for act in ProtectedChange if not room.access.find_refusal(act)}
+        may[level] = {act for act in ProtectedChange if not room.access.find_refusal_reason(act)}
     assert may[AccessLevel.OPERATOR] == OPERATORS
     assert set(ProtectedChange) - may[AccessLevel.SETUP] == SERVICES
     assert may[AccessLevel.SERVICE] == set(ProtectedChange) == set(ACCESS_RULES)
 
 
 def test_access_page_matches_the_access_table() -> None:
-    assert (HOUSE / "docs" / "access.md").read_text("utf-8") == make_page()
+    assert (HOUSE / "docs" / "access.md").read_text("utf-8") == make_access_page()
 
 
 @WHOLE_PRODUCT
@@ -150,11 +150,11 @@ def test_every_module_that_writes_checks_a_rule_or_is_exempt() -> None:
 
 
 def test_access_is_neither_checked_nor_logged_without_users(room: Room) -> None:
-    assert [room.access.find_refusal(act) for act in ProtectedChange] == [""] * len(ProtectedChange)
+    assert [room.access.find_refusal_reason(act) for act in ProtectedChange] == [""] * len(ProtectedChange)
     assert room.access.header_text == ""
     room.desk.offset_book.change_fields(OffsetKind.TOOL, 3, {"x": 1.0, "z": -1.0}, "typed")
     room.desk.program_runs.part_counter.program_name = "pin.nc"
-    room.find(PartsCounterFunction).correct_count(1)
+    room.find(PartsCounterFunction).correct_part_count(1)
     room.settle()
     assert room.store.offsets.tool_offsets.read_history()[0].who == "operator"
     assert room.log("change") == []
@@ -174,12 +174,12 @@ def test_access_refusal_names_the_required_level_and_how_to_get_it(room: Room) -
 
 def test_stored_users_have_levels_even_if_sign_in_is_unavailable(room: Room) -> None:
     room.enter_people()
-    with_sign_in = room.access.find_refusal(ProtectedChange.TOOLS)
+    with_sign_in = room.access.find_refusal_reason(ProtectedChange.TOOLS)
     session, room.access.sign_in_session = room.access.sign_in_session, None
-    assert {act for act in ProtectedChange if not room.access.find_refusal(act)} == OPERATORS
-    assert room.access.find_refusal(ProtectedChange.TOOLS) != with_sign_in
+    assert {act for act in ProtectedChange if not room.access.find_refusal_reason(act)} == OPERATORS
+    assert room.access.find_refusal_reason(ProtectedChange.TOOLS) != with_sign_in
     room.access.update(room.desk.read_snapshot())
-    room.access.note_activity()
+    room.access.record_activity()
     room.access.sign_in_session = session
 
 
@@ -194,7 +194,7 @@ def test_operator_may_change_wear_but_not_position(room: Room) -> None:
     )
     assert shows(book.undo_step(OffsetKind.TOOL, 3, 1), "screen.level-needed", level="SETUP")
     assert shows(book.clear_table(OffsetKind.ZERO, "all"), "screen.level-needed", level="SETUP")
-    assert shows(book.choose_master(3, "master"), "screen.level-needed", level="SETUP")
+    assert shows(book.set_master_tool(3, "master"), "screen.level-needed", level="SETUP")
     assert book.change_fields(OffsetKind.TOOL, 3, {"wear_x": 0.01}, "too large") == ""
     room.settle()
     assert book.change_fields(OffsetKind.SECONDARY, 1, {"x": -0.01}, "too large") == ""
@@ -217,13 +217,13 @@ def test_change_not_allowed_by_the_level_asks_no_confirmation(room: Room) -> Non
     refusals = (
         questions.change_fields(OffsetKind.TOOL, 3, {"x": -1.0}, "typed"),
         questions.touch_off(3, TouchPosition(x=-1.0), "touched off"),
-        questions.ask_master(3),
-        questions.ask_undo(OffsetKind.TOOL, 3),
+        questions.ask_to_toggle_master(3),
+        questions.ask_to_undo_change(OffsetKind.TOOL, 3),
     )
     assert all(shows(why, "screen.level-needed", level="SETUP") for why in refusals)
-    assert not room.desk.confirm_key
+    assert not room.desk.confirmation_key
     assert questions.change_fields(OffsetKind.TOOL, 3, {"wear_x": 1.0}, "typed") == ""
-    assert room.desk.confirm_key  # wear is the operator's, and this wear is large
+    assert room.desk.confirmation_key  # wear is the operator's, and this wear is large
 
 
 def test_pages_without_offsets_also_refuse_protected_changes(room: Room) -> None:
@@ -235,15 +235,15 @@ def test_pages_without_offsets_also_refuse_protected_changes(room: Room) -> None
     assert programs is not None
     assert editor is not None
     assert shows(editor.find_save_refusal(), "screen.level-needed", what="PROGRAMS", level="SETUP")
-    programs.import_export.open_chooser((), None, is_export=False)
-    assert not programs.import_export.is_open
+    programs.program_transfer.open_chooser((), None, is_export=False)
+    assert not programs.program_transfer.is_open
     assert shows(room.desk.prompt_notice, "screen.level-needed", what="PROGRAMS", level="SETUP")
     room.find(MachineFileFunction)._accept()
     assert shows(room.desk.prompt_notice, "screen.level-needed", what="THE MACHINE FILE", level="SERVICE")
     room.sign_in("BEN")
     assert editor.find_save_refusal() == ""
-    programs.import_export.open_chooser((), None, is_export=False)
-    assert programs.import_export.is_open
+    programs.program_transfer.open_chooser((), None, is_export=False)
+    assert programs.program_transfer.is_open
 
 
 def test_operator_may_lower_but_not_raise_the_spindle_limit(room: Room) -> None:
@@ -261,12 +261,12 @@ def test_operator_may_lower_but_not_raise_the_spindle_limit(room: Room) -> None:
         level="SETUP",
         now="OPERATOR",
     )
-    limit.confirm_remove_limit()
+    limit.confirm_limit_removal()
     assert shows(room.desk.prompt_notice, "screen.level-needed", level="SETUP")
     room.run()
     assert room.desk.read_snapshot().spindle_limit_rpm == 1200.0
     room.sign_in("BEN")
-    limit.confirm_remove_limit()
+    limit.confirm_limit_removal()
     limit._lifted()
     room.run()
     assert room.desk.read_snapshot().spindle_limit_rpm == 0.0
@@ -283,7 +283,7 @@ def test_manual_outputs_need_setup_level_and_lamp_test_does_not(room: Room) -> N
     page.list_kind = Shown.OUTPUTS
     page.marked = tuple(page.machine.outputs).index("coolant")
     room.desk.clear_prompt_line()
-    page.execute_row()
+    page.activate_selected_row()
     assert shows(room.desk.prompt_notice, "screen.level-needed", what="MANUAL OUTPUTS", level="SETUP")
     page._force("coolant", True)  # the level fell back while it was asked
     room.run()
@@ -331,7 +331,7 @@ def test_stop_and_reset_need_no_level(room: Room) -> None:
 def test_every_history_has_the_user_name(room: Room) -> None:
     room.enter_people()
     room.sign_in("BEN")
-    book, watch = room.desk.offset_book, room.desk.page_registry.find_model(PartsWatch)
+    book, watch = room.desk.offset_book, room.desk.page_registry.find_model(ProductionMonitor)
     assert watch is not None
     for kind, number, values in (
         (OffsetKind.TOOL, 3, {"x": 1.0, "z": -1.0}),
@@ -346,12 +346,12 @@ def test_every_history_has_the_user_name(room: Room) -> None:
         assert room.store.offsets.get_table(kind).read_history()[0].who == "BEN"
     room.journal.save_version("pin.nc", b"M30\n", "saved in the editor")
     assert room.store.programs.list_versions("pin.nc")[0].who == "BEN"
-    watch.tool_life_watch.change_insert(3, "worn", lambda _text: None)
+    watch.tool_life_monitor.record_insert_change(3, "worn", lambda _text: None)
     room.settle()
     with room.store.read() as connection:
         assert [row.who for row in read_insert_changes(connection, 9)] == ["BEN"]
     room.desk.program_runs.part_counter.program_name = "pin.nc"
-    room.find(PartsCounterFunction).correct_count(1)
+    room.find(PartsCounterFunction).correct_part_count(1)
     assert room.log("change")[-1] == (
         wording("log.parts-changed", program="pin.nc", before=0, after=1),
         "BEN",

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.desk.arithmetic import EntryError, evaluate_expression, evaluate_line_number
+from app.desk.arithmetic import InvalidEntryError, evaluate_expression, evaluate_line_number
 from tests.texts import pattern
 
 
@@ -55,13 +55,13 @@ def test_expression_is_evaluated(entry: str, value: float) -> None:
     ],
 )
 def test_invalid_expression_is_rejected(entry: str, told: str) -> None:
-    with pytest.raises(EntryError, match=told):
+    with pytest.raises(InvalidEntryError, match=told):
         evaluate_expression(entry)
 
 
 def test_deeply_nested_expression_is_evaluated_or_rejected() -> None:
     assert evaluate_expression("(" * 39 + "1" + ")" * 39) == 1.0
-    with pytest.raises(EntryError, match=pattern("desk.stops-short")):
+    with pytest.raises(InvalidEntryError, match=pattern("desk.stops-short")):
         evaluate_expression("(" * 80)
 
 
@@ -74,7 +74,7 @@ def test_difference_of_two_numbers_is_exact(a: float, b: float) -> None:
 def test_any_text_gives_a_number_or_a_one_line_error(text: str) -> None:
     try:
         assert isfinite(evaluate_expression(text))
-    except EntryError as error:
+    except InvalidEntryError as error:
         sentence = str(error)
     else:
         sentence = "a number"

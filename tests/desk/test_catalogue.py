@@ -7,7 +7,7 @@ import pickle
 import pytest
 
 from app.desk.translation import mark_untranslated, set_translator, tr
-from core.language.sinumerik.sinumerik_alarms import make_alarm
+from core.language.sinumerik.sinumerik_alarms import make_alarm_diagnostic
 from core.message import Message, collect_values, join_messages
 
 KNOWN = {
@@ -76,7 +76,7 @@ def test_message_used_as_a_name_value_is_translated() -> None:
 @pytest.mark.usefixtures("spanish")
 @pytest.mark.parametrize("code", [14011, "following"])
 def test_sinumerik_alarm_text_is_translated(code: int | str) -> None:
-    found = make_alarm(1, 1, code, "N10", "following error", "")
+    found = make_alarm_diagnostic(1, 1, code, "N10", "following error", "")
     assert tr(found.message).endswith("block N10: error de seguimiento")
 
 

@@ -35,7 +35,7 @@ class Days:
             folder,
             keep,
             stamped,
-            backup.find_problems,
+            backup.find_store_problems,
             lambda: not self.runs,
             self.told.append,
             lambda: self.now,
@@ -57,7 +57,7 @@ def test_one_backup_a_day_is_made_and_the_newest_are_retained(home: Path, tmp_pa
     days, folder = Days(), tmp_path / "nas" / "lathe3"
     daily = days.daily(folder, lambda target: backup.back_up_store(home, target))
     for _ in range(5 * 24):
-        daily.make_if_due()
+        daily.make_backup_if_due()
         days.now += timedelta(hours=1)
     assert names(folder) == [f"daily-2026-11-{day}-060000{BACKUP_SUFFIX}" for day in (25, 26, 27)]
     assert days.told == []
@@ -69,20 +69,20 @@ def test_one_backup_a_day_is_made_and_the_newest_are_retained(home: Path, tmp_pa
 def test_backup_waits_for_standstill_up_to_a_limit(home: Path, tmp_path: Path) -> None:
     days, folder = Days(), tmp_path / "b"
     daily = days.daily(folder, lambda target: backup.back_up_store(home, target))
-    daily.make_if_due()
+    daily.make_backup_if_due()
     days.runs = True
     days.now += timedelta(hours=35)
-    assert daily.make_if_due() is None
+    assert daily.make_backup_if_due() is None
     days.now += timedelta(hours=2)
-    assert daily.make_if_due() is not None
+    assert daily.make_backup_if_due() is not None
 
 
 def test_clock_set_back_does_not_prevent_backups(home: Path, tmp_path: Path) -> None:
     days, folder = Days(), tmp_path / "b"
     daily = days.daily(folder, lambda target: backup.back_up_store(home, target))
-    daily.make_if_due()
+    daily.make_backup_if_due()
     days.now -= timedelta(days=400)
-    assert daily.make_if_due() is not None
+    assert daily.make_backup_if_due() is not None
 
 
 def test_failed_backup_is_reported_once_a_day_and_leaves_older_ones(home: Path, tmp_path: Path) -> None:
@@ -96,14 +96,14 @@ def test_failed_backup_is_reported_once_a_day_and_leaves_older_ones(home: Path, 
                 file.write(b"\xff" * 4096)
 
     daily = days.daily(folder, copy)
-    daily.make_if_due()
+    daily.make_backup_if_due()
     for _ in range(3):
         days.now += timedelta(hours=30)
-        assert daily.make_if_due() is None
+        assert daily.make_backup_if_due() is None
     assert names(folder) == [f"daily-2026-11-23-060000{BACKUP_SUFFIX}"]
     assert len(days.told) == 3  # once a day
     assert shows(days.told[0], "desk.backup-damaged", what=pattern("desk.file-damaged"))
-    daily.make_if_due()
+    daily.make_backup_if_due()
     assert len(days.told) == 3
 
 
@@ -111,7 +111,7 @@ def test_backup_folder_that_cannot_be_created_is_reported(home: Path, tmp_path: 
     days = Days()
     (tmp_path / "nas").write_text("a file")
     daily = days.daily(tmp_path / "nas" / "lathe3", lambda target: backup.back_up_store(home, target))
-    assert daily.make_if_due() is None
+    assert daily.make_backup_if_due() is None
     assert "lathe3" in days.told[0]
 
 
@@ -122,7 +122,7 @@ def test_damaged_store_is_not_backed_up(tmp_path: Path) -> None:
         raise StoreError("T3 is not as it was saved")
 
     daily = days.daily(tmp_path / "b", copy, keep=2)
-    daily.make_if_due()
+    daily.make_backup_if_due()
     assert days.told == [f"{tmp_path / 'b'}: T3 is not as it was saved"]
 
 
@@ -138,17 +138,17 @@ def test_todays_backup_is_retained_after_clock_reset(home: Path, tmp_path: Path)
     days, folder = Days(), tmp_path / "b"
     daily = days.daily(folder, lambda target: backup.back_up_store(home, target))
     for _ in range(4):
-        daily.make_if_due()
+        daily.make_backup_if_due()
         days.now += timedelta(days=1)
     days.now = datetime(2000, 1, 1, 6, 0)
     made = []
     for _ in range(3 * 24 * 6):
-        made += [path for path in (daily.make_if_due(),) if path is not None]
+        made += [path for path in (daily.make_backup_if_due(),) if path is not None]
         days.now += timedelta(minutes=10)
     assert [path.name for path in made] == names(folder)
     assert names(folder) == [f"daily-2000-01-0{day}-060000{BACKUP_SUFFIX}" for day in (1, 2, 3)]
     days.now = datetime(2026, 11, 27, 6, 0)
-    daily.make_if_due()
+    daily.make_backup_if_due()
     assert names(folder)[-1] == f"daily-2026-11-27-060000{BACKUP_SUFFIX}"
     assert len(names(folder)) == 3
 
@@ -159,7 +159,7 @@ def test_backup_folder_on_the_same_disk_is_reported_once(home: Path, tmp_path: P
     daily = days.daily(tmp_path / "mnt" / "nas", lambda target: backup.back_up_store(home, target))
     daily.data_folder, daily.report_same_disk = home, lambda: hints.append("same disk")
     for _ in range(3):
-        assert daily.make_if_due() is not None
+        assert daily.make_backup_if_due() is not None
         days.now += timedelta(days=1)
     assert hints == ["same disk"]
 
@@ -169,10 +169,10 @@ def test_backup_folder_on_another_disk_gives_no_hint(home: Path, tmp_path: Path)
     with small_disk(tmp_path / "mnt") as disk:
         daily = days.daily(disk.path / "lathe3", lambda target: backup.back_up_store(home, target))
         daily.data_folder, daily.report_same_disk = home, lambda: hints.append("same disk")
-        assert daily.make_if_due() is not None
+        assert daily.make_backup_if_due() is not None
         assert hints == []
         disk.fill()
         days.now += timedelta(days=1)
-        assert daily.make_if_due() is None
+        assert daily.make_backup_if_due() is None
         assert shows(days.told[0], "desk.disk-full")
         assert len(names(disk.path / "lathe3")) == 1

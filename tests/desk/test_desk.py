@@ -12,7 +12,7 @@ from app.desk.desk import CONTROL_SILENT_TITLE, Desk
 from app.desk.programs.program_folder import ProgramFolders
 from app.desk.programs.program_loading import LoadingPhase, LoadingSteps, ProgramLoader
 from app.desk.state.desk_control import DeskControl
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.desk.status.prompt_line import (
     CONFIRM_CANCEL,
     CONTROL_SILENT,
@@ -21,7 +21,7 @@ from app.desk.status.prompt_line import (
     RESTART_CONTROL,
     RESTORE_IN_PROGRESS,
 )
-from app.desk.status.state_prompt import find_time_left, make_page_prompt
+from app.desk.status.state_prompt import find_remaining_time_s, make_page_prompt
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, Reset, SetFeedOverride, SetSwitch
 from core.executor.snapshot import Alarm, LogEvent, MachineState
 from tests.screen.desks import desk_on
@@ -66,7 +66,7 @@ def test_program_is_not_loaded_while_another_one_is_active(
     desk: Desk, machine: FakeMachine, state: MachineState
 ) -> None:
     at(machine, state)
-    assert desk.program_choice.can_choose() is False
+    assert desk.program_choice.can_choose_program() is False
     by_hand = state is MachineState.JOG
     assert shows(
         desk.prompt_notice, "screen.axes-move-no-program" if by_hand else "screen.program-runs-no-other"
@@ -85,10 +85,10 @@ def test_block_delete_needs_a_loaded_program_at_rest(desk: Desk, machine: FakeMa
     at(machine, MachineState.HOLD)
     desk.program_choice.toggle_block_delete()
     assert shows(desk.prompt_notice, "desk.block-delete-between-cycles")
-    assert desk.program_loader.loaded_program.has_block_delete is False
+    assert desk.program_loader.loaded_program.is_block_delete_on is False
     at(machine, MachineState.IDLE)
     desk.program_choice.toggle_block_delete()
-    assert desk.program_loader.loaded_program.has_block_delete is True
+    assert desk.program_loader.loaded_program.is_block_delete_on is True
 
 
 @pytest.mark.parametrize("state", list(MachineState))
@@ -109,9 +109,9 @@ def test_reset_of_a_moving_machine_is_refused(desk: Desk, machine: FakeMachine, 
 def test_confirmation_after_a_state_change_is_ignored(desk: Desk, machine: FakeMachine) -> None:
     at(machine, MachineState.HOLD)
     desk.reset_control()
-    desk.prompt_answers._since = float("-inf")
+    desk.prompt_line._since = float("-inf")
     at(machine, MachineState.RUN)  # the palms at the machine were quicker
-    desk.confirm_if_unchanged()
+    desk.confirm_question_if_unchanged()
     assert machine.posted == []
 
 
@@ -124,12 +124,12 @@ def test_reset_in_feed_hold_needs_one_confirmation(desk: Desk, machine: FakeMach
     desk.reset_control()
     desk.reset_control()
     assert machine.posted == []
-    desk.confirm_if_unchanged()  # at once: nobody has read it
+    desk.confirm_question_if_unchanged()  # at once: nobody has read it
     assert machine.posted == []
-    assert not desk.confirm_key
+    assert not desk.confirmation_key
     desk.reset_control()
-    desk.prompt_answers._since = float("-inf")
-    desk.confirm_if_unchanged()
+    desk.prompt_line._since = float("-inf")
+    desk.confirm_question_if_unchanged()
     assert machine.posted == [Reset()]
 
 
@@ -214,7 +214,7 @@ def test_auto_repeat_of_a_pressed_palm_button_is_one_press(desk: Desk, machine: 
 
 def test_losing_window_focus_releases_the_palm_buttons(desk: Desk, machine: FakeMachine) -> None:
     desk.station_controls.palm("left", is_down=True)
-    desk.station_controls.release_all()
+    desk.station_controls.release_all_buttons()
     assert machine.palms == set()
     desk.station_controls.palm("right", is_down=True)
     assert CycleStart() not in machine.posted
@@ -224,7 +224,7 @@ def test_refused_start_shows_its_reason_each_time(desk: Desk, machine: FakeMachi
     for _ in range(2):
         desk.station_controls.palm("left", is_down=True)
         desk.station_controls.palm("right", is_down=True)
-        desk.station_controls.release_all()
+        desk.station_controls.release_all_buttons()
         desk.update()
         assert desk.prompt_notice == text("screen.no-start", why="NO PROVED PROGRAM")
         desk.clear_prompt_line()
@@ -244,16 +244,16 @@ def test_message_remains_after_state_change_and_does_not_hide_the_prompt(
     at(machine, MachineState.DISABLED)
     snapshot, _view, loaded = desk.update()
     assert make_page_prompt(desk, snapshot, loaded) == text("screen.drives-off")
-    assert desk.prompt_answers.message == "AN ANSWER"
+    assert desk.prompt_line.message == "AN ANSWER"
 
 
 def test_n_key_only_cancels_the_question(desk: Desk, machine: FakeMachine) -> None:
     at(machine, MachineState.HOLD)
     desk.reset_control()
-    assert desk.confirm_key == "Y"
+    assert desk.confirmation_key == "Y"
     posted = len(machine.posted)
     desk.reject_question()
-    assert desk.confirm_key == ""
+    assert desk.confirmation_key == ""
     assert len(machine.posted) == posted
 
 
@@ -261,7 +261,7 @@ def test_override_key_turns_the_pot_of_the_simulated_station(machine: FakeMachin
     ticks = iter(range(1000))
     desk = desk_on(machine)
     desk.station_controls.clock = lambda: next(ticks) / 10
-    desk.station_keys.step_override(-3)
+    desk.station_keys.step_feed_override(-3)
     for _ in range(10):
         desk.update()
     assert machine.now.feed_override == pytest.approx(0.7)
@@ -275,7 +275,7 @@ def test_without_a_station_the_override_is_posted(machine: FakeMachine, tmp_path
         ProgramLoader(_no_workshop(), machine.post),
         ProgramFolders((tmp_path,)),
     )
-    desk.station_keys.step_override(-20)
+    desk.station_keys.step_feed_override(-20)
     assert machine.posted == [SetFeedOverride(0.0)]
     desk.station_controls.palm("left", is_down=True)
     desk.station_controls.estop(is_pressed=True)
@@ -308,15 +308,15 @@ def test_silent_control_is_reported_and_its_values_are_not_shown_as_valid(
     seconds = [100.0]
     desk.station_controls.clock = lambda: seconds[0]
     at(machine, MachineState.RUN)
-    assert desk.update()[1].state_tone is Tone.RUN
+    assert desk.update()[1].state_tone is StatusTone.RUN
     machine.alive = False
     for _ in range(20):
         seconds[0] += 0.1
         snapshot, view, loaded = desk.update()
-    assert (view.state_text, view.state_tone) == (CONTROL_SILENT_TITLE, Tone.ALARM)
+    assert (view.state_text, view.state_tone) == (CONTROL_SILENT_TITLE, StatusTone.ALARM)
     assert make_page_prompt(desk, snapshot, loaded) == CONTROL_SILENT
     machine.alive = True
-    assert desk.update()[1].state_tone is Tone.RUN
+    assert desk.update()[1].state_tone is StatusTone.RUN
 
 
 def test_reset_only_restarts_a_silent_control(machine: FakeMachine, desk: Desk) -> None:
@@ -363,7 +363,7 @@ def test_suspended_screen_does_not_report_a_silent_control(desk: Desk) -> None:
 
 def test_time_left_is_infinite_at_zero_override(desk: Desk, machine: FakeMachine) -> None:
     snapshot, _view, loaded = desk.update()
-    assert find_time_left(snapshot, loaded) == float("inf")
+    assert find_remaining_time_s(snapshot, loaded) == float("inf")
 
 
 def _no_workshop() -> LoadingSteps:
@@ -426,7 +426,7 @@ def test_lazily_attached_model_is_created_once_on_first_use(desk: Desk) -> None:
         made.append(_Model())
         return made[-1]
 
-    desk.page_registry.attach_lazily(f"{__name__}._Model", make)
+    desk.page_registry.attach_lazy_model(f"{__name__}._Model", make)
     assert (desk.page_registry.find_model(_Other), made) == (None, [])
     assert desk.page_registry.find_model(_Model) is desk.page_registry.find_model(_Model) is made[0]
     desk.close()
@@ -437,5 +437,5 @@ def test_closing_does_not_create_an_unused_lazy_model(desk: Desk) -> None:
     def make() -> _Model:
         raise AssertionError("made although nobody asked")
 
-    desk.page_registry.attach_lazily(f"{__name__}._Model", make)
+    desk.page_registry.attach_lazy_model(f"{__name__}._Model", make)
     desk.close()

@@ -43,7 +43,7 @@ def test_lazy_model_is_created_once_on_first_lookup() -> None:
         made.append(Other())
         return made[-1]
 
-    pages.attach_lazily(f"{Other.__module__}.Other", make)
+    pages.attach_lazy_model(f"{Other.__module__}.Other", make)
     assert pages.find_model(Model) is None
     assert (made, pages.make_closing_steps()) == ([], [])
     assert pages.find_model(Other) is pages.find_model(Other)
@@ -70,25 +70,37 @@ def test_program_key_is_offered_only_if_a_feature_adds_it() -> None:
 
 def test_missing_window_bars_nothing_and_page_may_bar_start() -> None:
     window = WindowState(LatePressFilter(Snapshot, float))
-    assert (window.can_start_here, window.is_keyboard_lost, window.is_stop_held()) == (True, False, False)
-    assert (window.has_text_field(), window.find_press_age()) == (False, 0.0)
+    assert (window.can_start_here, window.is_keyboard_lost, window.is_stop_key_held()) == (True, False, False)
+    assert (window.has_text_field(), window.find_press_age_s()) == (False, 0.0)
     woken: list[bool] = []
     window.connect_window(lambda: woken.append(True), lambda: True, lambda: 0.25)
-    window.set_page(can_start=False, has_field=lambda: True)
+    window.set_page_properties(can_start=False, has_field=lambda: True)
     window.set_keyboard_lost(True)
     window.wake_window()
-    assert (window.can_start_here, window.is_keyboard_lost, window.is_stop_held()) == (False, True, True)
-    assert (window.has_text_field(), window.find_press_age(), woken) == (True, 0.25, [True])
+    assert (window.can_start_here, window.is_keyboard_lost, window.is_stop_key_held()) == (False, True, True)
+    assert (window.has_text_field(), window.find_press_age_s(), woken) == (True, 0.25, [True])
 
 
 @pytest.mark.parametrize("problem", ["", "the disk is full"])
 def test_storage_state_follows_its_store(problem: str) -> None:
     storage, checked = StorageState(), list[bool]()
-    assert (storage.read_problem(), storage.read_unsaved(), storage.read_file_difference()) == ("", "", "")
+    assert (
+        storage.read_storage_problem(),
+        storage.read_unsaved_text(),
+        storage.describe_file_difference(),
+    ) == (
+        "",
+        "",
+        "",
+    )
     storage.set_store_readers(lambda: problem, lambda: "20 parts")
     storage.set_file_readers(lambda: "DIFFERENT", lambda: checked.append(True))
     storage.recheck_file()
-    assert (storage.read_problem(), storage.read_unsaved(), storage.read_file_difference()) == (
+    assert (
+        storage.read_storage_problem(),
+        storage.read_unsaved_text(),
+        storage.describe_file_difference(),
+    ) == (
         problem,
         "20 parts",
         "DIFFERENT",

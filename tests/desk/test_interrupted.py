@@ -139,7 +139,7 @@ def desk(tmp_path: Path) -> Desk:
 
 def has_been_read(desk: Desk) -> None:
     """A question stands for a second."""
-    desk.prompt_answers._since -= 1.0
+    desk.prompt_line._since -= 1.0
 
 
 def posted(desk: Desk) -> list[object]:
@@ -154,7 +154,7 @@ def test_y_key_confirms_the_interrupted_job_shown(desk: Desk) -> None:
 
 
 def test_y_key_is_rejected_on_a_page_without_cycle_start(desk: Desk) -> None:
-    desk.window_state.set_page(can_start=False)
+    desk.window_state.set_page_properties(can_start=False)
     desk.confirm_question()
     assert posted(desk) == []
     assert begins(desk.prompt_notice, "desk.y-on-automatic")
@@ -189,7 +189,7 @@ def test_message_does_not_replace_an_open_question(desk: Desk) -> None:
     assert desk.program_choice.load_by_name("OTHER.NC")
     has_been_read(desk)
     desk.say("NOT KEPT: the disk is full")
-    assert (desk.prompt_answers.message, bool(desk.prompt_answers.question_text)) == (
+    assert (desk.prompt_line.message, bool(desk.prompt_line.question_text)) == (
         "NOT KEPT: the disk is full",
         True,
     )
@@ -207,7 +207,7 @@ def test_interrupted_program_cannot_be_renamed_or_deleted(desk: Desk, question: 
     files.poll()
     files.select_row([program.name for program in files.listed_programs].index("PIN.NC"))
     if question == "rename":
-        files.program_commands.ask_name(RENAME)
+        files.program_commands.ask_for_name(RENAME)
     else:
         files.program_commands.confirm_delete()
     assert desk.prompt_notice == text("desk.finish-interrupted", name="PIN.NC")

@@ -14,9 +14,9 @@ import pytest
 
 from app.compose.desk_assembly import EventDistributor
 from app.compose.runs.journal import INTERRUPTED_JOB_KEY, Journal
-from app.compose.runs.receipt import Receipt
+from app.compose.runs.receipt import EventReceipt
 from app.desk.persistence import Persistence
-from app.offsets.offset_values import describe_unset
+from app.offsets.offset_values import describe_missing_offset
 from core.executor.snapshot import LogEvent, convert_interrupted_job_to_json
 from core.store.production.run_records import LAST_ORIGIN_KEY
 from core.store.store import Store
@@ -117,9 +117,9 @@ def test_backup_and_restore_are_refused_without_a_store(tmp_path: Path) -> None:
 # --- events of a control process ----------------------------------------------------------------------------
 
 
-def part(number: int, confirmed: list[int], control: str = "control") -> tuple[LogEvent, Receipt]:
+def part(number: int, confirmed: list[int], control: str = "control") -> tuple[LogEvent, EventReceipt]:
     """A finished part, and the receipt of its event."""
-    receipt = Receipt(EventOrigin(control, number), partial(confirmed.append, number))
+    receipt = EventReceipt(EventOrigin(control, number), partial(confirmed.append, number))
     return LogEvent(float(number), "part", f"part {number}"), receipt
 
 
@@ -166,9 +166,9 @@ def test_events_of_another_control_are_numbered_separately(journal: Journal, tmp
     journal.hear(*part(7, []))
     journal.close()
     again = Journal(tmp_path / "home")
-    assert again.has_stored(EventOrigin("control", 7))
-    assert not again.has_stored(EventOrigin("control", 8))
-    assert not again.has_stored(EventOrigin("another", 1))
+    assert again.has_stored_event(EventOrigin("control", 7))
+    assert not again.has_stored_event(EventOrigin("control", 8))
+    assert not again.has_stored_event(EventOrigin("another", 1))
     again.close()
 
 
@@ -185,7 +185,7 @@ def test_damaged_event_origin_is_ignored(journal: Journal, tmp_path: Path, value
     journal.save_setting(LAST_ORIGIN_KEY, value)
     journal.close()
     again = Journal(tmp_path / "home")
-    assert not again.has_stored(EventOrigin("a", 1))
+    assert not again.has_stored_event(EventOrigin("a", 1))
     assert again.write_error == ""
     again.close()
 
@@ -204,7 +204,7 @@ def away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Journal]:
     full = StoreErrorCause.FULL.make_error(tmp_path / "home" / "turndesk.db", "")
     monkeypatch.setattr("app.compose.runs.journal.RETRY_INTERVAL_S", 1e6)  # the test opens it
     with monkeypatch.context() as disk:
-        disk.setattr("core.store.store.open_for_writing", raising(full))
+        disk.setattr("core.store.store.open_store_for_writing", raising(full))
         journal = Journal(tmp_path / "home")
     assert shows(journal.write_error, "desk.disk-full")
     yield journal
@@ -242,7 +242,7 @@ def test_offsets_can_be_changed_when_the_store_becomes_available(away: Journal) 
 def test_unavailable_store_rejects_changes(away: Journal, monkeypatch: pytest.MonkeyPatch) -> None:
     book, parts = away.book(), away.create_parts_book()
     locked = StoreErrorCause.LOCKED.make_error(Path("turndesk.db"), "")
-    monkeypatch.setattr("core.store.store.open_for_writing", raising(locked))
+    monkeypatch.setattr("core.store.store.open_store_for_writing", raising(locked))
     away._reopen()
     assert book.poll_saving() == ""
     assert begins(book.lock_reason, "desk.offsets-not-kept", why=pattern("desk.locked", path="turndesk.db"))
@@ -255,11 +255,11 @@ def test_unavailable_store_rejects_changes(away: Journal, monkeypatch: pytest.Mo
 def test_interrupted_job_is_found_when_its_store_opens_late(away: Journal, tmp_path: Path) -> None:
     """The tool stands in that part, whatever the disk was at the start."""
     told: list[object] = []
-    away.on_late_open(lambda: told.append(away.left))
+    away.set_late_open_callback(lambda: told.append(away.left))
     assert (away.left, told) == (None, [])
     away._reopen()
     assert told == [broken_off(line=8)]
-    away.on_late_open(lambda: told.append("who asks later"))
+    away.set_late_open_callback(lambda: told.append("who asks later"))
     assert told[1:] == ["who asks later"]
     away.close()
     again = Journal(tmp_path / "home")
@@ -320,7 +320,7 @@ def test_store_that_cannot_be_reopened_after_a_restore_is_opened_later(
     monkeypatch.setattr("app.compose.runs.journal.RETRY_INTERVAL_S", 0.01)
     error = cause.make_error(tmp_path / "home" / STORE_FILE_NAME, "")
     with monkeypatch.context() as disk:
-        disk.setattr("core.store.store.open_for_writing", raising(error))
+        disk.setattr("core.store.store.open_store_for_writing", raising(error))
         journal.restore(tmp_path / "copy.db")
         assert (journal.waiting, journal.write_error) == (True, str(error))
         journal.hear(LogEvent(0.0, "part", "part 1"))
@@ -340,7 +340,7 @@ def test_store_damaged_by_a_restore_is_not_opened_again_and_again(
     journal.backup(tmp_path / "copy.db")
     damaged = StoreErrorCause.DAMAGED.make_error(tmp_path / "home" / STORE_FILE_NAME, "a page is torn")
     with monkeypatch.context() as disk:
-        disk.setattr("core.store.store.open_for_writing", raising(damaged))
+        disk.setattr("core.store.store.open_store_for_writing", raising(damaged))
         journal.restore(tmp_path / "copy.db")
         assert (journal.waiting, journal.write_error) == (False, str(damaged))
         with pytest.raises(StoreError, match=pattern("desk.damaged")):
@@ -369,7 +369,7 @@ def test_offsets_that_cannot_be_read_are_unknown_and_not_unset(tmp_path: Path) -
     journal = Journal(home)
     book = journal.book()
     assert (book.has_read_failed, book.tool_offsets) == (True, {})
-    assert describe_unset(is_unreadable=book.has_read_failed) != describe_unset()
+    assert describe_missing_offset(is_unreadable=book.has_read_failed) != describe_missing_offset()
     (home / STORE_FILE_NAME).write_bytes(whole)
     journal._reopen()
     book.poll_saving()

@@ -39,12 +39,12 @@ def test_latching_second_palm_presses_and_releases_both() -> None:
     bench = Bench()
     hands = bench.hands()
     hands.latch("left")
-    hands.release_latched()
+    hands.release_palm_buttons()
     assert (bench.pressed, hands.update_latched_side()) == ([], "left")
     bench.now += LATCH_TIME_S - 0.1
     hands.latch("right")
     assert bench.pressed == ["press_left", "press_right"]
-    hands.release_latched()
+    hands.release_palm_buttons()
     assert bench.pressed[2:] == ["release_left", "release_right"]
     assert not hands.update_latched_side()
 
@@ -70,5 +70,5 @@ def test_latched_palms_do_nothing_while_barred_or_after_release_all() -> None:
     hands.hold(is_down=True)  # whoever holds the feed does not want a start
     hands.latch("right")
     assert bench.pressed == ["press_hold"]
-    hands.release_all()
+    hands.release_all_buttons()
     assert not hands.update_latched_side()

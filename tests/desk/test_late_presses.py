@@ -12,10 +12,10 @@ from app.desk.late_presses import (
     HARMLESS_COMMANDS,
     REPORT_INTERVAL_S,
     STARTING_COMMANDS,
+    BlockedLateAction,
     LatePressFilter,
-    StartingAction,
     find_starting_action,
-    name_starting_action,
+    get_starting_action_name,
 )
 from app.desk.posted_values import ARRIVAL_TIMEOUT_S, PostedValues
 from app.desk.station_controls import StationControls, StationPanel
@@ -38,7 +38,7 @@ def test_every_command_is_classified_as_starting_or_harmless() -> None:
 
 
 def test_every_starting_action_has_a_unique_name() -> None:
-    assert len({name_starting_action(each) for each in StartingAction}) == len(StartingAction)
+    assert len({get_starting_action_name(each) for each in BlockedLateAction}) == len(BlockedLateAction)
 
 
 @dataclass
@@ -59,22 +59,22 @@ class Bench:
         self.late = LatePressFilter(lambda: self.shown, lambda: self.now, self.told.append, answered)
 
     def post(self, command: Command) -> None:
-        self.late.guard_post(self.posted.append)(command)
+        self.late.guard_post_command(self.posted.append)(command)
 
 
 STARTING = (
-    (commands.CycleStart(), StartingAction.CYCLE),
-    (commands.EnableDrives(), StartingAction.DRIVES),
-    (commands.Jog("X", 1.0, 0.2), StartingAction.JOG),
-    (commands.JogByStep("X", 1.0, 1.0), StartingAction.JOG),
-    (commands.TouchOffTool("X", 1, 0.2, 1), StartingAction.TOUCH_OFF),
-    (commands.SelectHandwheel("X", 0.1, 0.2), StartingAction.HANDWHEEL),
-    (commands.RunDriveTest(cast("DriveTestMotion", None), 0.2), StartingAction.DRIVE_TEST),
-    (commands.HomeAxes("X"), StartingAction.HOME),
-    (commands.ForceOutput("collet", True), StartingAction.OUTPUT),
-    (commands.ForceOutput("collet", False), StartingAction.OUTPUT),
-    (commands.ForceOutput("coolant", True), StartingAction.OUTPUT),
-    (commands.ConfirmStart("yesterday"), StartingAction.START_AT_LINE_1),
+    (commands.CycleStart(), BlockedLateAction.CYCLE),
+    (commands.EnableDrives(), BlockedLateAction.DRIVES),
+    (commands.Jog("X", 1.0, 0.2), BlockedLateAction.JOG),
+    (commands.JogByStep("X", 1.0, 1.0), BlockedLateAction.JOG),
+    (commands.TouchOffTool("X", 1, 0.2, 1), BlockedLateAction.TOUCH_OFF),
+    (commands.SelectHandwheel("X", 0.1, 0.2), BlockedLateAction.HANDWHEEL),
+    (commands.RunDriveTest(cast("DriveTestMotion", None), 0.2), BlockedLateAction.DRIVE_TEST),
+    (commands.HomeAxes("X"), BlockedLateAction.HOME),
+    (commands.ForceOutput("collet", True), BlockedLateAction.OUTPUT),
+    (commands.ForceOutput("collet", False), BlockedLateAction.OUTPUT),
+    (commands.ForceOutput("coolant", True), BlockedLateAction.OUTPUT),
+    (commands.ConfirmStart("yesterday"), BlockedLateAction.START_AT_LINE_1),
 )
 NOT_STARTING = (
     commands.FeedHold(),
@@ -91,16 +91,16 @@ NOT_STARTING = (
 
 
 @pytest.mark.parametrize(("command", "starting"), STARTING)
-def test_a_late_press_starts_nothing(command: Command, starting: StartingAction) -> None:
+def test_a_late_press_starts_nothing(command: Command, starting: BlockedLateAction) -> None:
     bench = Bench()
-    bench.late.is_late = True
+    bench.late.is_press_late = True
     bench.post(command)
     assert bench.posted == []
-    assert bench.told == [(name_starting_action(starting),)]
+    assert bench.told == [(get_starting_action_name(starting),)]
 
 
 @pytest.mark.parametrize(("command", "starting"), STARTING)
-def test_press_in_time_starts_the_action(command: Command, starting: StartingAction) -> None:
+def test_press_in_time_starts_the_action(command: Command, starting: BlockedLateAction) -> None:
     bench = Bench()
     bench.post(command)
     assert bench.posted == [command]
@@ -111,7 +111,7 @@ def test_press_in_time_starts_the_action(command: Command, starting: StartingAct
 @pytest.mark.parametrize("command", NOT_STARTING)
 def test_late_command_that_starts_nothing_is_posted(command: Command) -> None:
     bench = Bench()
-    bench.late.is_late = True
+    bench.late.is_press_late = True
     bench.post(command)
     assert bench.posted == [command]
     assert bench.told == []
@@ -119,44 +119,44 @@ def test_late_command_that_starts_nothing_is_posted(command: Command) -> None:
 
 def test_a_late_reset_acknowledges_no_alarm() -> None:
     bench = Bench(shown=Snapshot(state=MachineState.FAULT))
-    bench.late.is_late = True
+    bench.late.is_press_late = True
     bench.post(commands.Reset())
     assert bench.posted == []
 
 
 def test_late_override_from_zero_is_not_posted() -> None:
     bench = Bench(shown=Snapshot(state=MachineState.RUN, feed_override=0.0))
-    bench.late.is_late = True
+    bench.late.is_press_late = True
     bench.post(commands.SetFeedOverride(0.1))
     assert bench.posted == []
 
 
 def test_one_message_names_all_discarded_late_presses() -> None:
     bench = Bench()
-    bench.late.is_late = True
+    bench.late.is_press_late = True
     for command in (commands.EnableDrives(), commands.CycleStart(), commands.CycleStart()):
         bench.post(command)
     assert bench.told[-1] == (
-        name_starting_action(StartingAction.DRIVES),
-        name_starting_action(StartingAction.CYCLE),
+        get_starting_action_name(BlockedLateAction.DRIVES),
+        get_starting_action_name(BlockedLateAction.CYCLE),
     )
     bench.now += REPORT_INTERVAL_S + 0.1
     bench.post(commands.HomeAxes(""))
-    assert bench.told[-1] == (name_starting_action(StartingAction.HOME),)
+    assert bench.told[-1] == (get_starting_action_name(BlockedLateAction.HOME),)
 
 
 def test_only_a_discarded_confirmation_is_recorded_as_a_late_answer() -> None:
     bench = Bench()
-    bench.late.is_late = True
-    assert bench.late.refuse_late_press(StartingAction.CYCLE)
+    bench.late.is_press_late = True
+    assert bench.late.refuse_late_press(BlockedLateAction.CYCLE)
     assert bench.answers == 0
-    assert bench.late.refuse_late_press(StartingAction.YES)
+    assert bench.late.refuse_late_press(BlockedLateAction.YES)
     assert bench.answers == 1
 
 
 def test_jog_renewal_is_exempt_from_the_late_press_check() -> None:
     bench = Bench()
-    bench.late.is_late = True
+    bench.late.is_press_late = True
     with bench.late.suspend_check():
         bench.post(commands.Jog("X", 1.0, 0.2))
     assert len(bench.posted) == 1
@@ -180,16 +180,16 @@ class Station:
 def hands_on(bench: Bench, pressed: list[str]) -> StationControls:
     station = cast("StationPanel", Station(pressed.append))
     hands = StationControls(station, lambda: bench.now, lambda _: None, lambda: None, lambda: None)
-    hands.use_late_presses(bench.late)
+    hands.set_late_press_filter(bench.late)
     return hands
 
 
 def test_late_palm_press_is_ignored_even_if_it_remains_down() -> None:
     bench, pressed = Bench(), list[str]()
     hands = hands_on(bench, pressed)
-    bench.late.is_late = True
+    bench.late.is_press_late = True
     hands.palm("left", is_down=True)
-    bench.late.is_late = False
+    bench.late.is_press_late = False
     hands.palm("right", is_down=True)
     assert pressed == ["press_right"]
 
@@ -197,9 +197,9 @@ def test_late_palm_press_is_ignored_even_if_it_remains_down() -> None:
 def test_late_tap_does_not_latch_a_palm_button() -> None:
     bench, pressed = Bench(), list[str]()
     hands = hands_on(bench, pressed)
-    bench.late.is_late = True
+    bench.late.is_press_late = True
     hands.latch("left")
-    bench.late.is_late = False
+    bench.late.is_press_late = False
     hands.latch("right")
     assert pressed == []
 
@@ -208,7 +208,7 @@ def test_late_tap_does_not_latch_a_palm_button() -> None:
 def test_a_late_press_turns_the_spindle_switch_off_only(auto: bool, done: list[str]) -> None:
     bench, pressed = Bench(), list[str]()
     hands = hands_on(bench, pressed)
-    bench.late.is_late = True
+    bench.late.is_press_late = True
     hands.set_spindle_auto(auto)
     assert pressed == done
 
@@ -216,7 +216,7 @@ def test_a_late_press_turns_the_spindle_switch_off_only(auto: bool, done: list[s
 def test_late_press_can_press_estop_but_not_release_it() -> None:
     bench, pressed = Bench(), list[str]()
     hands = hands_on(bench, pressed)
-    bench.late.is_late = True
+    bench.late.is_press_late = True
     hands.estop(is_pressed=True)
     hands.estop(is_pressed=False)
     assert pressed == ["press_estop"]
@@ -227,12 +227,12 @@ def test_late_press_can_press_estop_but_not_release_it() -> None:
 def test_late_pot_change_from_zero_is_ignored_and_others_apply(which: str) -> None:
     bench = Bench()
     pot = getattr(hands_on(bench, []), which)
-    bench.late.is_late = True
+    bench.late.is_press_late = True
     pot.set(0.8)
     pot.set(0.0)
     pot.set(0.1)
     assert pot.wanted == 0.0
-    bench.late.is_late = False
+    bench.late.is_press_late = False
     pot.set(0.1)
     assert pot.wanted == 0.1
 

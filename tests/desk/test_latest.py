@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from app.desk.background_work import AbandonedError, LatestRequestWorker, ProgressCallback, WorkRequest
+from app.desk.background_work import LatestRequestWorker, ProgressCallback, WorkAbandonedError, WorkRequest
 
 LIMIT = 60.0
 
@@ -45,7 +45,7 @@ class Slow:
         try:
             while not self.go.wait(0.001):
                 watch(7)
-        except AbandonedError:
+        except WorkAbandonedError:
             self.given_up.set()
             raise
         return "slow"
@@ -244,7 +244,7 @@ def test_worker_waits_for_a_pause_in_requests_up_to_a_limit() -> None:
 
 def test_two_workers_may_share_a_thread(worker: LatestRequestWorker) -> None:
     heard, slow = Heard(), Slow()
-    other = LatestRequestWorker("other", thread_owner=worker)
+    other = LatestRequestWorker("other", thread_owning_worker=worker)
     worker.request_work(slow, heard.done, heard.failed)
     assert slow.begun.wait(LIMIT)
     other.request_work(lambda _watch: threading.current_thread().name, heard.done, heard.failed)

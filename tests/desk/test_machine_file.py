@@ -11,7 +11,11 @@ import pytest
 
 import resources
 from app.compose.desk_assembly import create_desk_and_executor
-from app.compose.machine.accepted_machine import create_record, get_settings_key, list_differences
+from app.compose.machine.accepted_machine import (
+    create_acceptance_record,
+    get_settings_key,
+    list_file_differences,
+)
 from app.compose.machine.machine_files import load_machine
 from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import NO_OFFSETS
@@ -19,7 +23,7 @@ from app.desk.desk import Desk
 from app.desk.persistence import Persistence
 from app.desk.status.state_prompt import make_page_prompt
 from app.special.machine_records import MachineFileFunction
-from app.special.special_functions import SpecialFunctionList
+from app.special.special_functions import SpecialFunctionsModel
 from core.executor.executor import Executor
 from core.executor.snapshot import MachineState
 from core.machine.machine_model import Machine
@@ -53,7 +57,7 @@ class Room:
 
     @property
     def section(self) -> MachineFileFunction:
-        functions = attached(self.desk, SpecialFunctionList).functions
+        functions = attached(self.desk, SpecialFunctionsModel).functions
         (found,) = [each for each in functions if isinstance(each, MachineFileFunction)]
         return found
 
@@ -115,8 +119,8 @@ def test_changed_machine_file_bars_drives_until_it_is_accepted(
         accept()
         assert begins(made.desk.prompt_notice, "desk.accept-machine-file")
         assert made.desk.changes.barred
-        made.desk.prompt_answers._since = float("-inf")
-        made.desk.confirm_if_unchanged()
+        made.desk.prompt_line._since = float("-inf")
+        made.desk.confirm_question_if_unchanged()
         assert made.cells() == []
         assert not shows(made.prompt, "desk.machine-file-changed", count=2)
         made.desk.enable_drives()
@@ -163,14 +167,14 @@ def bus_machine(tmp_path: Path) -> Machine:
 
 def test_changed_drive_settings_count_as_a_machine_file_change(tmp_path: Path) -> None:
     machine, kept = bus_machine(tmp_path), Persistence()
-    record = create_record(machine)
+    record = create_acceptance_record(machine)
     drives = record["drives"]
     assert isinstance(drives, dict)
     assert sorted(drives) == ["X", "Z", "io", "spindle"]
     kept.save_setting(get_settings_key(machine), record)
-    assert list_differences(machine, kept) == ()
+    assert list_file_differences(machine, kept) == ()
     kept.save_setting(get_settings_key(machine), {**record, "drives": {**drives, "Z": "0123456789ab"}})
-    (change,) = list_differences(machine, kept) or ()
+    (change,) = list_file_differences(machine, kept) or ()
     assert change.path.startswith("canopen.nodes.Z")
     assert change.old == "0123456789ab"
 
@@ -179,4 +183,4 @@ def test_changed_drive_settings_count_as_a_machine_file_change(tmp_path: Path) -
 def test_damaged_machine_file_record_is_treated_as_a_first_start(tmp_path: Path, damaged: object) -> None:
     machine, kept = bus_machine(tmp_path), Persistence()
     kept.save_setting(get_settings_key(machine), damaged)
-    assert list_differences(machine, kept) is None
+    assert list_file_differences(machine, kept) is None

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import pytest
 
-from app.desk.status.machine_status import Tone, make_status
-from app.desk.status.readouts import Lamp, ReadoutKind, find_coordinates, make_drives_lamp
+from app.desk.status.machine_status import StatusTone, make_machine_status
+from app.desk.status.readouts import Lamp, ReadoutKind, find_readout_values, make_drives_lamp
 from core.alarms import CATALOG
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Alarm, MachineState, Snapshot
@@ -31,7 +31,7 @@ def shown(snapshot: Snapshot, readout: ReadoutKind = ReadoutKind.POSITION) -> li
     """(mark, large, small) of each axis."""
     return [
         (a.diameter_mark, a.value, a.second_value)
-        for a in make_status(snapshot, readout, has_c_axis=True).position.axes
+        for a in make_machine_status(snapshot, readout, has_c_axis=True).position.axes
     ]
 
 
@@ -52,18 +52,18 @@ def test_diameter_mode_doubles_only_x_position_and_distance_to_go() -> None:
 def test_metric_readout_has_four_decimals_and_its_unit() -> None:
     metric = replace(AT, modal=ModalState(metric=True))
     assert shown(metric)[0] == ("R", "12.7000", "6.3500")
-    assert make_status(metric, ReadoutKind.POSITION, has_c_axis=True).position.unit == "MM"
+    assert make_machine_status(metric, ReadoutKind.POSITION, has_c_axis=True).position.unit == "MM"
 
 
 @pytest.mark.parametrize(
     ("readout", "x"), [(ReadoutKind.POSITION, 0.5), (ReadoutKind.TO_GO, 0.25), (ReadoutKind.HOME, 1.5)]
 )
 def test_readout_kind_selects_the_coordinates(readout: ReadoutKind, x: float) -> None:
-    assert find_coordinates(AT, readout)[0] == pytest.approx(x * INCH)
+    assert find_readout_values(AT, readout)[0] == pytest.approx(x * INCH)
 
 
 def test_distance_to_go_is_zero_outside_a_block() -> None:
-    assert find_coordinates(replace(AT, block=0), ReadoutKind.TO_GO) == (0.0, 0.0, 0.0)
+    assert find_readout_values(replace(AT, block=0), ReadoutKind.TO_GO) == (0.0, 0.0, 0.0)
 
 
 def test_readout_kinds_cycle_back_to_the_first() -> None:
@@ -71,11 +71,16 @@ def test_readout_kinds_cycle_back_to_the_first() -> None:
 
 
 def test_distance_to_go_readout_also_shows_the_position() -> None:
-    assert make_status(AT, ReadoutKind.TO_GO, has_c_axis=True).position.second_kind is ReadoutKind.POSITION
+    assert (
+        make_machine_status(AT, ReadoutKind.TO_GO, has_c_axis=True).position.second_kind
+        is ReadoutKind.POSITION
+    )
 
 
 def test_a_lathe_without_c_shows_two_axes() -> None:
-    assert [a.name for a in make_status(AT, ReadoutKind.POSITION, has_c_axis=False).position.axes] == [
+    assert [
+        a.name for a in make_machine_status(AT, ReadoutKind.POSITION, has_c_axis=False).position.axes
+    ] == [
         "X",
         "Z",
     ]
@@ -89,7 +94,7 @@ def test_tiny_negative_positions_have_no_sign() -> None:
 def test_measured_feed_per_revolution_uses_the_spindle_speed() -> None:
     # .005 in/rev at 1200 rpm = 20 rev/s: 2.54 mm/s
     modal = ModalState(per_rev=True)
-    view = make_status(
+    view = make_machine_status(
         replace(AT, modal=modal, feed=0.127, velocity=2.54, rpm_actual=1200), ReadoutKind.POSITION, True
     )
     assert (view.feed.programmed_value, view.feed.measured_value, view.feed.measured_unit) == (
@@ -100,14 +105,14 @@ def test_measured_feed_per_revolution_uses_the_spindle_speed() -> None:
 
 
 def test_feed_per_revolution_with_a_stopped_spindle_is_a_dash() -> None:
-    view = make_status(
+    view = make_machine_status(
         replace(AT, modal=ModalState(per_rev=True), feed=0.127, velocity=0.0), ReadoutKind.POSITION, True
     )
     assert view.feed.measured_value == "—"
 
 
 def test_rapid_is_shown_per_minute_even_in_g95() -> None:
-    view = make_status(
+    view = make_machine_status(
         replace(AT, modal=ModalState(per_rev=True), rapid=True, velocity=127.0), ReadoutKind.POSITION, True
     )
     assert (view.feed.programmed_value, view.feed.programmed_unit) == ("RAPID", "")
@@ -115,7 +120,7 @@ def test_rapid_is_shown_per_minute_even_in_g95() -> None:
 
 
 def test_metric_feed_is_shown_in_millimeters() -> None:
-    view = make_status(
+    view = make_machine_status(
         replace(AT, modal=ModalState(metric=True), feed=2.0, velocity=1.9), ReadoutKind.POSITION, True
     )
     assert (view.feed.programmed_value, view.feed.measured_value) == ("120.0", "114.0")
@@ -124,17 +129,17 @@ def test_metric_feed_is_shown_in_millimeters() -> None:
 def test_surface_speed_is_shown_without_sign_for_a_reversed_spindle() -> None:
     # 2 · pi · .5 in · 1000 rpm / 12 = 261.8 ft/min
     back = replace(AT, actual=(0.5 * INCH, 0.0, 0.0), rpm_command=-1000.0, rpm_actual=-1000.0)
-    spindle = make_status(back, ReadoutKind.POSITION, True).spindle
+    spindle = make_machine_status(back, ReadoutKind.POSITION, True).spindle
     assert math.isclose(2 * math.pi * 0.5 * 1000 / 12, 261.8, rel_tol=1e-4)
-    assert (spindle.surface_speed, spindle.surface_label) == ("262", "SFM")
+    assert (spindle.surface_speed, spindle.surface_speed_label) == ("262", "SFM")
     assert (spindle.direction, spindle.commanded_rpm, spindle.measured_rpm) == ("M04 REV", "1000", "1000")
 
 
 def test_constant_surface_speed_mode_is_shown() -> None:
     turning = replace(AT, modal=ModalState(css=True, metric=True), rpm_command=500.0)
-    spindle = make_status(turning, ReadoutKind.POSITION, True).spindle
+    spindle = make_machine_status(turning, ReadoutKind.POSITION, True).spindle
     assert spindle.direction == "M03 FWD · G96"
-    assert spindle.surface_label == "M/MIN"
+    assert spindle.surface_speed_label == "M/MIN"
 
 
 @pytest.mark.parametrize(
@@ -150,44 +155,48 @@ def test_constant_surface_speed_mode_is_shown() -> None:
 def test_spindle_lamp_shows_measured_rotation(
     command: float, actual: float, word: str, lit: bool, warn: bool
 ) -> None:
-    view = make_status(replace(AT, rpm_command=command, rpm_actual=actual), ReadoutKind.POSITION, True)
+    view = make_machine_status(
+        replace(AT, rpm_command=command, rpm_actual=actual), ReadoutKind.POSITION, True
+    )
     lamp = view.lamps[0]
     assert (lamp.label, lamp.is_lit, lamp.is_warning) == (word, lit, warn)
 
 
 def test_spindle_lamp_shows_orientation_in_progress_and_reached_angle() -> None:
-    turning = make_status(replace(AT, is_orienting=True, rpm_actual=90.0), ReadoutKind.POSITION, True)
-    held = make_status(replace(AT, oriented=90.0), ReadoutKind.POSITION, True)
+    turning = make_machine_status(replace(AT, is_orienting=True, rpm_actual=90.0), ReadoutKind.POSITION, True)
+    held = make_machine_status(replace(AT, oriented=90.0), ReadoutKind.POSITION, True)
     assert (turning.lamps[0].label, turning.lamps[0].is_warning) == (text("desk.spindle-orients"), True)
     lamp = held.lamps[0]
     assert (lamp.label, lamp.is_lit, lamp.is_warning) == (text("desk.spindle-oriented"), True, False)
     assert held.spindle.direction.startswith(text("desk.held-angle", angle=90))
-    assert make_status(AT, ReadoutKind.POSITION, True).spindle.direction == "M05 OFF"
+    assert make_machine_status(AT, ReadoutKind.POSITION, True).spindle.direction == "M05 OFF"
 
 
 def test_lamps_show_the_outputs_instead_of_the_programmed_state() -> None:
     make_alarm = replace(AT, modal=ModalState(coolant=True, collet_closed=True), outputs=frozenset())
-    words = {lamp.label: lamp.is_lit for lamp in make_status(make_alarm, ReadoutKind.POSITION, True).lamps}
+    words = {
+        lamp.label: lamp.is_lit for lamp in make_machine_status(make_alarm, ReadoutKind.POSITION, True).lamps
+    }
     assert words["COOLANT"] is False
     assert text("desk.collet-open") in words
     done = replace(make_alarm, outputs=frozenset({"coolant", "collet", "live2"}))
-    words = {lamp.label: lamp.is_lit for lamp in make_status(done, ReadoutKind.POSITION, True).lamps}
+    words = {lamp.label: lamp.is_lit for lamp in make_machine_status(done, ReadoutKind.POSITION, True).lamps}
     assert {"COOLANT", "COLLET CLOSED", "LIVE TOOL"} <= {word for word, lit in words.items() if lit}
 
 
 def test_every_machine_state_has_a_text_and_a_tone() -> None:
     for state in MachineState:
-        view = make_status(replace(AT, state=state), ReadoutKind.POSITION, True)
+        view = make_machine_status(replace(AT, state=state), ReadoutKind.POSITION, True)
         assert view.state_text == state.value
-        assert isinstance(view.state_tone, Tone)
+        assert isinstance(view.state_tone, StatusTone)
     assert (
-        make_status(replace(AT, state=MachineState.FAULT), ReadoutKind.POSITION, True).state_tone
-        is Tone.ALARM
+        make_machine_status(replace(AT, state=MachineState.FAULT), ReadoutKind.POSITION, True).state_tone
+        is StatusTone.ALARM
     )
 
 
 def test_wait_state_shows_its_condition() -> None:
-    view = make_status(
+    view = make_machine_status(
         replace(AT, state=MachineState.WAIT, waiting_for="AT SPEED"), ReadoutKind.POSITION, True
     )
     assert view.state_text == text("desk.waiting", what="AT SPEED")
@@ -195,17 +204,19 @@ def test_wait_state_shows_its_condition() -> None:
 
 def test_stop_message_is_shown_only_during_the_stop() -> None:
     stop = replace(AT, state=MachineState.PROGRAM_STOP, message="CHECK THE BORE")
-    assert make_status(stop, ReadoutKind.POSITION, True).message == "CHECK THE BORE"
-    assert make_status(replace(stop, message=""), ReadoutKind.POSITION, True).message == text(
+    assert make_machine_status(stop, ReadoutKind.POSITION, True).message == "CHECK THE BORE"
+    assert make_machine_status(replace(stop, message=""), ReadoutKind.POSITION, True).message == text(
         "screen.program-stop"
     )
-    assert make_status(replace(stop, state=MachineState.RUN), ReadoutKind.POSITION, True).message == ""
+    assert (
+        make_machine_status(replace(stop, state=MachineState.RUN), ReadoutKind.POSITION, True).message == ""
+    )
 
 
 def test_first_alarm_is_shown_first() -> None:
     """What comes behind it follows from it more often than not."""
     first, then = (Alarm(n, "axis", f"TROUBLE {n}", "", "") for n in (101, 102))
-    view = make_status(
+    view = make_machine_status(
         replace(AT, state=MachineState.FAULT, alarms=(first, then)), ReadoutKind.POSITION, True
     )
     assert view.alarms == (first, then)
@@ -214,11 +225,11 @@ def test_first_alarm_is_shown_first() -> None:
 
 def test_automatic_hold_shows_its_cause_and_operator_hold_does_not() -> None:
     silent = make_alarm("station-silent", "", 4, 0.0)
-    view = make_status(replace(AT, state=MachineState.HOLD, stop=silent), ReadoutKind.POSITION, True)
+    view = make_machine_status(replace(AT, state=MachineState.HOLD, stop=silent), ReadoutKind.POSITION, True)
     assert view.stop_cause is silent
     assert view.state_text == text("screen.feed-hold", number=601, what=text("screen.station-silent"))
     pressed = make_alarm("feed-hold", "H at the keyboard", 4, 0.0)
-    view = make_status(replace(AT, state=MachineState.HOLD, stop=pressed), ReadoutKind.POSITION, True)
+    view = make_machine_status(replace(AT, state=MachineState.HOLD, stop=pressed), ReadoutKind.POSITION, True)
     assert (view.stop_cause, view.state_text) == (None, "FEED HOLD")
 
 
@@ -236,24 +247,24 @@ def test_c_position_is_shown_modulo_360_or_continuous(
     machine: float, shift: float, wraps: bool, c: str, home: str
 ) -> None:
     """With the offsets of C in the program's figure, without them in the machine's."""
-    at = replace(AT, actual=(0.0, 0.0, machine), modal=ModalState(offset_c=shift, is_c_modulo=wraps))
+    at = replace(AT, actual=(0.0, 0.0, machine), modal=ModalState(offset_c=shift, is_c_axis_modulo=wraps))
     assert shown(at)[2][1] == c
     assert shown(at, ReadoutKind.HOME)[2][1] == home
 
 
 def test_feed_of_c_axis_alone_is_shown_in_degrees() -> None:
     alone = replace(AT, turns=True, feed=50.0, modal=ModalState(metric=True))
-    feed = make_status(alone, ReadoutKind.POSITION, has_c_axis=True).feed
+    feed = make_machine_status(alone, ReadoutKind.POSITION, has_c_axis=True).feed
     assert (feed.programmed_value, feed.programmed_unit) == ("3000.0", "°/min")
     by_turn = replace(alone, feed=2.0, modal=ModalState(metric=True, per_rev=True))
-    feed = make_status(by_turn, ReadoutKind.POSITION, has_c_axis=True).feed
+    feed = make_machine_status(by_turn, ReadoutKind.POSITION, has_c_axis=True).feed
     assert (feed.programmed_value, feed.programmed_unit) == ("2.0000", "°/rev")
 
 
 def test_silent_parts_are_shown_as_unknown() -> None:
     """The last that was known: 0 rpm, coolant off, collet closed. None of it may be read as so."""
     stood = replace(AT, outputs=frozenset({"collet"}), unknown=ALL_UNKNOWN_PARTS)
-    view = make_status(stood, ReadoutKind.POSITION, True)
+    view = make_machine_status(stood, ReadoutKind.POSITION, True)
     assert not any(axis.is_known for axis in view.position.axes)
     assert (view.spindle.commanded_rpm, view.spindle.measured_rpm, view.spindle.surface_speed) == (
         "?",
@@ -278,7 +289,9 @@ def test_drives_lamp_follows_the_power_and_not_the_machine_state() -> None:
 
 
 def test_only_the_part_that_is_silent_is_unknown() -> None:
-    view = make_status(replace(AT, unknown=frozenset({UnknownPart.SPINDLE})), ReadoutKind.POSITION, True)
+    view = make_machine_status(
+        replace(AT, unknown=frozenset({UnknownPart.SPINDLE})), ReadoutKind.POSITION, True
+    )
     assert all(axis.is_known for axis in view.position.axes)
     assert view.lamps[0].label == text("screen.spindle-unknown")
     assert view.lamps[1].label == "COOLANT"
@@ -286,19 +299,19 @@ def test_only_the_part_that_is_silent_is_unknown() -> None:
 
 def test_hold_that_waits_for_tapping_to_end_is_shown() -> None:
     held = replace(AT, state=MachineState.RUN, waiting_for="FEED HOLD BEHIND THE TAP")
-    assert make_status(held, ReadoutKind.POSITION, True).state_text == text("desk.hold-after-tap")
+    assert make_machine_status(held, ReadoutKind.POSITION, True).state_text == text("desk.hold-after-tap")
 
 
 def test_metric_feed_has_a_prefix_and_inch_feed_does_not() -> None:
     metric = replace(Snapshot(), modal=ModalState(metric=True), feed=5.0)
-    assert make_status(metric, ReadoutKind.POSITION, has_c_axis=True).feed.value_prefix == "MM"
-    assert make_status(Snapshot(), ReadoutKind.POSITION, has_c_axis=True).feed.value_prefix == ""
+    assert make_machine_status(metric, ReadoutKind.POSITION, has_c_axis=True).feed.value_prefix == "MM"
+    assert make_machine_status(Snapshot(), ReadoutKind.POSITION, has_c_axis=True).feed.value_prefix == ""
 
 
 def test_x_readout_is_doubled_exactly_when_marked_as_diameter() -> None:
     """The mode that remains after a program is that of the value, of the mark and of the words."""
     left = replace(Snapshot(), actual=(12.7, 0.0, 0.0), x_diameter=True)
-    view = make_status(left, ReadoutKind.POSITION, has_c_axis=True)
+    view = make_machine_status(left, ReadoutKind.POSITION, has_c_axis=True)
     x = view.position.axes[0]
     assert (x.diameter_mark, x.value) == ("Ø", "1.00000")
     assert "G73" in view.position.x_label  # what a typed program begins with

@@ -78,7 +78,7 @@ def test_insert_that_cannot_be_changed_is_reported_and_not_counted(
     operator = Operator(shift, 1, {})
     operator.begin()
     monkeypatch.setattr(
-        Desk, "confirm_if_unchanged", Desk.clear_prompt_line
+        Desk, "confirm_question_if_unchanged", Desk.clear_prompt_line
     )  # something else is always said meanwhile
     with pytest.raises(StuckError, match="the insert cannot be changed"):
         operator.fresh_insert()

@@ -19,7 +19,7 @@ from app.desk.programs.program_renewal import RunningRenewal
 from app.desk.status.prompt_line import find_announcements, find_remedy
 from app.desk.stored_part import EMPTY_STORED_PART, StoredPart
 from app.path.path_picture import ProgramPicture
-from core.executor.commands import ChangeOffsets, Command, LoadJob, SupplyProof
+from core.executor.commands import ChangeOffsets, Command, LoadJob, SupplyJobProof
 from core.executor.snapshot import MachineState, Snapshot
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.diagnostics import Severity
@@ -91,7 +91,7 @@ def test_valid_program_has_no_findings_and_is_posted_once(desk: Make) -> None:
     bench = desk()
     loaded = bench.load(SHAFT)
     assert (loaded.phase, loaded.diagnostics, part_of(loaded).warning_texts) == (LoadingPhase.READY, (), ())
-    assert bench.kinds == [LoadJob, SupplyProof]
+    assert bench.kinds == [LoadJob, SupplyJobProof]
 
 
 def test_finding_based_on_assumed_stock_is_a_warning(desk: Make) -> None:
@@ -104,8 +104,8 @@ def test_finding_based_on_assumed_stock_is_a_warning(desk: Make) -> None:
     assert wording("desk.left-on") in found.hint
     assert found.block_number > 0
     assert loaded.phase is LoadingPhase.READY
-    assert bench.kinds == [LoadJob, SupplyProof, SupplyProof]
-    first, last = (command.proof for command in bench.posted if isinstance(command, SupplyProof))
+    assert bench.kinds == [LoadJob, SupplyJobProof, SupplyJobProof]
+    first, last = (command.proof for command in bench.posted if isinstance(command, SupplyJobProof))
     assert first.warnings == ()  # it may be started before its part is known
     assert (last.errors, last.warnings) == ((), ("LINE 11: RAPID-INTO-STOCK",))
 
@@ -114,7 +114,7 @@ def test_rapid_into_specified_stock_with_assumed_tool_is_an_error(desk: Make) ->
     bench = desk(BAR)
     loaded = bench.load(SLIP)
     assert [(d.assumptions, d.severity) for d in loaded.diagnostics] == [((), Severity.ERROR)]
-    assert bench.kinds == [LoadJob, SupplyProof]  # it has waited for the part
+    assert bench.kinds == [LoadJob, SupplyJobProof]  # it has waited for the part
     assert loaded.phase is LoadingPhase.REFUSED
 
 
@@ -123,14 +123,14 @@ def test_rapid_into_specified_stock_with_specified_tool_refuses_the_start(desk: 
     loaded = bench.load(SLIP)
     assert loaded.phase is LoadingPhase.REFUSED
     assert [(d.line, d.assumptions) for d in loaded.blocking_errors] == [(11, ())]
-    (given,) = (command.proof for command in bench.posted if isinstance(command, SupplyProof))
+    (given,) = (command.proof for command in bench.posted if isinstance(command, SupplyJobProof))
     assert len(given.errors) == 1
     assert "rapid-into-stock" in given.errors[0]
     assert desk(BAR, {1: TURNING}).load(SHAFT).phase is LoadingPhase.READY
 
 
 def test_proof_waits_for_the_part_check_if_that_may_refuse_the_start(desk: Make) -> None:
-    for kept, given in ((BAR, [LoadJob]), (StoredPart(), [LoadJob, SupplyProof])):
+    for kept, given in ((BAR, [LoadJob]), (StoredPart(), [LoadJob, SupplyJobProof])):
         bench = desk(kept, {1: TURNING})
         making, go_on = threading.Event(), threading.Event()
         real = bench.session.loading_steps.prove_part
@@ -173,7 +173,7 @@ def test_chuck_overspeed_error_needs_no_stock(desk: Make) -> None:
     loaded = bench.load(SHAFT)
     assert loaded.phase is LoadingPhase.REFUSED
     assert {(d.check_name, d.assumptions) for d in loaded.blocking_errors} == {("spindle-overspeed", ())}
-    assert bench.kinds == [LoadJob, SupplyProof]
+    assert bench.kinds == [LoadJob, SupplyJobProof]
 
 
 @pytest.mark.parametrize("stock", ["rod", "profile:gone.csv", "after:gone.nc"])
@@ -218,7 +218,7 @@ def test_program_too_long_for_the_part_model_is_reported_and_loaded(
     assert loaded.picture is not None
     assert loaded.picture.no_part == part_of(loaded).error_text
     assert loaded.phase is LoadingPhase.READY
-    assert bench.kinds == [LoadJob, SupplyProof]
+    assert bench.kinds == [LoadJob, SupplyJobProof]
 
 
 # --- under a running program --------------------------------------------------------------------------
@@ -239,10 +239,10 @@ def test_changed_offsets_apply_together_with_the_new_part_check(
     assert renewed.proof is not None
     assert len(renewed.proof.errors) == errors
     assert renewing.is_in_use(Snapshot(state=MachineState.IDLE, job=renewed.job.digest))
-    given = [c.proof.warnings for c in bench.posted if isinstance(c, SupplyProof)]
+    given = [c.proof.warnings for c in bench.posted if isinstance(c, SupplyJobProof)]
     assert given == [("LINE 11: RAPID-INTO-STOCK",)] * (1 - errors)
     assert renewing.is_in_use(Snapshot(state=MachineState.IDLE, job=renewed.job.digest))
-    assert len([c for c in bench.posted if isinstance(c, SupplyProof)]) == 1 - errors
+    assert len([c for c in bench.posted if isinstance(c, SupplyJobProof)]) == 1 - errors
 
 
 # --- on the prompt line -------------------------------------------------------------------------------

@@ -12,7 +12,7 @@ import resources
 from app.compose.machine.machine_files import load_machine, parse_machine
 from app.compose.program_proving import create_loading_steps
 from app.compose.stored_offsets import Offsets
-from app.desk.arithmetic import EntryError
+from app.desk.arithmetic import InvalidEntryError
 from app.desk.desk import Desk
 from app.desk.persistence import Persistence
 from app.desk.programs.program_folder import ProgramFolders
@@ -20,14 +20,14 @@ from app.desk.programs.program_loading import LoadingPhase, ProgramLoader
 from app.desk.state.desk_control import DeskControl
 from app.desk.state.desk_machine import DeskMachine
 from app.desk.stored_part import StoredPart, load_stored_part
-from app.part.part_model import PartModel, PartSection
+from app.part.part_model import PartPageModel, PartPageTable
 from app.part.part_tables import make_table
 from app.part.stock_entry import StockEntry, StockField, StockKind
 from core.executor.commands import Command
 from core.executor.snapshot import MachineState, Snapshot
 from core.language.diagnostics import Diagnostic, Severity
 from core.machine.machine_model import Machine
-from core.part.stock_spec import parse_specification
+from core.part.stock_spec import parse_stock_specification
 from core.proving.checks.part_checks import PART_CHECKS
 from core.store.store_errors import StoreError
 from tests.desk.test_part_found import LIMIT, SHAFT, SLIP, TOOLS, TURNING
@@ -55,7 +55,7 @@ class Bench:
             ProgramFolders((folder,)),
             machine=DeskMachine(machine=model),
         )
-        self.page = PartModel(self.desk, self.keep, frozenset(PART_CHECKS), of_machine)
+        self.page = PartPageModel(self.desk, self.keep, frozenset(PART_CHECKS), of_machine)
         self.shown: list[Diagnostic] = []
         self.page.show_location = self.shown.append
         self.desk.page_registry.attach_model(self.page)
@@ -118,7 +118,7 @@ def test_stored_stock_is_shown_as_it_was_entered(words: str) -> None:
 def test_stock_text_has_the_lengths_that_were_typed() -> None:
     entry = StockEntry(StockKind.TUBE).typed(StockField.DIAMETER, "1+1/8", is_metric=False)
     entry = entry.typed(StockField.BORE, "10", is_metric=True)
-    spec = parse_specification(entry.words)
+    spec = parse_stock_specification(entry.words)
     assert (spec.diameter, spec.bore) == (pytest.approx(28.575, abs=1e-6), pytest.approx(10.0))
 
 
@@ -132,7 +132,7 @@ def test_stock_text_has_the_lengths_that_were_typed() -> None:
     ],
 )
 def test_impossible_stock_dimension_is_rejected(name: StockField, text: str) -> None:
-    with pytest.raises(EntryError):
+    with pytest.raises(InvalidEntryError):
         StockEntry(StockKind.TUBE, diameter=25.4).typed(name, text, is_metric=False)
 
 
@@ -143,7 +143,7 @@ def test_bar_stock_is_entered_saved_and_used_for_the_proof(bench: Bench) -> None
     bench.load(SLIP)
     assert bench.desk.program_loader.loaded_program.phase is LoadingPhase.READY
     bench.press("F2")
-    assert bench.page.shown_section is PartSection.STOCK
+    assert bench.page.shown_table is PartPageTable.STOCK
     assert bench.cells["STOCK"] == ("–", "BAR")  # what is assumed stands beside it
     bench.press("Right")
     assert bench.kept == StoredPart()  # without a diameter it is none yet
@@ -260,7 +260,7 @@ def test_finding_is_listed_with_its_remedy_and_shows_its_location(bench: Bench) 
 def test_check_is_disabled_with_a_reason_and_enabled_again(bench: Bench) -> None:
     bench.load(SLIP)
     bench.press("F4")
-    assert make_table(bench.page).question == wording("desk.why-silenced", check="rapid-into-stock")
+    assert make_table(bench.page).entry_prompt == wording("desk.why-silenced", check="rapid-into-stock")
     bench.types("")
     assert shows(bench.desk.prompt_notice, "desk.reason-needed")
     bench.types("drilled before")

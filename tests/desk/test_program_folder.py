@@ -54,8 +54,8 @@ def test_unknown_program_name_is_not_found(program_folders: ProgramFolders, type
 
 
 def test_typed_text_filters_the_list(program_folders: ProgramFolders) -> None:
-    assert [entry.name for entry in program_folders.find_matching("PART")] == ["PART1", "part10.nc"]
-    assert program_folders.find_matching("xyz") == ()
+    assert [entry.name for entry in program_folders.find_matching_programs("PART")] == ["PART1", "part10.nc"]
+    assert program_folders.find_matching_programs("xyz") == ()
 
 
 # --- The file that was read, changed behind the desk's back by somebody else.
@@ -179,9 +179,9 @@ def test_file_monitor_survives_any_exception_of_a_check(
 
     with monkeypatch.context() as patch:
         patch.setattr(program_folder, "load_source", broken)
-        file.check_safely()
+        file.check_file_safely()
         assert begins(file.difference_text, "programs.unreadable", name="part.nc")
-    file.check_safely()
+    file.check_file_safely()
     assert file.difference_text == ""
 
 

@@ -16,13 +16,13 @@ from app.desk.programs.program_loading import (
     ProgramLoader,
     ProvedJob,
 )
-from app.desk.status.prompt_line import make_prompt, make_refusal
+from app.desk.status.prompt_line import make_prompt, make_refusal_text
 from app.path.path_picture import PictureBuilder, ProgramPicture
-from core.executor.commands import Command, LoadJob, SupplyProof
+from core.executor.commands import Command, LoadJob, SupplyJobProof
 from core.executor.job import Job, Proof
 from core.executor.snapshot import MachineState, Snapshot
 from core.interpreter.dialects import SharedProgram
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import ProgramSource
 from tests.texts import text as wording
@@ -53,7 +53,10 @@ class Bench:
 
     def make(self, source: ProgramSource, block_delete: bool) -> Job:
         return Job(
-            source, Setup(block_delete=block_delete), f"digest of {source.name}", SharedProgram(source)
+            source,
+            InterpreterSetup(block_delete=block_delete),
+            f"digest of {source.name}",
+            SharedProgram(source),
         )
 
     def prove(self, job: Job, watch: ProgressCallback) -> ProvedJob:
@@ -88,7 +91,7 @@ def test_a_program_is_loaded_proved_and_drawn(bench: Bench) -> None:
     assert loaded.source is not None
     assert loaded.source.lines == ("G90", "M30")
     assert loaded.picture is not None
-    assert [type(command) for command in bench.posted] == [LoadJob, SupplyProof]
+    assert [type(command) for command in bench.posted] == [LoadJob, SupplyJobProof]
 
 
 def test_program_is_posted_without_a_proof_while_it_is_proved(bench: Bench) -> None:
@@ -109,7 +112,7 @@ def test_newer_choice_replaces_a_load_in_progress(bench: Bench) -> None:
     bench.go_on.set()
     loaded = bench.settled()
     assert loaded.name == "second.nc"
-    proofs = [command.proof.digest for command in bench.posted if isinstance(command, SupplyProof)]
+    proofs = [command.proof.digest for command in bench.posted if isinstance(command, SupplyJobProof)]
     assert proofs == ["digest of second.nc"]
 
 
@@ -118,14 +121,14 @@ def test_program_errors_refuse_the_start_and_name_the_line(bench: Bench) -> None
     bench.session.start_loading(Path("part.nc"))
     loaded = bench.settled()
     assert loaded.phase is LoadingPhase.REFUSED
-    assert make_refusal(loaded) == wording(
+    assert make_refusal_text(loaded) == wording(
         "screen.will-not-run-at-line", line=7, why=f"{BAD.message} (1 MORE)"
     )
 
 
 def test_tools_without_offsets_are_named_before_the_start() -> None:
     source = ProgramSource("part.nc", "G90")
-    job = Job(source, Setup(), "digest", SharedProgram(source), frozenset({1}))
+    job = Job(source, InterpreterSetup(), "digest", SharedProgram(source), frozenset({1}))
     loaded = LoadedProgram(
         LoadingPhase.READY, Path("part.nc"), job=job, proof=Proof("digest", (), tool_numbers=(3, 1, 2))
     )

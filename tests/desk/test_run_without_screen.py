@@ -11,7 +11,7 @@ from core.executor.commands import Command, EnableDrives, HomeAxes
 from core.executor.job import Proof, make_job
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import MachineState, Snapshot
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.language.source import ProgramSource
 from drivers.wakeups import ManualClock
 
@@ -40,7 +40,7 @@ class Idle:
 
 
 def outcome(executor: Idle, said: list[str]) -> RunOutcome:
-    job = make_job(ProgramSource("part.nc", "G90G94F300\nM30\n"), Setup())
+    job = make_job(ProgramSource("part.nc", "G90G94F300\nM30\n"), InterpreterSetup())
     run = HeadlessRun(executor, ManualClock(), said.append, lambda _t: None, lambda: said.append("palms"))
     return run.run_job(job, Proof(job.digest, ()))
 

@@ -7,13 +7,13 @@ from dataclasses import replace
 import pytest
 
 from app.compose.machine.machine_files import load_machine, load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from app.special.setup_sheet import SetupSheet, make_setup_sheet
 from core.geometry.rotary_axes import DatumPreset
 from core.interpreter.dialects import SharedProgram
 from core.interpreter.shared.job_setup import MillTool, ToolOffset
 from core.language.source import ProgramSource
-from core.part.stock import Stock, make_bar
+from core.part.stock import Stock, make_bar_stock
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving.program_tools import PartSettings
 from tests.texts import begins
@@ -22,12 +22,12 @@ from tests.texts import text as wording
 TURNED = "G90G94F300\nM03S1500\nT1\nX.6Z.05\nX.4\nG95F.004Z-.5\nX.55\nG94F300Z1\nM30\n"
 SLIP = TURNED.replace("G95F.004Z-.5", "G00Z-.5")
 TOOL = ToolShape(ToolKind.TURNING, tip=3, nose_radius=0.4, insert="DCMT11T304")
-ROD = make_bar(25.4, 0.0, -60.0)
+ROD = make_bar_stock(25.4, 0.0, -60.0)
 
 
 def sheet_of(text: str, stock: Stock | None = None, shapes: dict[int, ToolShape] | None = None) -> SetupSheet:
     machine = load_machine(None)
-    setup = create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     return make_setup_sheet(
         SharedProgram(ProgramSource("P", text)), setup, machine, PartSettings(stock, shapes or {})
     )
@@ -58,11 +58,11 @@ def test_groove_tool_without_width_is_marked_as_assumed() -> None:
     grooved = "G90G94F300\nM03S900\nT1\nX.6Z-.5\nG95F.002X.4\nG94F300X.6\nZ1\nM30\n"
     groover = ToolShape(ToolKind.GROOVING, tip=3, stick_out=30.0)
     (tool,) = sheet_of(grooved, ROD, {1: groover}).setup_tools
-    assert tool.is_assumed
+    assert tool.is_shape_incomplete
     assert tool.tool_shape is not None
     assert tool.tool_shape.width == 2.0
     (said,) = sheet_of(grooved, ROD, {1: ToolShape(ToolKind.GROOVING, tip=3, width=3.0)}).setup_tools
-    assert not said.is_assumed
+    assert not said.is_shape_incomplete
 
 
 MILLED = """BEGIN PGM P MM
@@ -80,7 +80,9 @@ END PGM P MM
 def milled(preset: int = 0) -> SetupSheet:
     machine = load_shipped_machine("ac-table-mill")
     setup = replace(
-        create_setup(machine, tool_offsets={8: ToolOffset(z=101.6, nose_radius=4.25)}, secondary_offsets={}),
+        create_power_up_setup(
+            machine, tool_offsets={8: ToolOffset(z=101.6, nose_radius=4.25)}, secondary_offsets={}
+        ),
         tool_names={"DRILL 8.5": 8},
         mill_tools={8: MillTool(tooth_count=2, point_angle_deg=118.0)},
         preset=preset,
@@ -96,9 +98,9 @@ def test_mill_setup_sheet_has_blank_preset_and_tool_lengths() -> None:
     assert sheet.stock_text == wording("desk.stock", size="104.000 mm × 74.000 mm × 20.000 mm")
     assert sheet.clamping_texts == (("PRESET", f"0   {wording('desk.of-machine-file')}"),)
     (tool,) = sheet.setup_tools
-    assert sheet.describe_shape(tool) == "DRILL 8.5, POINT ANGLE 118°, 2 teeth"
+    assert sheet.describe_tool_shape(tool) == "DRILL 8.5, POINT ANGLE 118°, 2 teeth"
     assert sheet.format_offset(tool) == "L 101.600 mm   R 4.250 mm"
-    assert [sheet.format_stop(stop) for stop in sheet.program_stops if stop.is_optional] == ["M1"]
+    assert [sheet.format_stop_code(stop) for stop in sheet.program_stops if stop.is_optional] == ["M1"]
 
 
 def test_active_preset_is_listed_with_its_position() -> None:

@@ -18,7 +18,7 @@ from app.desk.desk import Desk
 from app.desk.persistence import Persistence
 from app.desk.status import sounds
 from app.desk.status.sounds import SoundPlayer, make_tone_wav, play_wav
-from app.special.lamps_and_sound import EventSounds
+from app.special.lamps_and_sound import EventSoundPlayer
 from core.executor.snapshot import MachineState, Snapshot
 from core.machine.hardware_model import MACHINE_SIGNALS
 from tests.texts import text as wording
@@ -50,13 +50,13 @@ class Noted(SoundPlayer):
         self.asked.append(cast("tuple[int, ...]", frequencies_hz))
 
 
-def desk_sounds(volume: int = 50, silent: frozenset[str] = frozenset()) -> tuple[EventSounds, list[str]]:
+def desk_sounds(volume: int = 50, silent: frozenset[str] = frozenset()) -> tuple[EventSoundPlayer, list[str]]:
     said: list[str] = []
     keep = Persistence({"sound": {"volume": volume, "silent": sorted(silent)}})
-    return EventSounds(cast("Desk", SimpleNamespace(say=said.append)), keep, Noted()), said
+    return EventSoundPlayer(cast("Desk", SimpleNamespace(say=said.append)), keep, Noted()), said
 
 
-def day(made: EventSounds, *snapshots: Snapshot) -> list[tuple[int, ...]]:
+def day(made: EventSoundPlayer, *snapshots: Snapshot) -> list[tuple[int, ...]]:
     for snapshot in snapshots:
         made.play_new_event_sounds(snapshot)
     return cast("Noted", made.sound_player).asked
@@ -91,7 +91,7 @@ def test_end_of_tool_life_sounds_during_the_cycle() -> None:
 def test_disabled_or_zero_volume_sound_is_not_played() -> None:
     assert day(desk_sounds(silent=frozenset({"stop"}))[0], RUNS, replace(REST, state=MachineState.HOLD)) == []
     assert day(desk_sounds(volume=0)[0], RUNS, replace(REST, state=MachineState.FAULT)) == []
-    fresh = EventSounds(cast("Desk", SimpleNamespace()), Persistence(), Noted())
+    fresh = EventSoundPlayer(cast("Desk", SimpleNamespace()), Persistence(), Noted())
     assert day(fresh, RUNS, replace(REST, state=MachineState.FAULT)) == []  # off by default
 
 
@@ -101,7 +101,7 @@ def test_alarm_present_at_startup_makes_no_sound() -> None:
 
 @pytest.mark.parametrize("kept", [7, {"volume": "loud"}, {"volume": 5}, [], {"volume": 10**9, "silent": [3]}])
 def test_invalid_sound_setting_is_ignored(kept: object) -> None:
-    made = EventSounds(cast("Desk", SimpleNamespace()), Persistence({"sound": kept}), Noted())
+    made = EventSoundPlayer(cast("Desk", SimpleNamespace()), Persistence({"sound": kept}), Noted())
     made.load_settings()
     assert 0 <= made.volume_percent <= 100
 

@@ -9,10 +9,15 @@ import pytest
 
 from app.compose.machine.machine_files import load_machine
 from app.compose.program_proving import create_loading_steps, get_samples_folder
-from app.compose.stored_offsets import read_offsets
-from app.desk.background_work import AbandonedError
+from app.compose.stored_offsets import read_offsets_file
+from app.desk.background_work import WorkAbandonedError
 from app.desk.programs.program_loading import ProvedJob
-from app.desk.programs.start_watch import FirstMoveChecker, FirstMoveQuery, PreviousPart, add_verdict
+from app.desk.programs.start_watch import (
+    FirstMoveChecker,
+    FirstMoveQuery,
+    PreviousPart,
+    add_first_move_verdict,
+)
 from core.executor.commands import FIRST_MOVE_CROSSES, TOOL_IN_PART
 from core.executor.job import Proof
 from core.executor.snapshot import ESTOP_REASON, InterruptedJob, StartAction
@@ -32,7 +37,7 @@ def watch(_reached: float = 0.0) -> None:
 def part_of(source: ProgramSource) -> PreviousPart:
     """A program and its part, with stock and tools as assumed."""
     steps = create_loading_steps(
-        load_machine(None), lambda: read_offsets(get_samples_folder() / "offsets.toml")
+        load_machine(None), lambda: read_offsets_file(get_samples_folder() / "offsets.toml")
     )
     job = steps.make_job(source, False)
     steps.prove_job(job, watch)
@@ -89,7 +94,7 @@ def code(asked: FirstMoveQuery) -> tuple[str, bool]:
 @pytest.mark.parametrize("described", [False, True])
 def test_a_sample_starts_from_home_and_repeats(name: str, *, described: bool) -> None:
     part = known(name, described=described)
-    seen = FirstMoveChecker().check_first_move(question(part, HOME)._replace(active_tool=0), watch)
+    seen = FirstMoveChecker().check_first_move(question(part, HOME)._replace(active_tool_number=0), watch)
     assert [(each.code, each.warned, each.is_for_repeat) for each in seen.clearances] == [
         ("", "", False),
         ("", "", True),
@@ -109,13 +114,13 @@ def test_start_with_the_tool_inside_assumed_stock_is_only_announced() -> None:
 
 def test_position_is_not_checked_without_an_active_tool() -> None:
     part = part_of(ProgramSource("NO TOOL", "G90G94\nM03S600\nM08\nG01X.4Z-.4F30\nX0.Z0.\nM30\n"))
-    assert code(question(part, HOME)._replace(active_tool=0)) == ("", False)
+    assert code(question(part, HOME)._replace(active_tool_number=0)) == ("", False)
 
 
 def test_first_move_out_of_a_groove_is_refused_with_jog_advice() -> None:
     part = broken_in(known("grooves.nc"), 16)
     assert part.interrupted_job is not None
-    asked = question(part, part.interrupted_job.where)._replace(active_tool=3)
+    asked = question(part, part.interrupted_job.where)._replace(active_tool_number=3)
     found = FirstMoveChecker().check_first_move(asked, watch).start_clearance
     assert found.code == FIRST_MOVE_CROSSES
     assert all(key in found.why for key in ("F6", "F4", "X+"))
@@ -137,18 +142,18 @@ def test_refused_mdi_line_has_an_error_and_a_clear_one_does_not() -> None:
     part = known("knob.nc", described=True)
     proved = ProvedJob(Proof(part.job.digest, ()))
     inside = question(part, tip_at(part, 10.0, -10.0))
-    refused = add_verdict(proved, FirstMoveChecker().check_first_move(inside, watch))
+    refused = add_first_move_verdict(proved, FirstMoveChecker().check_first_move(inside, watch))
     assert [each.code for each in refused.diagnostics] == [TOOL_IN_PART]
     assert refused.proof.errors
-    clear = add_verdict(proved, FirstMoveChecker().check_first_move(question(part, HOME), watch))
+    clear = add_first_move_verdict(proved, FirstMoveChecker().check_first_move(question(part, HOME), watch))
     assert (clear.diagnostics, clear.proof.errors) == ((), ())
     assert clear.first_move_clearance is not None
 
 
 def test_canceled_first_move_check_ends() -> None:
     def given_up(_reached: float = 0.0) -> None:
-        raise AbandonedError
+        raise WorkAbandonedError
 
     part = broken_in(known("knob.nc"), 21)
-    with pytest.raises(AbandonedError):
+    with pytest.raises(WorkAbandonedError):
         FirstMoveChecker().check_first_move(question(part, HOME), given_up)

@@ -10,7 +10,7 @@ from multiprocessing.connection import Connection
 import pytest
 
 from app.compose.control.descriptor_passing import handle_stop_keys, receive_descriptor, send_descriptor
-from app.desk.stop_keys.stop_records import StopKind, StopPress
+from app.desk.stop_keys.stop_records import StopKeyPress, StopKind
 
 LIMIT = 20.0  # s
 
@@ -25,12 +25,12 @@ def ends() -> Iterator[tuple[Connection, Connection]]:
 
 def test_stop_records_are_executed_in_the_order_sent(ends: tuple[Connection, Connection]) -> None:
     screen, control = ends
-    obeyed: queue.Queue[StopPress] = queue.Queue()
+    obeyed: queue.Queue[StopKeyPress] = queue.Queue()
     line, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     with theirs:
         send_descriptor(screen, theirs.fileno())
     handle_stop_keys(receive_descriptor(control), obeyed.put)
-    stops = [StopPress(StopKind.HOLD, 1), StopPress(StopKind.ESTOP, 2), StopPress(StopKind.ESC, 3)]
+    stops = [StopKeyPress(StopKind.HOLD, 1), StopKeyPress(StopKind.ESTOP, 2), StopKeyPress(StopKind.ESC, 3)]
     with line:
         for stop in stops:
             line.send(stop.to_bytes())
@@ -39,15 +39,15 @@ def test_stop_records_are_executed_in_the_order_sent(ends: tuple[Connection, Con
 
 def test_record_of_another_version_is_skipped(ends: tuple[Connection, Connection]) -> None:
     screen, control = ends
-    obeyed: queue.Queue[StopPress] = queue.Queue()
+    obeyed: queue.Queue[StopKeyPress] = queue.Queue()
     line, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     with theirs:
         send_descriptor(screen, theirs.fileno())
     handle_stop_keys(receive_descriptor(control), obeyed.put)
     with line:
         line.send(b"what is this")
-        line.send(StopPress(StopKind.HOLD, 4).to_bytes())
-        assert obeyed.get(timeout=LIMIT) == StopPress(StopKind.HOLD, 4)
+        line.send(StopKeyPress(StopKind.HOLD, 4).to_bytes())
+        assert obeyed.get(timeout=LIMIT) == StopKeyPress(StopKind.HOLD, 4)
 
 
 def test_message_without_a_file_descriptor_is_rejected(ends: tuple[Connection, Connection]) -> None:

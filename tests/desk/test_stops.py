@@ -41,7 +41,9 @@ def test_newest_stop_is_listed_first_with_its_time(log: AlarmLog) -> None:
 
 def test_stop_entry_links_to_the_recording_before_it(log: AlarmLog) -> None:
     log.hear(replace(event("following"), record_name="today-alarm102.scope"))
-    log.add_stored([row(event("following"))._replace(record="before-alarm102.scope"), row(event("estop"))])
+    log.add_stored_entries(
+        [row(event("following"))._replace(record="before-alarm102.scope"), row(event("estop"))]
+    )
     records = [entry.recording_name for entry in log.entries]
     assert records == ["today-alarm102.scope", "before-alarm102.scope", ""]
 
@@ -62,7 +64,7 @@ def test_number_of_stop_entries_is_limited(log: AlarmLog) -> None:
 
 def test_stored_stops_are_listed_after_new_ones(log: AlarmLog) -> None:
     log.hear(event("estop"))
-    log.add_stored([row(event("following", "Z is 1.2 off its setpoint", 7))])
+    log.add_stored_entries([row(event("following", "Z is 1.2 off its setpoint", 7))])
     today, before = log.entries
     assert today.alarm.code == "estop"
     assert before.local_time.startswith("2020-02-0")  # a day that is not today
@@ -95,10 +97,10 @@ def test_every_stored_alarm_is_read_back(code: AlarmCode) -> None:
     ],
 )
 def test_unreadable_stop_event_is_skipped(log: AlarmLog, kind: str, text: str) -> None:
-    log.add_stored([EventRow("rubbish", kind, text, 0)])
+    log.add_stored_entries([EventRow("rubbish", kind, text, 0)])
     assert log.entries == ()
 
 
 def test_invalid_time_is_shown_unchanged(log: AlarmLog) -> None:
-    log.add_stored([row(event("estop"), at="yesterday")])
+    log.add_stored_entries([row(event("estop"), at="yesterday")])
     assert log.entries[0].local_time == "yesterday"

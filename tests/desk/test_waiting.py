@@ -9,9 +9,9 @@ import pytest
 from app.desk.status.machine_status import (
     CANCEL_HINT,
     NOT_HOMED_TITLE,
-    Tone,
+    StatusTone,
     describe_wait,
-    make_status,
+    make_machine_status,
     make_wait_prompt,
 )
 from app.desk.status.prompt_line import MessageKind, PromptLine
@@ -57,11 +57,13 @@ def test_unknown_wait_condition_gives_no_prompt() -> None:
 
 def test_not_homed_is_shown_as_its_own_state() -> None:
     lost = replace(Snapshot(), state=MachineState.IDLE, homed=(True, False, True))
-    view = make_status(lost, ReadoutKind.POSITION, has_c_axis=True)
-    assert (view.state_text, view.state_tone) == (NOT_HOMED_TITLE, Tone.OFF)
-    known = make_status(replace(lost, homed=(True,) * 3), ReadoutKind.POSITION, has_c_axis=True)
-    assert (known.state_text, known.state_tone) == (MachineState.IDLE.value, Tone.READY)
-    off = make_status(replace(lost, state=MachineState.DISABLED), ReadoutKind.POSITION, has_c_axis=True)
+    view = make_machine_status(lost, ReadoutKind.POSITION, has_c_axis=True)
+    assert (view.state_text, view.state_tone) == (NOT_HOMED_TITLE, StatusTone.OFF)
+    known = make_machine_status(replace(lost, homed=(True,) * 3), ReadoutKind.POSITION, has_c_axis=True)
+    assert (known.state_text, known.state_tone) == (MachineState.IDLE.value, StatusTone.READY)
+    off = make_machine_status(
+        replace(lost, state=MachineState.DISABLED), ReadoutKind.POSITION, has_c_axis=True
+    )
     assert off.state_text == MachineState.DISABLED.value  # the drives come first
 
 
@@ -84,10 +86,10 @@ def test_message_survives_state_changes_and_expires_after_four_seconds() -> None
         (0.4, MachineState.HOLD),
         (3.9, MachineState.ESTOP),
     ):
-        answers.remove_expired(replace(Snapshot(), state=state))
+        answers.remove_expired_texts(replace(Snapshot(), state=state))
         assert answers.message
     clock[0] = 4.0
-    answers.remove_expired(replace(Snapshot(), state=MachineState.ESTOP))
+    answers.remove_expired_texts(replace(Snapshot(), state=MachineState.ESTOP))
     assert answers.message == ""
 
 
@@ -98,9 +100,9 @@ def test_question_ends_with_its_state_and_a_message_does_not_replace_it() -> Non
     answers.ask_question("PRESS Y", lambda: done.append("yes"))
     answers.say("REFUSED: NO")
     assert (answers.question_text, answers.message) == ("PRESS Y", "REFUSED: NO")
-    answers.remove_expired(now[0])
+    answers.remove_expired_texts(now[0])
     assert answers.on_confirmed is not None
-    answers.remove_expired(replace(Snapshot(), state=MachineState.ESTOP))
+    answers.remove_expired_texts(replace(Snapshot(), state=MachineState.ESTOP))
     answers.confirm_question(9.0)
     assert not done
 

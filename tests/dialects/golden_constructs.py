@@ -30,14 +30,14 @@ from functools import cache
 from pathlib import Path
 
 from app.compose.machine.machine_files import load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.dialects import SharedProgram, get_code_book
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.code_book import CodeBookEntry
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, ProgramSource
-from core.tool_edges import make_row_number
+from core.tool_edges import make_edge_row_number
 from tests.dialects.golden_rows import Row, row, same
 
 FOLDER = Path(__file__).parents[1] / "programs" / "constructs"
@@ -58,7 +58,7 @@ GROUNDS = {
     Dialect.SINUMERIK: Ground(
         "sinumerik-modulo",
         "EXAMPLE.MPF",
-        {1: ToolOffset(name="ROUGHER", quadrant=3), make_row_number(1, 2): ToolOffset(z=-3.0)},
+        {1: ToolOffset(name="ROUGHER", quadrant=3), make_edge_row_number(1, 2): ToolOffset(z=-3.0)},
     ),
 }
 
@@ -165,7 +165,7 @@ def ran(dialect: Dialect, entry: CodeBookEntry, lines: str, machine: str = "") -
     last = "" if entry.whole else entry.behind + ground.last
     files = tuple(ProgramSource(name, each) for name, each in entry.files)
     source = ProgramSource(ground.name, f"{head}{lines}{tail}{last}", subprograms=files)
-    setup = create_setup(
+    setup = create_power_up_setup(
         load_shipped_machine(machine or ground.machine), tool_offsets=ground.tools, secondary_offsets={}
     )
     run = SharedProgram(source).start_pass(setup)

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.command_parser import assign_screen_options
+from app.cli.command_parser import copy_screen_options
 from app.cli.main import build_parser
 from app.desk.command_errors import CommandError
-from core.page_contents import make_anchor, make_contents
+from core.page_contents import make_anchor, make_table_of_contents
 from tests.documents.pages import DOCS, GENERATED, ROOT, TRANSLATED, Command, Page, is_record, pages
 from tests.glossary import AVOIDED, avoided
 
@@ -197,11 +197,11 @@ def _is_right(command: Command, arguments: list[str]) -> bool:
     """Return whether a command parses; of one that is only named, commands and options must exist."""
     try:
         if command.complete:
-            assign_screen_options(_parser().parse_args(arguments))
+            copy_screen_options(_parser().parse_args(arguments))
             return True
         parser, rest = _named_parser(arguments)
         if parser is _parser() or any(not word.startswith("-") for word in rest):
-            assign_screen_options(_parser().parse_args(arguments))
+            copy_screen_options(_parser().parse_args(arguments))
         return all(
             word.partition("=")[0] in parser._option_string_actions for word in rest if word[:2] == "--"
         )
@@ -261,7 +261,7 @@ def test_markdown_page_is_parsed(tmp_path: Path) -> None:
 
 def test_contents_link_to_the_headings() -> None:
     assert (
-        make_contents(["Tools, offsets", "G02/G03"])
+        make_table_of_contents(["Tools, offsets", "G02/G03"])
         == "- [Tools, offsets](#tools-offsets)\n- [G02/G03](#g02g03)\n"
     )
 

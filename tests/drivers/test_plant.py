@@ -36,11 +36,11 @@ def test_simulation_does_not_depend_on_polling_interval(tick: float) -> None:
     sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.2))
     play(sim, clock, 0.185, tick)
     clock.sleep_until(0.5)
-    looked = sim.machine.get_true_position()
+    looked = sim.machine.get_true_positions()
     other, clock2 = simulation()
     other.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.2))
     clock2.sleep_until(0.5)
-    assert other.machine.get_true_position() == looked
+    assert other.machine.get_true_positions() == looked
 
 
 def test_jammed_axis_trips_and_disables_the_others() -> None:
@@ -79,14 +79,14 @@ def test_each_stop_mode_brakes_as_specified(how: StopMode) -> None:
     sim, clock = simulation()
     sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.6))
     play(sim, clock, 0.2)
-    before = sim.machine.get_true_position()[0]
+    before = sim.machine.get_true_positions()[0]
     sim.ports.axes.stop(how)
     play(sim, clock, 0.3)
     sample = sim.ports.axes.sample()
     assert not sample.moving
     assert sample.enabled == (how is StopMode.RAMP_HOLD)
     # v²/2a = 2.36 mm braked and the following error; friction alone takes 4.7 mm
-    assert sim.machine.get_true_position()[0] - before < (2.6 if how is not StopMode.OFF else 4.8)
+    assert sim.machine.get_true_positions()[0] - before < (2.6 if how is not StopMode.OFF else 4.8)
 
 
 def test_drives_refuse_setpoints_when_off_faulted_or_outside() -> None:
@@ -103,7 +103,7 @@ def test_drives_refuse_setpoints_when_off_faulted_or_outside() -> None:
     sim.machine.drive_fault("Z", "overtemperature")
     with raises_code(DriverError, "axis", "Z: overtemperature"):
         sim.ports.axes.splice(ramp(0.03, ZERO, 60.0, 0.1))
-    assert sim.machine.get_true_position() == ZERO
+    assert sim.machine.get_true_positions() == ZERO
     assert clock.now() == 0.0
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from core.ports import FloatArray, MotionSegments, StopMode
-from drivers.port_checks import SampleLog
+from drivers.port_checks import SampleRingBuffer
 from drivers.simulated.simulated_machine import Simulation
 from drivers.simulators import plant
 from tests.drivers.machines import play, ramp, simulation
@@ -19,7 +19,7 @@ T, DEMAND, ACTUAL, LOAD, SPEED, TURNS, SPINDLE_LOAD, QUEUE = 0, 1, 4, 7, 10, 11,
 
 def taken(sim: Simulation) -> FloatArray:
     assert sim.ports.samples is not None
-    return sim.ports.samples.take()
+    return sim.ports.samples.take_samples()
 
 
 def test_motion_is_sampled_on_the_model_grid_with_the_expected_error() -> None:
@@ -143,7 +143,7 @@ def test_unread_samples_are_limited_to_the_last_eight_seconds() -> None:
 
 
 def test_sample_log_returns_each_row_once_oldest_first() -> None:
-    log = SampleLog(0, capacity=4)
+    log = SampleRingBuffer(0, capacity=4)
     for n in range(6):
         log.append_row(float(n), 0.0, 0.0, 0.0, 0.0)
     assert log.pop_rows(3)[:, T].tolist() == [2.0, 3.0, 4.0]
@@ -154,7 +154,7 @@ def test_sample_log_returns_each_row_once_oldest_first() -> None:
 
 def test_rows_added_as_a_block_match_rows_added_one_by_one() -> None:
     for count in (1, 3, 4, 5, 9):
-        single, block = SampleLog(0, capacity=4), SampleLog(0, capacity=4)
+        single, block = SampleRingBuffer(0, capacity=4), SampleRingBuffer(0, capacity=4)
         rows = np.arange(5.0 * count).reshape(count, 5)
         for log in (single, block):
             log.append_row(-2.0, 0.0, 0.0, 0.0, 0.0)

@@ -9,17 +9,17 @@ from core.faults import DriverError, Fault
 from core.message import Message
 from core.ports import TouchLatch
 from drivers.port_checks import (
-    FirstTouchInput,
+    FirstTouchLatch,
     find_output,
-    require_axis,
-    require_free_drive,
+    require_drive_power,
+    require_existing_axis,
+    require_free_spindle_drive,
     require_no_homing,
     require_output_allowed,
-    require_power,
 )
 
 
-class Touch(FirstTouchInput):
+class Touch(FirstTouchLatch):
     def see(self, t: float, *, on: bool) -> None:
         if self._is_first_touch(on):
             self._kept = TouchLatch(t, (), 0.001)
@@ -45,13 +45,13 @@ def test_forwarded_fault_retains_its_code_in_another_process() -> None:
 @pytest.mark.parametrize(
     ("order", "code", "reason"),
     [
-        (lambda: require_power(Fault("Z: drive fault", "following"), is_powered=True), "following", ""),
-        (lambda: require_power("cable out", is_powered=True), "axis", ""),
-        (lambda: require_power("", is_powered=False), "power-lost", ""),
+        (lambda: require_drive_power(Fault("Z: drive fault", "following"), is_powered=True), "following", ""),
+        (lambda: require_drive_power("cable out", is_powered=True), "axis", ""),
+        (lambda: require_drive_power("", is_powered=False), "power-lost", ""),
         (lambda: require_no_homing("X"), "driver", "homing"),
-        (lambda: require_axis("Q", "XZ"), "driver", "no-axis"),
-        (lambda: require_free_drive(is_enabled=False, is_turning=True), "c-coupling", "drives-off"),
-        (lambda: require_free_drive(is_enabled=True, is_turning=True), "c-coupling", "spindle-turns"),
+        (lambda: require_existing_axis("Q", "XZ"), "driver", "no-axis"),
+        (lambda: require_free_spindle_drive(is_enabled=False, is_turning=True), "c-coupling", "drives-off"),
+        (lambda: require_free_spindle_drive(is_enabled=True, is_turning=True), "c-coupling", "spindle-turns"),
         (lambda: find_output("lamp", {"collet": 1}), "output", ""),
         (lambda: require_output_allowed("lamp", True, "cable out"), "output", ""),
     ],
@@ -65,10 +65,10 @@ def test_require_functions_raise_the_stated_code_and_reason(
 
 
 def test_permitted_operations_are_not_rejected() -> None:
-    require_power("", is_powered=True)
+    require_drive_power("", is_powered=True)
     require_no_homing("")
-    require_axis("X", "XZ")
-    require_free_drive(is_enabled=True, is_turning=False)
+    require_existing_axis("X", "XZ")
+    require_free_spindle_drive(is_enabled=True, is_turning=False)
     require_output_allowed("lamp", False, "cable out")
     assert find_output("collet", {"collet": 1}) == 1
 

@@ -80,7 +80,7 @@ def test_faults_and_tips_are_read_in_order() -> None:
         "tips = [{ x = 1.0, z = 2.0 }, { x = -1.0, z = 0.0 }]"
     )
     assert table.faults == (PlannedFault(12.0, "jam", "Z"), PlannedFault(1.0, "estop"))
-    assert table.tips == ((25.4, 50.8), (-25.4, 0.0))  # the lathe's file counts in inches
+    assert table.tool_tip_positions == ((25.4, 50.8), (-25.4, 0.0))  # the lathe's file counts in inches
     assert table_with("").faults == ()
 
 
@@ -123,7 +123,7 @@ def test_axis_counts_as_moving_from_a_hundredth_millimeter_per_second(speed: flo
 
 @pytest.mark.parametrize("measures", [True, False])
 def test_spindle_load_is_reported_only_with_a_load_input(measures: bool) -> None:
-    sim, clock = simulation(dataclasses.replace(CONFIG, has_load_input=measures))
+    sim, clock = simulation(dataclasses.replace(CONFIG, has_spindle_load_input=measures))
     play(sim, clock, 0.1)
     assert (sim.ports.station.read_state().spindle_load is not None) is measures
 
@@ -179,4 +179,4 @@ def test_unknown_axes_and_outputs_are_reported_by_name() -> None:
 def test_sample_rate_matches_the_step_time() -> None:
     sim, _ = simulation()
     assert sim.ports.samples is not None
-    assert sim.ports.samples.sample_rate_hz == pytest.approx(1.0 / CONFIG.step_s)
+    assert sim.ports.samples.sample_rate_hz == pytest.approx(1.0 / CONFIG.model_step_s)

@@ -49,7 +49,7 @@ def test_errors_after_a_disconnection_are_each_one_line() -> None:
     os.write(far, b"G90\n")
     assert wire.receive(1.0) == b"G90\n"
     os.close(far)
-    for ask in (lambda: wire.receive(0.0), lambda: wire.send(b"x"), lambda: wire.send_available(b"x")):
+    for ask in (lambda: wire.receive(0.0), lambda: wire.send(b"x"), lambda: wire.send_available_bytes(b"x")):
         with raises_code(SerialLineError, "driver", name) as told:
             ask()
         assert told.value.reason == "failed"
@@ -61,12 +61,12 @@ def test_line_with_a_full_buffer_accepts_nothing_and_can_be_closed() -> None:
     """What the kernel holds is known, can be dropped, and does not keep the port."""
     far, near = open_pty()
     wire = SerialPort(LineSettings(os.ttyname(near)))
-    taken = wire.send_available(b"X" * 4096)
+    taken = wire.send_available_bytes(b"X" * 4096)
     # The kernel moves what it holds on to the far side, which makes room once more.
     while select.select([], [near], [], 0.2)[1]:
-        taken += wire.send_available(b"X" * 4096)
+        taken += wire.send_available_bytes(b"X" * 4096)
     assert taken > 4096
-    assert wire.send_available(b"X") == 0
+    assert wire.send_available_bytes(b"X") == 0
     wire.discard_output()
     wire.discard_input()
     assert wire.receive(0.0) == b""
@@ -81,8 +81,8 @@ def test_damage_is_not_counted_without_parity() -> None:
         wire = SerialPort(LineSettings(os.ttyname(near)), count_damaged=watch)
         os.write(far, b"\xff\x01")
         assert wire.receive(1.0) == b"\xff\x01"
-        assert wire.damaged_count == 0
-        assert wire.count_unsent() == 0
+        assert wire.damaged_character_count == 0
+        assert wire.count_unsent_bytes() == 0
         wire.close()
     os.close(near)
     os.close(far)

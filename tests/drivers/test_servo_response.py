@@ -38,7 +38,7 @@ def test_predicted_response_matches_stepping(
     response = glided.predict_response(setpoints, steps)
     assume(response is not None)
     assert response is not None
-    glided.follow_response(setpoints, response, steps)
+    glided.apply_response(setpoints, response, steps)
     for k in range(steps):
         t = k * DT
         assert not stepped.follow_setpoint(start + off + (speed + 0.5 * accel * t) * t, speed + accel * t, DT)
@@ -80,8 +80,8 @@ def test_following_window_includes_the_initial_offset() -> None:
 @pytest.mark.parametrize(("share", "foreseen"), [(0.9, True), (1.1, False)])
 def test_force_of_the_first_step_limits_the_prediction(share: float, foreseen: bool) -> None:
     """In its fast mode alone the servo needs more force in the first step than in all that follow."""
-    loop = ServoLoop(2.0 * math.pi * SLIDE.bandwidth_hz * DT, SLIDE.feed_forward)
-    first = share * SLIDE.amax * SLIDE.accel_reserve * DT * DT
+    loop = ServoLoop(2.0 * math.pi * SLIDE.bandwidth_hz * DT, SLIDE.feed_forward_fraction)
+    first = share * SLIDE.amax * SLIDE.acceleration_reserve_factor * DT * DT
     p = first * loop.fast_mode / loop.fast_curvature
     servo = moving(p, (p - p / loop.fast_mode) / DT)
     assert (servo.predict_response(SetpointPolynomial(0.0, 0.0, 0.0), 50) is not None) is foreseen

@@ -22,11 +22,11 @@ T, DEMAND, ACTUAL, SPEED, TURNS = 0, 1, 4, 10, 11
 def moved(sim: Simulation, clock: ManualClock, speed: float, seconds: float) -> FloatArray:
     """X at an even speed; the samples of the last 60 % of the way."""
     assert sim.ports.samples is not None
-    sim.ports.samples.take()
+    sim.ports.samples.take_samples()
     begin = sim.ports.axes.now() + 0.03
     sim.ports.axes.splice(ramp(begin, sim.ports.axes.demand_at(begin)[0], speed, seconds))
     play(sim, clock, seconds + 0.3)
-    rows = sim.ports.samples.take()
+    rows = sim.ports.samples.take_samples()
     ramped = abs(speed) / 3048.0 + 0.001
     first, last = begin + ramped + 0.4 * seconds, begin + ramped + seconds - 0.01
     return rows[(rows[:, T] > first) & (rows[:, T] < last)]
@@ -91,8 +91,8 @@ def test_counts_missed_once_a_revolution_cause_a_step_of_that_size() -> None:
     assert np.diff(steps) == pytest.approx(100, abs=2)  # ms: 5 mm at 50 mm/s
     assert off.max() == pytest.approx(0.03, abs=0.004)
     assert np.median(off) == pytest.approx(0.0, abs=2 * COUNT)  # the drive goes by it: the slide is wrong
-    lost = sim.machine.get_true_position()[0] - sim.ports.axes.sample().actual[0]
-    assert lost == pytest.approx(0.03 * math.floor(sim.machine.get_true_position()[0] / 5.0), abs=COUNT)
+    lost = sim.machine.get_true_positions()[0] - sim.ports.axes.sample().actual[0]
+    assert lost == pytest.approx(0.03 * math.floor(sim.machine.get_true_positions()[0] / 5.0), abs=COUNT)
 
 
 def test_belt_slips_only_in_a_cut_and_revolutions_match_the_speed() -> None:

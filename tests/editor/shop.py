@@ -8,7 +8,7 @@ from hashlib import sha256
 from pathlib import Path
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from app.compose.program_proving import create_proof
 from app.desk.background_work import ProgressCallback
 from app.desk.programs.program_loading import LoadingSteps, ProvedJob
@@ -21,7 +21,7 @@ from core.language.source import ProgramSource, load_source
 from core.proving.program_timeline import Timeline, iter_timed_blocks
 from core.proving.prove_program import prove
 from core.store.store_errors import StoreError
-from core.store.store_rows import VersionRow
+from core.store.store_rows import ProgramVersionRow
 
 GOOD = "G90G94F300G72\nT1\nM03S1000\nX1Z.1\nZ-.5\nM05\nM30\n"
 TOOLS = {1: ToolOffset(-12.7, -76.2)}
@@ -34,9 +34,9 @@ class Memory:
     kept: dict[str, list[tuple[bytes, str]]] = field(default_factory=dict)
     full: bool = False
 
-    def versions(self, name: str) -> tuple[VersionRow, ...]:
+    def versions(self, name: str) -> tuple[ProgramVersionRow, ...]:
         rows = [
-            VersionRow(n, sha256(text).hexdigest(), "2026-03-01T10:00:00.000Z", why, len(text))
+            ProgramVersionRow(n, sha256(text).hexdigest(), "2026-03-01T10:00:00.000Z", why, len(text))
             for n, (text, why) in enumerate(self.kept.get(name, []), 1)
         ]
         return tuple(reversed(rows))
@@ -58,7 +58,9 @@ def workshop() -> LoadingSteps:
     lathe = load_machine(None)
 
     def make_job(source: ProgramSource, block_delete: bool) -> Job:
-        setup = create_setup(lathe, tool_offsets=TOOLS, secondary_offsets={}, block_delete=block_delete)
+        setup = create_power_up_setup(
+            lathe, tool_offsets=TOOLS, secondary_offsets={}, block_delete=block_delete
+        )
         return Job(source, setup, source.text, SharedProgram(source), frozenset(TOOLS))
 
     def proved(job: Job, watch: ProgressCallback) -> ProvedJob:

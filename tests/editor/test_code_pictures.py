@@ -60,7 +60,7 @@ def test_tip_quadrants_are_drawn_in_their_directions() -> None:
     drawn = make_code_sketch("T")
     assert drawn is not None
     for dim in drawn.dimensions:
-        z, x = TIP_DIRECTIONS[int(dim.field_word)]
+        z, x = TIP_DIRECTIONS[int(dim.field_label)]
         assert (math.copysign(1, dim.start[0]) if z else 0, math.copysign(1, dim.start[1]) if x else 0) == (
             z,
             x,

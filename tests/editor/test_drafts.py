@@ -78,13 +78,13 @@ def test_text_typed_before_a_crash_is_in_the_history(start: Start, memory: Memor
 
 def test_text_of_an_unsaved_new_file_is_recovered(start: Start, memory: Memory) -> None:
     dead = start()
-    dead.offer_new("new.nc")
+    dead.offer_new_document("new.nc")
     dead.create_document()
     settle(dead)
     dead.update_text(TYPED)
     settle(dead)
     after = start()
-    after.offer_new("new.nc")
+    after.offer_new_document("new.nc")
     after.create_document()
     settle(after)
     assert after.stage is EditorStage.OPEN

@@ -111,7 +111,7 @@ def test_first_save_of_a_file_changed_on_disk_reports_the_change(editor: EditorM
 def test_new_file_is_not_saved_under_an_existing_name(editor: EditorModel) -> None:
     own(editor, "part.nc")
     editor.discard_and_leave(editor.text)
-    editor.offer_new("part")
+    editor.offer_new_document("part")
     editor.create_document()
     assert editor.message == messages.NAME_EXISTS.format("part.nc")
     assert editor.stage is EditorStage.OFFERED
@@ -147,7 +147,7 @@ def test_sample_of_another_language_retains_its_extension(editor: EditorModel) -
 
 def test_new_program_has_the_extension_of_the_machine_language(editor: EditorModel) -> None:
     editor.default_extension = ".h"
-    editor.offer_new("roof")
+    editor.offer_new_document("roof")
     editor.create_document()
     assert editor.document is not None
     assert editor.document.name == "roof.h"

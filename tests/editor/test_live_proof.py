@@ -11,7 +11,7 @@ import pytest
 
 from app.desk.background_work import ProgressCallback
 from app.desk.programs.program_loading import ProvedJob
-from app.editor.live_proof import LiveProof, ProofFindings, map_by_line
+from app.editor.live_proof import LiveProof, ProofFindings, map_findings_by_line
 from core.executor.job import Job, Proof
 from core.language.diagnostics import Diagnostic, Severity
 from tests.editor.shop import GOOD, workshop
@@ -120,4 +120,4 @@ def test_prover_failure_is_reported_and_next_text_is_proved() -> None:
 def test_most_severe_finding_of_a_line_is_shown() -> None:
     note = Diagnostic(3, 1, Severity.NOTE, "n", "note")
     error = Diagnostic(3, 5, Severity.ERROR, "e", "error")
-    assert map_by_line((note, error, replace(error, code="second"))) == {3: error}
+    assert map_findings_by_line((note, error, replace(error, code="second"))) == {3: error}

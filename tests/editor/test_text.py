@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from app.editor.edited_document import InvalidNameError, make_program_name
-from app.editor.question_view import TextSearch, find_preceding, following
+from app.editor.edited_document import InvalidProgramNameError, make_program_name
+from app.editor.question_view import TextSearch, find_preceding_position, following
 from app.editor.version_history import DifferenceRow as Row
 from app.editor.version_history import compare_texts
 from core.language.source import Dialect, get_default_extension, guess_dialect
@@ -36,12 +36,12 @@ def test_empty_search_finds_no_matches() -> None:
     assert TextSearch("").find_matches(TEXT) == ()
     assert TextSearch("Q9").words(TEXT) == "NOT FOUND"
     assert following((), 3) is None
-    assert find_preceding((), 3) is None
+    assert find_preceding_position((), 3) is None
 
 
 def test_search_wraps_around() -> None:
     assert [following((2, 5), at) for at in (0, 2, 3, 6)] == [2, 2, 5, 2]
-    assert [find_preceding((2, 5), at) for at in (9, 5, 2)] == [5, 2, 5]
+    assert [find_preceding_position((2, 5), at) for at in (9, 5, 2)] == [5, 2, 5]
 
 
 def test_differences_show_lines_with_both_numbers() -> None:
@@ -96,5 +96,5 @@ def test_default_extension_maps_back_to_its_dialect(dialect: Dialect) -> None:
     "typed", ["", "  ", ".pin", "a/b", "..", "a\\b", "pin.exe", "a:b", "NUL.nc", "pin.", "x" * 300]
 )
 def test_invalid_program_name_is_rejected(typed: str) -> None:
-    with pytest.raises(InvalidNameError):
+    with pytest.raises(InvalidProgramNameError):
         make_program_name(typed, ".nc")

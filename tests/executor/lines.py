@@ -8,14 +8,14 @@ from dataclasses import replace
 from app.compose.machine.machine_setup import get_control_limits
 from app.compose.program_proving import create_proof
 from app.searchto.restart_plan import read_machine_state
-from core.executor.commands import CycleStart, PrepareStart
+from core.executor.commands import CycleStart, PrepareCycleStart
 from core.executor.job import Job, make_job
 from core.executor.snapshot import MachineState, StartAction
-from core.interpreter.restart.restart_approach import OperatorChoices, make_lathe_start
+from core.interpreter.restart.restart_approach import OperatorChoices, make_lathe_pass_start
 from core.interpreter.restart.restart_point import RestartPoint
-from core.interpreter.restart.state_rebuild import OmniturnSearch
+from core.interpreter.restart.state_rebuild import OmniturnRestartSearch
 from core.interpreter.shared.checkpoint import Checkpoint, PassStart
-from core.interpreter.shared.job_setup import Setup, ToolOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset
 from core.language.diagnostics import Diagnostic
 from core.language.source import Dialect, ProgramSource
 from core.proving.prove_program import prove
@@ -28,7 +28,7 @@ def line_job(rig: Rig, text: str, tools: Mapping[int, ToolOffset] = TOOLS) -> Jo
     """The job of a line at the machine as it stands."""
     shot = rig.shot
     point = Checkpoint(shot.modal, tool_line=-1 if shot.is_tool_move_pending else 0)
-    setup = Setup(
+    setup = InterpreterSetup(
         tools=tools,
         limits=get_control_limits(rig.machine),
         start=shot.demand,
@@ -51,9 +51,9 @@ def press(rig: Rig, text: str) -> None:
     job = line_job(rig, text)
     report = prove(job.source, job.setup, rig.machine)
     assert not report.errors, report.errors
-    rig.post(PrepareStart(StartAction.MDI_LINE, job, create_proof(job, report)))
+    rig.post(PrepareCycleStart(StartAction.MDI_LINE, job, create_proof(job, report)))
     rig.post(CycleStart())
-    assert not rig.shot.start_refusal, rig.shot.start_refusal
+    assert not rig.shot.start_refusal_reason, rig.shot.start_refusal_reason
 
 
 def mdi(rig: Rig, *lines: str) -> None:
@@ -68,10 +68,10 @@ def restart_job(rig: Rig, line: int, choices: OperatorChoices | None = None, num
     whole = rig.executor._control.status.job
     assert whole is not None
     now = read_machine_state(rig.shot, whole)
-    found = OmniturnSearch(whole.source, whole.setup, lambda _count: None).find_restart(
+    found = OmniturnRestartSearch(whole.source, whole.setup, lambda _count: None).find_restart_point(
         line, number, now.interruption
     )
     if not isinstance(found, RestartPoint):
         return None
-    begin = make_lathe_start(found, now, choices or OperatorChoices())
+    begin = make_lathe_pass_start(found, now, choices or OperatorChoices())
     return make_job(whole.source, replace(whole.setup, start=rig.shot.demand, begin=begin), whole)

@@ -22,7 +22,7 @@ from core.executor.commands import (
     HomeAxes,
     Jog,
     JogByStep,
-    PrepareStart,
+    PrepareCycleStart,
     Reset,
     SelectHandwheel,
     SetFeedOverride,
@@ -277,12 +277,12 @@ class ExecutorModel(RuleBasedStateMachine):
         report = prove(job.source, job.setup, machine.machine)
         if report.errors:
             return
-        machine.post(PrepareStart(StartAction.MDI_LINE, job, create_proof(job, report)))
+        machine.post(PrepareCycleStart(StartAction.MDI_LINE, job, create_proof(job, report)))
         machine.run(0.4)
         if starts:
             self._start(lambda: machine.executor.post(CycleStart()))
             machine.run(1.5)
-        machine.post(PrepareStart(StartAction.PROGRAM))
+        machine.post(PrepareCycleStart(StartAction.PROGRAM))
 
     @rule(line=st.integers(1, 9))
     def restarts(self, line: int) -> None:
@@ -299,7 +299,7 @@ class ExecutorModel(RuleBasedStateMachine):
         report = prove(job.source, job.setup, machine.machine)
         if report.errors:
             return
-        machine.post(PrepareStart(StartAction.RESTART, job, create_proof(job, report)))
+        machine.post(PrepareCycleStart(StartAction.RESTART, job, create_proof(job, report)))
         machine.run(0.4)
         self._start(lambda: machine.executor.post(CycleStart()))
         machine.run(1.0)
@@ -430,7 +430,7 @@ class ExecutorModel(RuleBasedStateMachine):
             machine.homed = True
             machine.post(HomeAxes())
             machine.until(MachineState.IDLE, limit=120.0)
-        machine.post(PrepareStart(StartAction.PROGRAM), StopSpindle(), ForceOutput("collet", True))
+        machine.post(PrepareCycleStart(StartAction.PROGRAM), StopSpindle(), ForceOutput("collet", True))
         machine.run(3.0)
         self._back_into_the_travel()
         machine.load(SAFE)
@@ -440,7 +440,7 @@ class ExecutorModel(RuleBasedStateMachine):
         parts = machine.shot.parts
         machine.pressed = True
         machine.post(CycleStart())
-        assert not machine.shot.start_refusal, machine.shot.start_refusal
+        assert not machine.shot.start_refusal_reason, machine.shot.start_refusal_reason
         for _ in range(3000):
             if machine.state is MachineState.IDLE:
                 break
@@ -490,7 +490,7 @@ class ExecutorModel(RuleBasedStateMachine):
             and old in CYCLE_STATES | {MachineState.IDLE, MachineState.DISABLED}
         ):
             said = len(machine.said("refused")) > refused or self._acted() > starts
-            assert said or recent or machine.shot.start_refusal, f"{old}: a start says nothing"
+            assert said or recent or machine.shot.start_refusal_reason, f"{old}: a start says nothing"
 
     def _acted(self) -> int:
         """How often something was begun or gone on with, as the log has it."""

@@ -26,7 +26,7 @@ from core.executor.snapshot import (
 )
 from core.executor.start_conditions import MIN_READING_TIME_S
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.ports import UnknownPart
 from tests.executor.rig import Rig
 from tests.texts import pattern
@@ -108,7 +108,7 @@ SEEN = Seen()
 class Machine(Rig):
     """A rig whose ports break and that checks every tick."""
 
-    def _passes(self, job: Job, setup: Setup) -> ProgramPass:
+    def _passes(self, job: Job, setup: InterpreterSetup) -> ProgramPass:
         self.blocks: list[Block] = []
         whole = super()._passes(job, setup)
         return whole._replace(block_iterator=self._kept(whole.block_iterator))
@@ -157,9 +157,9 @@ class Machine(Rig):
             port.breaks.clear()
         hands, began = self.sim.machine, self.clock.now()
         for _ in range(round(RUNS_OUT / self.every)):
-            place = hands.get_true_position()
+            place = hands.get_true_positions()
             self.clock.advance(self.every)
-            way = math.dist(hands.get_true_position()[:2], place[:2])
+            way = math.dist(hands.get_true_positions()[:2], place[:2])
             at_rest = self.clock.now() - began > SETTLES
             assert not at_rest or way < STILL or self.blind, f"{way} mm after TurnDesk was closed"
         assert not self.true_ports.axes.sample().enabled, "the drives are on after TurnDesk was closed"
@@ -196,7 +196,7 @@ class Machine(Rig):
     def tick(self, dt: float | None = None) -> None:
         """One tick, and all that must hold after it."""
         dt = self.every if dt is None else dt
-        before, place = self.shot, self.sim.machine.get_true_position()
+        before, place = self.shot, self.sim.machine.get_true_positions()
         self._setpoints(dt)
         self.clock.advance(dt)
         self._release()
@@ -245,7 +245,7 @@ class Machine(Rig):
             return
         steps = min(max(round(dt / FINE), 1), 60)
         looks = [axes.demand_at(now + k * dt / steps) for k in range(steps + 1)]
-        corner = self.machine.timing.setpoint  # s in which a corner may turn
+        corner = self.machine.timing.setpoint_duration_s  # s in which a corner may turn
         for (p0, v0), (p1, v1) in pairwise(looks):
             h = dt / steps
             for axis, a, b, va, vb in zip(self.machine.axes, p0, p1, v0, v1, strict=True):
@@ -294,7 +294,7 @@ class Machine(Rig):
             assert self.jogged, f"{old.state} became a jog and nobody asked for one"
         if new.state is MachineState.HOMING and old.state is not MachineState.HOMING:
             assert self.homed
-        way = math.dist(self.sim.machine.get_true_position()[:2], place[:2])
+        way = math.dist(self.sim.machine.get_true_positions()[:2], place[:2])
         if new.state not in MOVES and new.t - self.stood > SETTLES + dt:
             # How far a slide goes behind an encoder that stands is measured in test_following_error.
             assert way < STILL or self.blind, f"{way} mm in {new.state}"
@@ -343,7 +343,7 @@ class Machine(Rig):
         ):
             return
         if new.t - self.stood > SETTLES and all(new.homed):
-            true = self.sim.machine.get_true_position()
+            true = self.sim.machine.get_true_positions()
             assert max(abs(a - b) for a, b in zip(new.actual, true, strict=True)) < 0.2, (new.actual, true)
 
     def _stopped_is_off(self, new: Snapshot, dt: float) -> None:

@@ -21,7 +21,7 @@ from drivers.wakeups import ManualClock
 class PlayedController:
     """``ops`` are the blocks that it was given, ``asked`` what else was asked of it, in order."""
 
-    max_lead_s: float = 100.0
+    max_queued_motion_s: float = 100.0
     css_max_rpm: float = math.inf
     room: int = 100  # blocks that it takes in all
     fast: float = 50.0  # mm/s of its slides
@@ -36,10 +36,10 @@ class PlayedController:
     jogged: list[tuple[str, float, float, tuple[float, float] | None]] = field(default_factory=list)
     steps: list[tuple[str, float, float]] = field(default_factory=list)
 
-    def prepare_css(self, max_rpm: float) -> None:
+    def announce_css_max_rpm(self, max_rpm: float) -> None:
         """Not used here."""
 
-    def get_max_line_speed(self, _dx: float, _dz: float) -> float:
+    def get_max_directional_speed(self, _dx: float, _dz: float) -> float:
         return self.fast
 
     def submit_block(self, block: BlockOperation) -> int | None:
@@ -56,7 +56,7 @@ class PlayedController:
     def state(self) -> BlockState:
         return BlockState(self.done, 0, self.resting, self.held, self.hindrance)
 
-    def hold_on_path(self) -> None:
+    def stop_on_path(self) -> None:
         self.asked.append("hold")
 
     def resume(self) -> None:
@@ -74,7 +74,7 @@ class PlayedController:
         self.jogged.append((axis, velocity, lease_s, limits))
         return self.jogs
 
-    def move_by_step(self, axis: str, target: float, speed: float) -> None:
+    def move_to_target(self, axis: str, target: float, speed: float) -> None:
         self.steps.append((axis, target, speed))
 
     def stop_jog(self) -> None:

@@ -15,7 +15,7 @@ from core.executor.executor import Executor
 from core.executor.job import Job, ProgramPass, Proof, make_job, start_program_pass
 from core.executor.snapshot import InterruptedJob, LogEvent, MachineState, Snapshot
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.shared.job_setup import Setup, ToolOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset
 from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
 from drivers.simulated.simulated_machine import Simulation
@@ -60,7 +60,7 @@ class Rig:
         )
         self.executor.run_tick()
 
-    def _passes(self, job: Job, setup: Setup) -> ProgramPass:
+    def _passes(self, job: Job, setup: InterpreterSetup) -> ProgramPass:
         return start_program_pass(job, setup) if self.made is None else ProgramPass(iter(self.made), list)
 
     @property
@@ -113,7 +113,7 @@ class Rig:
         """Load a program with a proof that has nothing against it."""
         if self.made is not None:
             changes.setdefault("metric", self.shot.modal.metric)  # what stands in for a program needs no unit
-        setup = Setup(
+        setup = InterpreterSetup(
             tools=dict(tools or {}),
             limits=get_control_limits(self.machine),
             last_rapid=self.machine.limits.manual_rapid,

@@ -12,7 +12,7 @@ from core.executor.snapshot import MachineState
 from core.interpreter.dialects import interpret_program
 from core.interpreter.shared.actions import Dwell, ProgramEnd
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.language.diagnostics import Severity
 from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
@@ -50,7 +50,7 @@ class QuickRig(Rig):
 
     blocks: list[Block] = field(default_factory=list)  # of the last pass
 
-    def _passes(self, job: Job, setup: Setup) -> ProgramPass:
+    def _passes(self, job: Job, setup: InterpreterSetup) -> ProgramPass:
         self.blocks = []
         whole = start_program_pass(job, setup)
         return whole._replace(block_iterator=self._kept(whole.block_iterator))
@@ -61,7 +61,7 @@ class QuickRig(Rig):
             yield _quick(block)
 
 
-def has_errors(source: ProgramSource, setup: Setup) -> bool:
+def has_errors(source: ProgramSource, setup: InterpreterSetup) -> bool:
     """Whether a program is refused."""
     program = interpret_program(source, setup)
     for _ in program.generate_blocks():
@@ -94,7 +94,7 @@ def _answered(rig: Rig) -> None:
 
 
 def stepped_through(
-    source: ProgramSource, setup: Setup, machine: Machine, limit: int = 2000
+    source: ProgramSource, setup: InterpreterSetup, machine: Machine, limit: int = 2000
 ) -> tuple[QuickRig, list[int]]:
     """The rig at the end, and the block at which each start of single block ended."""
     rig = QuickRig(machine=dataclasses.replace(with_room(machine), is_inch=not setup.metric))

@@ -211,11 +211,11 @@ def test_driver_reports_settled_only_once_it_is_settled(act: Callable[[Rig], Non
     rig = rested()
     wakeup = rig.sim.ports.wakeup
     assert wakeup is not None
-    assert wakeup.is_settled()
+    assert wakeup.can_rely_on_wakeups()
     act(rig)
-    assert not wakeup.is_settled()
+    assert not wakeup.can_rely_on_wakeups()
     rig.clock.advance(seconds)
-    assert wakeup.is_settled()
+    assert wakeup.can_rely_on_wakeups()
 
 
 def test_machine_with_a_planned_fault_never_settles() -> None:
@@ -223,7 +223,7 @@ def test_machine_with_a_planned_fault_never_settles() -> None:
     config = replace(create_sim_config(load_machine()), planned_faults=faults)
     ports, _hands = build_simulation(config, ManualClock())
     assert ports.wakeup is not None
-    assert not ports.wakeup.is_settled()
+    assert not ports.wakeup.can_rely_on_wakeups()
 
 
 def test_drivers_without_wakeup_are_polled_every_tick() -> None:
@@ -244,7 +244,7 @@ def test_driver_failure_in_settled_query_raises_an_alarm(
     def broken() -> bool:
         raise DriverError("the wire is cut")
 
-    monkeypatch.setattr(rig.sim.ports.wakeup, "is_settled", broken)
+    monkeypatch.setattr(rig.sim.ports.wakeup, "can_rely_on_wakeups", broken)
     assert not rig.executor.wait_at_rest()
     rig.tick()
     assert rig.state is MachineState.FAULT

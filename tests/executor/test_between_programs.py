@@ -9,11 +9,11 @@ from core.executor.commands import (
     CycleStart,
     FeedHold,
     ForceOutput,
-    PrepareStart,
+    PrepareCycleStart,
     Reset,
     SetSpindleLimit,
     StopSpindle,
-    UseOffsets,
+    UseOffsetTables,
 )
 from core.executor.control_status import make_modal_state_after_cancel
 from core.executor.snapshot import MachineState, StartAction
@@ -40,7 +40,7 @@ def test_m30_retains_units_and_tool_offset_and_m02_also_m_functions() -> None:
     rig.until(MachineState.IDLE)
     left = rig.shot.modal
     assert (left.metric, left.diameter, left.per_rev, left.absolute) == (True, False, False, None)
-    assert (left.tool, left.tool_x, left.tool_z) == (1, -12.7, -50.8)
+    assert (left.tool, left.tool_offset_x, left.tool_offset_z) == (1, -12.7, -50.8)
     assert (left.spindle, left.rpm, left.coolant) == (1, 900.0, True)
     assert rig.shot.offset == (-12.7, -50.8)
     assert rig.shot.requested_rpm == 900.0
@@ -81,7 +81,7 @@ def test_changed_offsets_count_at_once_for_the_loaded_tool() -> None:
     rig.start("G90G94F300\nT1D3\nX1Z.5\nM02\n", TOOLS)
     rig.until(MachineState.IDLE)
     assert rig.shot.offset == (-12.7, -50.8)
-    rig.post(UseOffsets({1: ToolOffset(-12.0, -50.0)}, {}))
+    rig.post(UseOffsetTables({1: ToolOffset(-12.0, -50.0)}, {}))
     assert rig.shot.offset == (-12.0, -50.0)
     assert rig.shot.modal.tool == 1
     assert rig.said("offsets") == [text("executor.offsets-in-force")]
@@ -91,7 +91,7 @@ def test_changed_offsets_are_refused_while_a_program_is_under_way() -> None:
     rig = Rig()
     rig.start("G90G94F300\nT1\nX1Z.5\nM00\nX.5\nM30\n", TOOLS)
     rig.until(MachineState.PROGRAM_STOP)
-    rig.post(UseOffsets({1: ToolOffset(-12.0, -50.0)}, {1: SecondaryOffset(1.0)}))
+    rig.post(UseOffsetTables({1: ToolOffset(-12.0, -50.0)}, {1: SecondaryOffset(1.0)}))
     assert rig.shot.offset == (-12.7, -50.8)
     assert rig.said("refused")[-1].startswith(text("executor.program-keeps-offsets"))
 
@@ -223,7 +223,7 @@ def test_another_program_or_mdi_restores_the_default_diameter_mode() -> None:
     rig = Rig()
     rig.start(G72)
     rig.until(MachineState.IDLE)
-    rig.post(PrepareStart(StartAction.MDI_LINE))
+    rig.post(PrepareCycleStart(StartAction.MDI_LINE))
     assert not rig.shot.shows_diameter  # a typed X counts as a radius now
     rig = Rig()
     rig.start(G72)

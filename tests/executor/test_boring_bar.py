@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 
 from app.compose.machine.machine_files import load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.executor.commands import CycleStart
 from core.executor.snapshot import MachineState
 from core.interpreter.dialects import interpret_program
@@ -33,7 +33,7 @@ BOTTOM = -356.0  # mm from home: Z0 lies at -350 without a preset
 
 def boring(direction: int) -> Rig:
     """The program begun, and played until the bar stands on the ground of its bore."""
-    setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     blocks: list[Block] = list(
         interpret_program(ProgramSource("T.H", PROGRAM.format(direction)), setup).generate_blocks()
     )
@@ -80,9 +80,9 @@ def test_operator_message_states_the_required_edge_position(direction: int, mess
 
 def test_proof_includes_the_spindle_deceleration_time() -> None:
     """From 3000 rpm, at the deceleration of the machine file, down to the speed that counts as rest."""
-    setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     whole = prove(ProgramSource("T.H", PROGRAM.format(0)), setup, MILL)
     without = PROGRAM.format(0).replace("CYCL DEF 202 BORING", "CYCL DEF 201 REAMING")
     reamed = prove(ProgramSource("T.H", without), setup, MILL)
-    down = (3000.0 - MILL.spindle.stop_below) / MILL.spindle.decel
-    assert whole.times.cycle_s - reamed.times.cycle_s >= down - 0.01
+    down = (3000.0 - MILL.spindle.stop_below) / MILL.spindle.deceleration_rpm_s
+    assert whole.program_times.cycle_time_s - reamed.program_times.cycle_time_s >= down - 0.01

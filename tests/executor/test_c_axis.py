@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.executor.commands import CycleStart, FeedHold, LoadJob, Reset, SetFeedOverride, SetSwitch
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import MachineState, Snapshot
@@ -34,7 +34,7 @@ NAMES = (
 def run(rig: Rig, name: str, text: str) -> None:
     """Prove, start, and come to the end that was proved in the time that was proved."""
     source = ProgramSource(name, text)
-    setup = create_setup(
+    setup = create_power_up_setup(
         rig.machine, tool_offsets={n: ToolOffset() for n in range(1, 33)}, secondary_offsets={}
     )
     report = prove(source, setup, rig.machine)
@@ -46,7 +46,7 @@ def run(rig: Rig, name: str, text: str) -> None:
     assert rig.shot.alarms == ()
     assert rig.shot.underruns == 0
     assert rig.shot.demand == pytest.approx(report.machine_final_position, abs=1e-6)
-    assert rig.shot.last_cycle == pytest.approx(report.times.cycle_s, rel=0.05, abs=0.06)
+    assert rig.shot.last_cycle == pytest.approx(report.program_times.cycle_time_s, rel=0.05, abs=0.06)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -154,7 +154,7 @@ def test_flat_with_a_corner_outside_x_travel_raises_travel_alarm() -> None:
     """X at the entry lies inside, a corner of the figure does not."""
     rig = Rig()
     source = ProgramSource("FAR", "G90G94F300M27\nM19\nX-3.9Z0\n(~PLXC)\n(Y2F20)\n(END)\nM30\n")
-    setup = create_setup(rig.machine, tool_offsets={}, secondary_offsets={})
+    setup = create_power_up_setup(rig.machine, tool_offsets={}, secondary_offsets={})
     assert [(d.line, d.code) for d in prove(source, setup, rig.machine).errors] == [(5, "soft-limit")]
     rig.start(source.text)
     rig.until(MachineState.FAULT)

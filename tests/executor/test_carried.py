@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from core.executor.commands import CycleStart, LoadJob, PrepareStart, SetSwitch
+from core.executor.commands import CycleStart, LoadJob, PrepareCycleStart, SetSwitch
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import MachineState
 from core.interpreter.omniturn.setup.inherited_state import RAPID, UNITS, find_inherited_settings
@@ -54,10 +54,10 @@ def test_program_proved_in_inches_does_not_start_in_millimeters() -> None:
     rig = after_a_metric_job()
     job = rig.load(NAMES_NONE)
     load(rig, job)
-    assert rig.shot.start_refusal.startswith(text("executor.no-line"))  # MDI is still open
-    rig.post(PrepareStart())
+    assert rig.shot.start_refusal_reason.startswith(text("executor.no-line"))  # MDI is still open
+    rig.post(PrepareCycleStart())
     load(rig, job)
-    assert rig.shot.start_refusal == (
+    assert rig.shot.start_refusal_reason == (
         text("executor.program-silent-on", change=text("executor.counts-in-mm"))
     )
     load(rig, make_job(job.source, replace(job.setup, metric=True)))
@@ -95,7 +95,7 @@ def test_program_of_another_dialect_leaves_the_unit_unchanged(unit: str) -> None
     rig = Rig()
     mdi(rig, unit)
     before = rig.shot.modal.metric
-    rig.post(PrepareStart())
+    rig.post(PrepareCycleStart())
     other = "G70" if before else "G71"
     source = ProgramSource("PART.MPF", f"{other} G0 X1\nG1 Z-.1 F100\nM30\n", Dialect.SINUMERIK)
     load(rig, make_job(source, replace(rig.load(NAMES_NONE).setup, metric=before)))

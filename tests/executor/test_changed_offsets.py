@@ -93,7 +93,7 @@ def test_a_program_that_fails_its_proof_is_not_repeated() -> None:
     rig.run(0.4)
     rig.post(CycleStart())
     assert rig.state is MachineState.IDLE
-    assert rig.shot.start_refusal.startswith(text("executor.program-errors", errors="line 4"))
+    assert rig.shot.start_refusal_reason.startswith(text("executor.program-errors", errors="line 4"))
 
 
 def test_proof_with_other_offsets_is_rejected() -> None:
@@ -112,7 +112,7 @@ def test_unprovable_program_stops_with_the_reason() -> None:
     assert rig.said("refused") == [text("executor.no-repeat", why="the offsets cannot be read")]
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.shot.start_refusal == text("executor.not-proved")
+    assert rig.shot.start_refusal_reason == text("executor.not-proved")
 
 
 def test_second_offset_change_replaces_the_first() -> None:
@@ -230,7 +230,7 @@ def test_offset_change_at_rest_applies_immediately_and_in_mdi() -> None:
     mdi(rig, "G90T1X1Z.1G94F300")
     moved = make_job(job.source, replace(job.setup, tools={1: ToolOffset(-12.6, -50.8)}))
     rig.post(ChangeOffsets(moved, good(moved)))
-    assert rig.shot.modal.tool_x == -12.6
+    assert rig.shot.modal.tool_offset_x == -12.6
     assert rig.said("refused") == []
 
 

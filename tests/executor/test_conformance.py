@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.executor.commands import CycleStart, LoadJob
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import MachineState
@@ -44,7 +44,7 @@ def test_program_runs_as_proved(name: str) -> None:
     rig = Rig()
     source = ProgramSource(name, path.read_text(encoding="utf-8"))
     tools = {number: ToolOffset() for number in range(1, 33)}
-    setup = create_setup(
+    setup = create_power_up_setup(
         rig.machine, tool_offsets=tools, secondary_offsets={1: SecondaryOffset(-RADIUS, -RADIUS, RADIUS)}
     )
     report = prove(source, setup, rig.machine)
@@ -58,4 +58,4 @@ def test_program_runs_as_proved(name: str) -> None:
     assert rig.shot.underruns == 0
     assert rig.shot.demand[:2] == pytest.approx(report.machine_final_position[:2], abs=1e-6)
     # what proving leaves out: in position, ticks, the collet's spread
-    assert rig.shot.last_cycle == pytest.approx(report.times.cycle_s, rel=0.05, abs=0.06)
+    assert rig.shot.last_cycle == pytest.approx(report.program_times.cycle_time_s, rel=0.05, abs=0.06)

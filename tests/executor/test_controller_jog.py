@@ -36,15 +36,15 @@ def test_jogger_type_depends_on_the_driver() -> None:
 )
 def test_a_controller_that_is_not_ready_does_not_jog(controller: PlayedController, why: str) -> None:
     jogger, _ = jogger_on(controller)
-    assert jogger.find_jog_refusal("X", 5.0, LEASE) == why
-    assert jogger.find_step_refusal("X", 0.1, 5.0) == why
+    assert jogger.find_jog_refusal_reason("X", 5.0, LEASE) == why
+    assert jogger.find_step_refusal_reason("X", 0.1, 5.0) == why
 
 
 def test_controller_rejects_jog_along_a_tilted_direction() -> None:
     jogger, _ = jogger_on(PlayedController())
     why = text("executor.controller-axes-only", axis="X")
-    assert jogger.find_jog_refusal("X", 5.0, LEASE, (1.0, 0.0, 0.0)) == why
-    assert jogger.find_step_refusal("X", 0.1, 5.0, (1.0, 0.0, 0.0)) == why
+    assert jogger.find_jog_refusal_reason("X", 5.0, LEASE, (1.0, 0.0, 0.0)) == why
+    assert jogger.find_step_refusal_reason("X", 0.1, 5.0, (1.0, 0.0, 0.0)) == why
 
 
 def test_jog_command_carries_reduced_travel_and_lease_of_at_most_1_s() -> None:
@@ -90,7 +90,7 @@ def test_step_starts_from_the_commanded_position() -> None:
     context.axis_sample = context.axis_sample._replace(demand=(1.0, 2.0, 0.0))
     jogger.start_step("Z", -0.5, 5.0)
     assert controller.steps == [("Z", 1.5, 5.0)]
-    assert jogger.find_step_refusal("Z", 0.1, 5.0) == text("executor.step-not-over", axis="Z")
+    assert jogger.find_step_refusal_reason("Z", 0.1, 5.0) == text("executor.step-not-over", axis="Z")
 
 
 def test_stop_without_a_jog_sends_no_command() -> None:
@@ -156,7 +156,9 @@ def test_repeated_key_press_starts_no_jog_after_lease_fault_or_release(spoilt: s
 
 def test_lathe_rejects_jog_in_a_tilted_plane() -> None:
     jogger = Jogger(context_of(None))
-    assert jogger.find_jog_refusal("X", 5.0, LEASE, (1.0, 0.0, 0.0)).startswith(text("executor.tilted-needs"))
+    assert jogger.find_jog_refusal_reason("X", 5.0, LEASE, (1.0, 0.0, 0.0)).startswith(
+        text("executor.tilted-needs")
+    )
 
 
 def three_axes() -> MachineContext:
@@ -169,15 +171,15 @@ def three_axes() -> MachineContext:
 
 @pytest.mark.parametrize("direction", [(0.6, 0.8, 0.1), (0.0, 0.0, 0.0), (float("nan"), 0.0, 1.0)])
 def test_invalid_jog_direction_is_rejected(direction: tuple[float, float, float]) -> None:
-    why = Jogger(three_axes()).find_jog_refusal("X", 5.0, LEASE, direction)
+    why = Jogger(three_axes()).find_jog_refusal_reason("X", 5.0, LEASE, direction)
     assert why == text("executor.tilted-needs")
 
 
 def test_tilted_jog_requires_all_axes_to_be_homed() -> None:
     context = three_axes()
-    assert Jogger(context).find_jog_refusal("X", 5.0, LEASE, (0.6, 0.8, 0.0)) == ""
+    assert Jogger(context).find_jog_refusal_reason("X", 5.0, LEASE, (0.6, 0.8, 0.0)) == ""
     context.axis_sample = context.axis_sample._replace(homed=(True, False, True))
-    why = Jogger(context).find_jog_refusal("X", 5.0, LEASE, (0.6, 0.8, 0.0))
+    why = Jogger(context).find_jog_refusal_reason("X", 5.0, LEASE, (0.6, 0.8, 0.0))
     assert why == text("executor.tilted-homed")
 
 

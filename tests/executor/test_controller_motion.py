@@ -8,7 +8,7 @@ import math
 import pytest
 
 from core.block_ports import ArcOperation, BlockOperation, LineOperation, RapidOperation, ThreadOperation
-from core.executor.job import BlockReadAhead, ProgramPass
+from core.executor.job import ProgramPass, ReadAheadQueue
 from core.executor.program_motion.controller_motion import (
     MAX_PART_DURATION_S,
     ControllerMotion,
@@ -130,7 +130,7 @@ def test_requirements_are_listed_once_with_their_first_line() -> None:
         block(BlockKind.FEED, z=-1.0, css=100.0, rpm=500.0, line=7),
     ]
     needs = remove_repeated_requirements(list_requirements(blocks))
-    assert [(need.function, need.line) for need in needs] == [
+    assert [(need.required_function, need.first_line) for need in needs] == [
         ("arc", 3),
         ("thread", 5),
         ("pull-out", 6),
@@ -155,12 +155,12 @@ def motion_of(
     turn_feed_pot(context, feed)
     context.switches.single_block = single
     motion = ControllerMotion(context, controller)
-    motion.start_section(list(blocks))
+    motion.start_path_section(list(blocks))
     return motion
 
 
-def nothing_read() -> BlockReadAhead:
-    return BlockReadAhead(ProgramPass(iter(()), list), context_of(None).machine)
+def nothing_read() -> ReadAheadQueue:
+    return ReadAheadQueue(ProgramPass(iter(()), list), context_of(None).machine)
 
 
 def ends(ops: list[BlockOperation]) -> list[float]:
@@ -172,7 +172,7 @@ def test_clear_without_a_path_section_sends_no_command() -> None:
     motion = ControllerMotion(context_of(controller), controller)
     assert motion.update_progress(nothing_read()) is SectionProgress.DONE
     assert (motion.current_block, motion.following_block, motion.is_moving) == (None, None, False)
-    motion.clear_section()
+    motion.clear_path_section()
     assert controller.asked == []
 
 
@@ -190,7 +190,7 @@ def test_full_controller_gets_the_remaining_pieces_later() -> None:
 @pytest.mark.parametrize(("ahead", "feed", "pieces"), [(0.1, 1.0, 2), (0.3, 1.0, 3), (0.3, 0.5, 2)])
 def test_controller_gets_no_more_pieces_than_its_maximum_lead(ahead: float, feed: float, pieces: int) -> None:
     """Behind the piece that it moves: none, a sixth, two sixths of a second; twice that at half the feed."""
-    controller = PlayedController(max_lead_s=ahead)
+    controller = PlayedController(max_queued_motion_s=ahead)
     motion_of(controller, CUT, feed=feed)
     assert len(controller.ops) == pieces
 
@@ -200,7 +200,7 @@ def test_no_piece_is_sent_at_zero_override_until_it_is_raised() -> None:
     context = context_of(controller)
     turn_feed_pot(context, 0.0)
     motion = ControllerMotion(context, controller)
-    motion.start_section([CUT])
+    motion.start_path_section([CUT])
     assert (controller.asked, controller.ops) == (["hold"], [])
     assert motion.update_progress(nothing_read()) is SectionProgress.AT_REST
     motion.resume(None)
@@ -232,13 +232,13 @@ def test_hold_stops_a_line_but_lets_a_thread_finish() -> None:
     controller = PlayedController(room=1)
     line = motion_of(controller, CUT)
     controller.room = 9
-    line.hold_on_path()
+    line.stop_on_path()
     line.extend_queue()
     assert (controller.asked, len(controller.ops)) == (["hold"], 1)
     controller = PlayedController(room=1)
     thread = motion_of(controller, THREAD, PULL_OUT)
     controller.room = 2
-    thread.hold_on_path()
+    thread.stop_on_path()
     thread.extend_queue()
     assert controller.asked == []
     assert controller.ops[1:] == [RapidOperation(6.0, -7.0, 40.0)]
@@ -263,9 +263,9 @@ def test_thread_without_spindle_retracts_x_or_reports_why_not(hindrance: str) ->
 def test_clearing_the_section_aborts_the_controller_motion() -> None:
     controller = PlayedController()
     motion = motion_of(controller, CUT)
-    motion.clear_section()
+    motion.clear_path_section()
     assert controller.asked == ["abort"]
-    assert not motion.has_section
+    assert not motion.has_path_section
     assert motion.is_complete
 
 
@@ -284,7 +284,7 @@ def test_single_block_set_in_motion_stops_after_the_sent_blocks() -> None:
     controller = PlayedController(room=3)
     context = context_of(controller)
     motion = ControllerMotion(context, controller)
-    motion.start_section([CUT, NEXT])
+    motion.start_path_section([CUT, NEXT])
     context.switches.single_block, controller.room = True, 9
     motion.update_progress(nothing_read())
     assert len(controller.ops) == 3
@@ -293,7 +293,7 @@ def test_single_block_set_in_motion_stops_after_the_sent_blocks() -> None:
 def test_blocks_read_meanwhile_are_sent_after_the_pending_ones() -> None:
     controller = PlayedController()
     motion = motion_of(controller, CUT)
-    feed = BlockReadAhead(ProgramPass(iter([NEXT]), list), context_of(None).machine)
+    feed = ReadAheadQueue(ProgramPass(iter([NEXT]), list), context_of(None).machine)
     feed.pending_blocks.append(NEXT)
     motion.update_progress(feed)
     assert not feed.pending_blocks
@@ -304,7 +304,7 @@ def test_motion_does_not_resume_automatically_after_the_host_was_away() -> None:
     controller = PlayedController(room=1)
     context = context_of(controller)
     motion = ControllerMotion(context, controller)
-    motion.start_section([CUT])
+    motion.start_path_section([CUT])
     assert motion.starvation_time_s == math.inf
     context.now += 1.1
     controller.room = 9

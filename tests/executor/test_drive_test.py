@@ -308,7 +308,7 @@ def test_opening_the_guard_ends_a_drive_test() -> None:
     rig = ready()
     hold(rig, RAMP, most=0.1)
     rig.executor._context.spindle.is_guard_open = True
-    rig.executor._control.drive_tester.check_guard()
+    rig.executor._control.drive_tester.stop_if_guard_open()
     assert rig.executor._control.jogger.is_stopping
     rig.until(MachineState.IDLE)
     assert rig.shot.demand[1] > -4.0

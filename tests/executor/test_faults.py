@@ -288,7 +288,7 @@ def test_bogged_spindle_holds_the_feed_and_resume_waits_for_speed(code: str) -> 
     assert rig.shot.waiting_for == text("executor.below-half-speed")
     at = rig.shot.actual
     rig.post(CycleStart())
-    rig.until(MachineState.HOLD, limit=rig.machine.spindle.timeout + 1.0)
+    rig.until(MachineState.HOLD, limit=rig.machine.spindle.timeout_s + 1.0)
     assert rig.shot.waiting_for == text("executor.not-at-speed")
     assert rig.shot.actual == at
     rig.sim.machine.spindle_bog(1.0)
@@ -588,14 +588,14 @@ def test_estop_works_at_any_moment(after: float) -> None:
     assert not rig.sim.ports.axes.sample().moving
     rig.run(4.0)
     assert rig.sim.machine.get_spindle_rpm() == 0.0
-    stood = rig.sim.machine.get_true_position()
+    stood = rig.sim.machine.get_true_positions()
     rig.sim.machine.release_estop()
     rig.run(2.0)
     assert rig.state is MachineState.DISABLED
     rig.post(EnableDrives())
     rig.run(2.0)
     assert rig.state is MachineState.IDLE
-    assert rig.sim.machine.get_true_position() == pytest.approx(stood, abs=0.01)
+    assert rig.sim.machine.get_true_positions() == pytest.approx(stood, abs=0.01)
     assert rig.sim.machine.get_spindle_rpm() == 0.0
     assert rig.shot.parts == 0
     assert not {"coolant", "catcher"} & rig.shot.outputs

@@ -53,12 +53,12 @@ def test_hold_button_of_the_station_holds() -> None:
     rig.until(MachineState.HOLD)
     rig.post(CycleStart())
     assert rig.state is MachineState.HOLD
-    assert rig.shot.start_refusal == text("executor.hold-pressed")
+    assert rig.shot.start_refusal_reason == text("executor.hold-pressed")
     rig.sim.machine.release_hold()
     rig.run(0.4)
     rig.post(CycleStart())
     rig.until(MachineState.IDLE)
-    assert rig.shot.start_refusal == ""
+    assert rig.shot.start_refusal_reason == ""
 
 
 @pytest.mark.parametrize("after", [0.001, 0.1, 0.333, 0.77, 1.01, 1.4, 1.99])
@@ -138,7 +138,7 @@ def test_resume_into_a_cut_without_the_spindle_is_refused() -> None:
     assert rig.shot.rpm_actual == 0.0
     rig.post(CycleStart())
     assert rig.state is MachineState.HOLD
-    assert rig.shot.start_refusal == text("executor.switch-off-refused")
+    assert rig.shot.start_refusal_reason == text("executor.switch-off-refused")
     rig.sim.machine.set_spindle_auto(True)
     rig.run(2.0)
     assert rig.shot.announced == (text("executor.spindle-starts", rpm=1000, direction="FORWARD"),)

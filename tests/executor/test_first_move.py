@@ -10,12 +10,12 @@ from core.executor.commands import (
     FIRST_MOVE_CROSSES,
     START_UNCHECKED,
     TOOL_IN_PART,
-    Clearance,
     CycleStart,
     JogByStep,
-    PrepareStart,
-    ReplaceClearances,
+    PrepareCycleStart,
+    ReplaceStartClearances,
     SetSwitch,
+    StartClearance,
 )
 from core.executor.job import Job
 from core.executor.snapshot import MachineState, StartAction
@@ -33,13 +33,13 @@ class Checked(Rig):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self.executor._control.status.requires_clearance = True
+        self.executor._control.status.requires_start_clearance = True
 
     def clear(self, loaded: Job, code: str = "", warned: str = "", **changes: object) -> None:
         shot = self.shot
         why = WHY if code else ""
-        found = Clearance(loaded.digest, shot.demand, shot.begun, code, why, warned)
-        self.post(ReplaceClearances((replace(found, **changes),)))  # type: ignore[arg-type]
+        found = StartClearance(loaded.digest, shot.demand, shot.begun, code, why, warned)
+        self.post(ReplaceStartClearances((replace(found, **changes),)))  # type: ignore[arg-type]
 
     def starts(self) -> bool:
         self.run(0.4)
@@ -58,7 +58,7 @@ def test_start_requires_a_clearance_verdict() -> None:
     assert not rig.starts()
     assert rig.shot.start_code == START_UNCHECKED
     rig.clear(job)
-    assert (rig.shot.start_refusal, rig.shot.start_code) == ("", "")
+    assert (rig.shot.start_refusal_reason, rig.shot.start_code) == ("", "")
     assert rig.starts()
 
 
@@ -67,7 +67,7 @@ def test_start_refusal_has_a_code_and_a_message(code: str) -> None:
     rig, job = loaded()
     rig.clear(job, code)
     assert not rig.starts()
-    assert (rig.shot.start_code, rig.shot.start_refusal) == (code, WHY)
+    assert (rig.shot.start_code, rig.shot.start_refusal_reason) == (code, WHY)
 
 
 def test_verdict_for_another_position_is_ignored() -> None:
@@ -96,10 +96,10 @@ def test_verdict_computed_before_a_run_is_ignored_after_it() -> None:
     rig.ready()
     job = rig.load(END, TOOLS)
     rig.clear(job)
-    early = rig.executor._control.status.clearances
+    early = rig.executor._control.status.start_clearances
     assert rig.starts()
     rig.until(MachineState.IDLE)
-    rig.post(ReplaceClearances(tuple(replace(each, at=rig.shot.demand) for each in early)))
+    rig.post(ReplaceStartClearances(tuple(replace(each, at=rig.shot.demand) for each in early)))
     assert not rig.starts()
     assert rig.shot.start_code == START_UNCHECKED
 
@@ -111,9 +111,9 @@ def test_assumptions_are_announced_before_the_start() -> None:
     assert rig.starts()
 
 
-def prepares(rig: Checked, job: Job, clearance: Clearance | None) -> None:
+def prepares(rig: Checked, job: Job, clearance: StartClearance | None) -> None:
     proof = rig.executor._control.status.proof
-    rig.post(PrepareStart(StartAction.MDI_LINE, job, proof, clearance))
+    rig.post(PrepareCycleStart(StartAction.MDI_LINE, job, proof, clearance))
 
 
 def test_program_verdict_does_not_apply_to_an_mdi_line() -> None:
@@ -126,18 +126,18 @@ def test_program_verdict_does_not_apply_to_an_mdi_line() -> None:
 
 def test_mdi_line_starts_when_prepared_with_its_verdict() -> None:
     rig, job = loaded()
-    prepares(rig, job, Clearance(job.digest, rig.shot.demand, rig.shot.begun))
+    prepares(rig, job, StartClearance(job.digest, rig.shot.demand, rig.shot.begun))
     assert rig.starts()
 
 
 def test_mdi_line_with_crossing_first_move_is_rejected_until_replaced() -> None:
     rig, job = loaded()
     rig.clear(job)
-    prepares(rig, job, Clearance(job.digest, rig.shot.demand, rig.shot.begun, FIRST_MOVE_CROSSES, WHY))
+    prepares(rig, job, StartClearance(job.digest, rig.shot.demand, rig.shot.begun, FIRST_MOVE_CROSSES, WHY))
     assert not rig.starts()
-    assert (rig.shot.start_code, rig.shot.start_refusal) == (FIRST_MOVE_CROSSES, WHY)
-    rig.post(PrepareStart(StartAction.PROGRAM))
-    assert (rig.shot.start_code, rig.shot.start_refusal) == ("", "")
+    assert (rig.shot.start_code, rig.shot.start_refusal_reason) == (FIRST_MOVE_CROSSES, WHY)
+    rig.post(PrepareCycleStart(StartAction.PROGRAM))
+    assert (rig.shot.start_code, rig.shot.start_refusal_reason) == ("", "")
     assert rig.starts()
 
 
@@ -147,9 +147,11 @@ def test_cycle_repeat_does_not_begin_a_move_that_crosses_the_part() -> None:
     job = rig.load(END, TOOLS)
     shot = rig.shot
     end = (TOOLS[1].x + 25.4, TOOLS[1].z + 0.2 * 25.4, shot.demand[2])
-    here = Clearance(job.digest, shot.demand, shot.begun)
+    here = StartClearance(job.digest, shot.demand, shot.begun)
     rig.post(
-        ReplaceClearances((here, replace(here, at=end, code=FIRST_MOVE_CROSSES, why=WHY, is_for_repeat=True)))
+        ReplaceStartClearances(
+            (here, replace(here, at=end, code=FIRST_MOVE_CROSSES, why=WHY, is_for_repeat=True))
+        )
     )
     rig.post(SetSwitch("cycle_repeat", True))
     assert rig.starts()

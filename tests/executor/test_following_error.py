@@ -9,7 +9,7 @@ import pytest
 from app.compose.machine.machine_files import load_machine
 from core.executor.commands import CycleStart, EnableDrives, FeedHold, Jog, Reset, SetFeedOverride, SetSwitch
 from core.executor.raised_alarm import AlarmError
-from core.executor.safety.supervision import FollowingErrorWatch
+from core.executor.safety.supervision import FollowingErrorMonitor
 from core.executor.snapshot import MachineState
 from core.ports import AxisSample
 from tests.coded import raises_code
@@ -84,13 +84,13 @@ AT_REST: dict[str, Callable[[Rig], None]] = {
 
 def way_until_off(rig: Rig, limit: float = 2.0) -> tuple[float, float]:
     """Seconds until the drives are off, and how far Z really went until it stood."""
-    began, place = rig.clock.now(), rig.sim.machine.get_true_position()[1]
+    began, place = rig.clock.now(), rig.sim.machine.get_true_positions()[1]
     while rig.sim.ports.axes.sample().enabled:
         assert rig.clock.now() - began < limit, rig.shot
         rig.tick()
     took = rig.clock.now() - began
     rig.run(1.0)
-    return took, abs(rig.sim.machine.get_true_position()[1] - place)
+    return took, abs(rig.sim.machine.get_true_positions()[1] - place)
 
 
 @pytest.mark.parametrize("state", AT_REST)
@@ -120,12 +120,14 @@ def test_axis_jammed_off_position_raises_a_standstill_alarm(state: str, off: flo
     assert "Z" in rig.shot.alarms[-1].cause
     rig.sim.machine.jam("Z", False)
     rig.run(0.5)
-    stood = rig.sim.machine.get_true_position()[1]
+    stood = rig.sim.machine.get_true_positions()[1]
     rig.post(Reset())
     rig.post(EnableDrives())
     rig.run(1.0)
     assert rig.state is MachineState.IDLE
-    assert rig.sim.machine.get_true_position()[1] == pytest.approx(stood, abs=0.002)  # and does not jump back
+    assert rig.sim.machine.get_true_positions()[1] == pytest.approx(
+        stood, abs=0.002
+    )  # and does not jump back
 
 
 def test_jam_at_the_end_of_a_move_does_not_end_in_idle_off_position() -> None:
@@ -151,7 +153,7 @@ def test_encoder_freeze_in_motion_raises_a_fault(text: str, most: float) -> None
     rig.sim.machine.encoder_stuck("Z")
     way_until_off(rig)
     read = rig.shot.actual[1]
-    assert abs(rig.sim.machine.get_true_position()[1] - read) < most
+    assert abs(rig.sim.machine.get_true_positions()[1] - read) < most
     assert rig.shot.alarms[0].code in {"encoder-still", "following", "axis"}
 
 
@@ -164,9 +166,9 @@ def test_encoder_freeze_at_hold_start_raises_a_fault(text: str, after: float) ->
     rig.executor.post(FeedHold())
     rig.run(after)
     rig.sim.machine.encoder_stuck("Z")
-    place = rig.sim.machine.get_true_position()[1]
+    place = rig.sim.machine.get_true_positions()[1]
     rig.run(10.0)
-    way = abs(rig.sim.machine.get_true_position()[1] - place)
+    way = abs(rig.sim.machine.get_true_positions()[1] - place)
     speed = 25.4 / 60.0 * {FEED: 20.0, RAPID: 240.0}.get(text, 60.0)
     assert way < 0.1 * speed + 10.0
     if abs(rig.shot.following_error[1]) > 0.004:
@@ -256,7 +258,7 @@ def sample(t: float, demand: float, actual: float, *, enabled: bool = True) -> A
 
 def test_repeated_sample_adds_no_fault_time() -> None:
     """A wire that repeats its last answer, and a control that was away, make nothing last longer."""
-    watch = FollowingErrorWatch(load_machine().axes)
+    watch = FollowingErrorMonitor(load_machine().axes)
     watch.check_sample(sample(0.0, 0.0, 0.0), is_unpowered=False)
     watch.check_sample(sample(0.01, 0.0, 0.0), is_unpowered=False)
     for _ in range(100):

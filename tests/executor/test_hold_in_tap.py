@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from app.compose.machine.machine_files import load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.executor.commands import CycleStart, FeedHold, Reset, SetSwitch
 from core.executor.snapshot import MachineState
 from core.interpreter.dialects import interpret_program
@@ -36,7 +36,7 @@ OLD = (
 def tapping(cycle: str) -> Rig:
     """The program begun, from where the machine stands."""
     text = HEAD + cycle + (TAIL if "M99" not in cycle else TAIL.replace("\nCYCL CALL", ""))
-    setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     blocks: list[Block] = list(interpret_program(ProgramSource("T.H", text), setup).generate_blocks())
     rig = Rig(machine=MILL, made=blocks)
     rig.start("anything")
@@ -133,7 +133,9 @@ COMPENSATING = "S600 M3 G95 F.1 G17\nG0 X0 Z5\nCYCLE840(5,0,2,-10,,0,0,5,0,,1.5)
 
 @pytest.mark.parametrize("feeds", ["G95 F.1", "G94 F100"])
 def test_hold_with_a_compensating_chuck_waits_until_the_tap_is_out(feeds: str) -> None:
-    setup = replace(create_setup(LATHE, tool_offsets={}, secondary_offsets={}), start=(0.0, 0.0, 0.0))
+    setup = replace(
+        create_power_up_setup(LATHE, tool_offsets={}, secondary_offsets={}), start=(0.0, 0.0, 0.0)
+    )
     made = interpret_program(ProgramSource("T.MPF", COMPENSATING.replace("G95 F.1", feeds)), setup)
     blocks = list(made.generate_blocks())
     taps = [block for block in blocks if block.follows_spindle]

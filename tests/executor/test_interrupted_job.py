@@ -13,7 +13,7 @@ from core.executor.commands import (
     CycleStart,
     FeedHold,
     JogByStep,
-    PrepareStart,
+    PrepareCycleStart,
     ReportInterruptedJob,
     Reset,
     SetPartCount,
@@ -149,7 +149,8 @@ def test_cycle_start_after_an_interrupted_job_needs_confirmation() -> None:
     for _ in range(3):
         assert not begins(rig)
         assert re.fullmatch(
-            pattern("executor.interrupted-in-part", line=8, program="PART", tool="T1"), rig.shot.start_refusal
+            pattern("executor.interrupted-in-part", line=8, program="PART", tool="T1"),
+            rig.shot.start_refusal_reason,
         )
     rig.run(2.0)
     assert rig.shot.demand == stood
@@ -212,8 +213,8 @@ def test_searchto_and_mdi_withdraw_the_confirmation() -> None:
         rig = Rig()
         broken_off(rig)
         rig.confirm()
-        rig.post(PrepareStart(starts))
-        rig.post(PrepareStart(StartAction.PROGRAM))
+        rig.post(PrepareCycleStart(starts))
+        rig.post(PrepareCycleStart(StartAction.PROGRAM))
         assert not rig.shot.confirmed
         assert not begins(rig)
 

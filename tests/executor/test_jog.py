@@ -184,7 +184,7 @@ def test_cycle_start_while_jogging_is_refused() -> None:
     rig.post(Jog("X", 1.0, 1.0))
     rig.post(CycleStart())
     assert rig.state is MachineState.JOG
-    assert rig.shot.start_refusal == text("executor.machine-jogged")
+    assert rig.shot.start_refusal_reason == text("executor.machine-jogged")
 
 
 def test_estop_ends_a_jog() -> None:
@@ -251,13 +251,13 @@ def test_axis_beyond_its_travel_jogs_only_back_inside(side: float) -> None:
     rig.ready()
     rig.post(Jog("X", side * 20.0, 0.3))
     rig.run(1.0)
-    assert rig.sim.machine.get_true_position()[0] == pytest.approx(edge + side * 5.0, abs=0.01)
+    assert rig.sim.machine.get_true_positions()[0] == pytest.approx(edge + side * 5.0, abs=0.01)
     assert not rig.shot.alarms
     for _ in range(3):
         rig.post(JogByStep("X", -side * 2.5, 20.0))
         rig.run(1.0)
     assert not rig.shot.alarms
-    assert rig.sim.machine.get_true_position()[0] == pytest.approx(edge - side * 2.5, abs=0.01)
+    assert rig.sim.machine.get_true_positions()[0] == pytest.approx(edge - side * 2.5, abs=0.01)
 
 
 @pytest.mark.parametrize("release", [StopJog(), DeselectHandwheel()], ids=["jog", "wheel"])

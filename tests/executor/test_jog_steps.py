@@ -246,7 +246,7 @@ def test_unhomed_machine_allows_slow_jogs_and_rejects_programs() -> None:
     rig.load("G90G94F300\nX1Z1\nM30\n")
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.shot.start_refusal == text("executor.not-homed", axes="X, Z")
+    assert rig.shot.start_refusal_reason == text("executor.not-homed", axes="X, Z")
 
 
 def test_homing_follows_the_axis_order() -> None:

@@ -118,10 +118,10 @@ def test_encoder_frozen_at_hold_end_is_detected_on_the_next_move() -> None:
     assert rig.state is MachineState.HOLD
     rig.sim.machine.encoder_stuck("Z")
     rig.run(2.0)
-    begins = rig.sim.machine.get_true_position()[1]
+    begins = rig.sim.machine.get_true_positions()[1]
     rig.post(CycleStart())
     took = rig.until(MachineState.FAULT, limit=1.0)
     assert codes(rig) == ["encoder-still"]
     assert took <= 0.12
     rig.run(1.0)
-    assert abs(rig.sim.machine.get_true_position()[1] - begins) < 4.0  # mm, at 8.5 mm/s
+    assert abs(rig.sim.machine.get_true_positions()[1] - begins) < 4.0  # mm, at 8.5 mm/s

@@ -6,7 +6,7 @@ import pytest
 
 from app.compose.machine.machine_files import load_shipped_machine
 from app.compose.program_proving import create_proof
-from core.executor.commands import CycleStart, FeedHold, PrepareStart, Reset, SetSwitch
+from core.executor.commands import CycleStart, FeedHold, PrepareCycleStart, Reset, SetSwitch
 from core.executor.snapshot import MachineState, StartAction
 from core.interpreter.shared.job_setup import ToolOffset
 from core.proving.prove_program import prove
@@ -31,7 +31,7 @@ def test_spindle_stays_on_for_the_next_mdi_line() -> None:
     mdi(rig, "M03S900")
     rig.run(2.0)
     assert rig.shot.rpm_actual == pytest.approx(900, rel=0.05)
-    rig.post(PrepareStart(StartAction.PROGRAM))  # MDI is left
+    rig.post(PrepareCycleStart(StartAction.PROGRAM))  # MDI is left
     rig.run(1.0)
     assert rig.shot.rpm_command == 900
     mdi(rig, "G90", "G95F.005X.1")
@@ -97,9 +97,9 @@ def test_cycle_start_in_mdi_without_a_line_is_rejected() -> None:
     rig = Rig()
     rig.ready()
     rig.load("G90G94F300\nX1\nM30\n")
-    rig.post(PrepareStart(StartAction.MDI_LINE))
+    rig.post(PrepareCycleStart(StartAction.MDI_LINE))
     rig.post(CycleStart())
-    assert rig.shot.start_refusal == text("executor.no-line")
+    assert rig.shot.start_refusal_reason == text("executor.no-line")
     assert rig.state is MachineState.IDLE
 
 
@@ -108,7 +108,7 @@ def test_mdi_line_runs_once() -> None:
     mdi(rig, "G91", "X.1F100")
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.shot.start_refusal.startswith(text("executor.no-line"))
+    assert rig.shot.start_refusal_reason.startswith(text("executor.no-line"))
     assert rig.shot.actual[0] == pytest.approx(0.1 * INCH, abs=0.006)
 
 
@@ -119,16 +119,16 @@ def test_mdi_line_proved_for_another_state_does_not_start() -> None:
     proof = create_proof(old, prove(old.source, old.setup, rig.machine))
     mdi(rig, "Z-.1")
     rig.run(0.4)
-    rig.post(PrepareStart(StartAction.MDI_LINE, old, proof))
+    rig.post(PrepareCycleStart(StartAction.MDI_LINE, old, proof))
     rig.post(CycleStart())
-    assert rig.shot.start_refusal == text("executor.moved-since", remedy=text("executor.ask-again"))
+    assert rig.shot.start_refusal_reason == text("executor.moved-since", remedy=text("executor.ask-again"))
     fresh = line_job(rig, "X.1")
     proof = create_proof(fresh, prove(fresh.source, fresh.setup, rig.machine))
     mdi(rig, "G90")
     rig.run(0.4)
-    rig.post(PrepareStart(StartAction.MDI_LINE, fresh, proof))
+    rig.post(PrepareCycleStart(StartAction.MDI_LINE, fresh, proof))
     rig.post(CycleStart())
-    assert rig.shot.start_refusal == text("executor.state-changed", remedy=text("executor.ask-again"))
+    assert rig.shot.start_refusal_reason == text("executor.state-changed", remedy=text("executor.ask-again"))
 
 
 def test_tool_without_an_offset_is_not_called() -> None:
@@ -137,10 +137,12 @@ def test_tool_without_an_offset_is_not_called() -> None:
     job = line_job(rig, "T9")
     rig.run(0.4)
     rig.post(
-        PrepareStart(StartAction.MDI_LINE, job, create_proof(job, prove(job.source, job.setup, rig.machine)))
+        PrepareCycleStart(
+            StartAction.MDI_LINE, job, create_proof(job, prove(job.source, job.setup, rig.machine))
+        )
     )
     rig.post(CycleStart())
-    assert rig.shot.start_refusal == text("executor.tool-offset-unset", tools="T9")
+    assert rig.shot.start_refusal_reason == text("executor.tool-offset-unset", tools="T9")
 
 
 def test_hold_resume_and_reset_retain_the_modes() -> None:
@@ -204,7 +206,7 @@ def test_work_shift_and_preset_apply_to_the_next_mdi_line() -> None:
 def test_program_after_mdi_starts_at_its_first_line_with_its_own_modes() -> None:
     rig = Rig()
     mdi(rig, "G91G72F100", "X.2")
-    rig.post(PrepareStart(StartAction.PROGRAM))
+    rig.post(PrepareCycleStart(StartAction.PROGRAM))
     rig.start("G90G94F300\nX.3\nM30\n")
     rig.until(MachineState.IDLE)
     assert rig.shot.actual[0] == pytest.approx(0.3 * INCH, abs=0.006)  # a radius again

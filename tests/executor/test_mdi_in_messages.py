@@ -9,9 +9,9 @@ import pytest
 
 from app.compose.control.control_messages import CommandMessage, SnapshotMessage
 from app.compose.machine.machine_files import load_named_machine
-from app.compose.machine.machine_setup import create_setup
-from app.compose.program_proving import create_proof, read_checkpoint
-from core.executor.commands import CycleStart, PrepareStart
+from app.compose.machine.machine_setup import create_power_up_setup
+from app.compose.program_proving import create_proof, make_checkpoint
+from core.executor.commands import CycleStart, PrepareCycleStart
 from core.executor.job import Job, make_job
 from core.executor.snapshot import MachineState, StartAction
 from core.interpreter.shared.checkpoint import PassStart
@@ -32,18 +32,18 @@ def press(rig: Rig, text: str) -> Job:
     """Prove the line, send it as the screen does, and run it to its end; return the job that arrived."""
     rig.run(0.5)
     setup = replace(
-        create_setup(rig.machine, tool_offsets=TOOLS, secondary_offsets={}),
+        create_power_up_setup(rig.machine, tool_offsets=TOOLS, secondary_offsets={}),
         start=rig.shot.demand,
-        begin=PassStart(read_checkpoint(rig.shot), is_mdi_line=True),
+        begin=PassStart(make_checkpoint(rig.shot), is_mdi_line=True),
     )
     job = make_job(ProgramSource("MDI", text, Dialect(rig.machine.mdi_language)), setup)
     report = prove(job.shared_program, job.setup, rig.machine)
     assert not report.errors, report.errors
-    prepare = PrepareStart(StartAction.MDI_LINE, job, create_proof(job, report))
-    arrived: PrepareStart = pickle.loads(pickle.dumps(CommandMessage(prepare, 0.0))).command
+    prepare = PrepareCycleStart(StartAction.MDI_LINE, job, create_proof(job, report))
+    arrived: PrepareCycleStart = pickle.loads(pickle.dumps(CommandMessage(prepare, 0.0))).command
     rig.post(arrived)
     rig.post(CycleStart())
-    assert not rig.shot.start_refusal, rig.shot.start_refusal
+    assert not rig.shot.start_refusal_reason, rig.shot.start_refusal_reason
     rig.run(0.3)
     rig.until(MachineState.IDLE)
     assert arrived.job is not None

@@ -10,7 +10,7 @@ import pytest
 from core.executor.commands import CycleStart, EnableDrives, Reset
 from core.executor.executor import Executor
 from core.executor.snapshot import LogEvent, MachineState
-from core.ports import AxisSink, DigitalIO, MachinePorts, Spindle, Station
+from core.ports import AxisSink, DigitalIO, MachinePorts, OperatorStation, Spindle
 from tests.executor.rig import Rig
 from tests.texts import text
 
@@ -24,7 +24,7 @@ CALLS = {
     "io": ("inputs", "get_outputs", "write", "switch_to_safe_state"),
     "station": ("read_state",),
 }
-PORTS = {"axes": AxisSink, "spindle": Spindle, "io": DigitalIO, "station": Station}
+PORTS = {"axes": AxisSink, "spindle": Spindle, "io": DigitalIO, "station": OperatorStation}
 EACH = [(port, call) for port, calls in CALLS.items() for call in calls]
 NAMED = ["-".join(each) for each in EACH]
 MOMENTS: dict[str, Callable[[Rig], object]] = {

@@ -8,11 +8,11 @@ from dataclasses import replace
 import pytest
 
 from app.compose.machine.machine_files import load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.executor.commands import CycleStart, FeedHold, Reset
 from core.executor.job import Proof
 from core.executor.snapshot import MachineState
-from core.executor.start_conditions import find_missing_function
+from core.executor.start_conditions import describe_missing_function
 from core.interpreter.dialects import interpret_program
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import ToolOffset
@@ -40,7 +40,7 @@ LOW = -350.0 - 37.0  # Z0 lies at -350 without a preset; the tip 2 below the par
 
 
 def blocks_of(program: str = PROGRAM) -> list[Block]:
-    setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     return list(interpret_program(ProgramSource("T.H", program), setup).generate_blocks())
 
 
@@ -132,7 +132,7 @@ def test_orientation_timeout_raises_one_alarm_before_any_motion() -> None:
     rig.until_true(lambda shot: shot.waiting_for == text("executor.spindle-orient"))
     at = rig.shot.actual
     took = rig.until(MachineState.FAULT)
-    assert took == pytest.approx(MILL.spindle.timeout + 3.0 * 60.0 / MILL.spindle.orient_rpm, abs=3.0)
+    assert took == pytest.approx(MILL.spindle.timeout_s + 3.0 * 60.0 / MILL.spindle.orient_rpm, abs=3.0)
     assert [alarm.code for alarm in rig.shot.alarms] == ["spindle-orient"]
     assert rig.shot.actual == pytest.approx(at, abs=0.01)
 
@@ -163,7 +163,7 @@ def test_spindle_switch_prevents_orientation() -> None:
 
 def test_spindle_is_not_oriented_with_an_open_chuck() -> None:
     lathe = load_shipped_machine("sinumerik-modulo")
-    setup = create_setup(lathe, tool_offsets={}, secondary_offsets={})
+    setup = create_power_up_setup(lathe, tool_offsets={}, secondary_offsets={})
     source = ProgramSource("T.MPF", "G4 F2\nSPOS=90\nG4 F1\nM30\n")
     rig = Rig(machine=lathe, made=list(interpret_program(source, setup).generate_blocks()))
     rig.start("anything")
@@ -179,24 +179,26 @@ def test_spindle_is_not_oriented_with_an_open_chuck() -> None:
 
 def test_driver_without_orientation_is_rejected_before_the_start() -> None:
     needs = remove_repeated_requirements(list_requirements(blocks_of()))
-    assert SPINDLE_ORIENTATION in {need.function for need in needs}
+    assert SPINDLE_ORIENTATION in {need.required_function for need in needs}
     rig = Rig(machine=replace(MILL, spindle=replace(MILL.spindle, oriented=False)))
     context = rig.executor._context
     assert re.fullmatch(
         pattern("executor.no-orient"),
-        find_missing_function(context, Proof("x", (), required_functions=needs)),
+        describe_missing_function(context, Proof("x", (), required_functions=needs)),
     )
     able = Rig(machine=MILL).executor._context
-    assert find_missing_function(able, Proof("x", (), required_functions=needs)) == ""
+    assert describe_missing_function(able, Proof("x", (), required_functions=needs)) == ""
 
 
 def test_proof_includes_spindle_stop_and_longest_orientation_time() -> None:
     """M19 at 3000 rpm: down to the speed that counts as rest, .08 s of the drive, half a turn at 100 rpm."""
-    setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     head = "BEGIN PGM T MM\nTOOL CALL 1 Z S3000 F500\nL Z+5 R0 FMAX M3\n"
     whole = head + "CYCL DEF 9.0 D\nCYCL DEF 9.1 D 5\n{}M30\nEND PGM T MM\n"
     with_it = prove(ProgramSource("T.H", whole.format("M19\n")), setup, MILL)
     without = prove(ProgramSource("T.H", whole.format("")), setup, MILL)
-    down = 0.08 + (3000.0 - MILL.spindle.stop_below) / MILL.spindle.decel
+    down = 0.08 + (3000.0 - MILL.spindle.stop_below) / MILL.spindle.deceleration_rpm_s
     assert with_it.errors == ()
-    assert with_it.times.cycle_s - without.times.cycle_s == pytest.approx(down + 0.08 + 0.3, abs=0.01)
+    assert with_it.program_times.cycle_time_s - without.program_times.cycle_time_s == pytest.approx(
+        down + 0.08 + 0.3, abs=0.01
+    )

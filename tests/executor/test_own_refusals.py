@@ -15,15 +15,15 @@ from core.executor.hand_motion.jogging import Jogger
 from core.executor.job import Job, Proof, check_block, find_outdated_setting, make_job
 from core.executor.program_motion.path_section import PathSection
 from core.executor.program_motion.spindle_angle import SpindleAnglePredictor
-from core.executor.program_run import ChangedOffsets
-from core.executor.raised_alarm import AlarmError, ReportedAttempt
+from core.executor.program_run import OffsetChangeRequest
+from core.executor.raised_alarm import AlarmError, ErrorReporter
 from core.executor.snapshot import MachineState
 from core.executor.spindle_control import SpindleControl, SpindleRequest
-from core.executor.start_conditions import find_missing_function, find_state_refusal
+from core.executor.start_conditions import describe_missing_function, find_state_inhibit_reason
 from core.executor.station_signals import StationSignals
 from core.faults import SPINDLE_TURNS
 from core.interpreter.shared.elementary_blocks import BlockKind
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.interpreter.shared.machine_requirements import ARC_MOTION, THREADING, MachineRequirement
 from core.interpreter.shared.modal_state import ModalState
 from core.language.source import ProgramSource
@@ -39,7 +39,7 @@ from tests.texts import pattern, text
 
 def test_controller_that_cannot_start_reports_why() -> None:
     context = context_of(PlayedController(hindrance="its modes are being verified"))
-    assert find_state_refusal(context, MachineState.IDLE) == "its modes are being verified"
+    assert find_state_inhibit_reason(context, MachineState.IDLE) == "its modes are being verified"
 
 
 def test_missing_controller_function_is_reported_with_its_line() -> None:
@@ -47,18 +47,22 @@ def test_missing_controller_function_is_reported_with_its_line() -> None:
     proof = Proof(
         "", (), required_functions=(MachineRequirement(ARC_MOTION, 3), MachineRequirement(THREADING, 5))
     )
-    assert re.fullmatch(pattern("executor.controller-cannot", line=5), find_missing_function(context, proof))
+    assert re.fullmatch(
+        pattern("executor.controller-cannot", line=5), describe_missing_function(context, proof)
+    )
 
 
 def test_missing_machine_function_is_reported_with_its_line() -> None:
     context = context_of(None)
     context.machine = dataclasses.replace(context.machine, missing_outputs=frozenset({"catcher"}))
     proof = Proof("", (), required_functions=(MachineRequirement("output catcher", 4),))
-    assert re.fullmatch(pattern("executor.no-such-for-line", line=4), find_missing_function(context, proof))
+    assert re.fullmatch(
+        pattern("executor.no-such-for-line", line=4), describe_missing_function(context, proof)
+    )
 
 
 def job_of(text: str, **changes: object) -> Job:
-    return make_job(ProgramSource("PART", text), Setup(**changes))  # type: ignore[arg-type]
+    return make_job(ProgramSource("PART", text), InterpreterSetup(**changes))  # type: ignore[arg-type]
 
 
 def test_a_job_that_was_proved_with_another_unit_or_rapid_rate_is_outdated() -> None:
@@ -72,7 +76,7 @@ def test_a_job_that_was_proved_with_another_unit_or_rapid_rate_is_outdated() -> 
 
 
 def test_repeat_is_allowed_without_pending_offsets() -> None:
-    assert ChangedOffsets(context_of(None)).find_repeat_refusal(ModalState()) == ""
+    assert OffsetChangeRequest(context_of(None)).find_repeat_refusal_reason(ModalState()) == ""
 
 
 @pytest.mark.parametrize(
@@ -97,7 +101,7 @@ def test_drive_test_is_rejected_in_feed_hold_or_with_guard_open(held: bool, guar
     context.spindle.is_guard_open = guard
     path = DriveTestMotion("X", Shape.STEP, 1.0)
     context.axis_sample = context.axis_sample._replace(demand=(50.0, -50.0, 0.0))
-    assert DriveTester(context, Jogger(context)).find_refusal(path, 0.5) == why
+    assert DriveTester(context, Jogger(context)).find_refusal_reason(path, 0.5) == why
 
 
 # --- inputs by name and terminal ----------------------------------------------------------------------------
@@ -124,7 +128,7 @@ def test_feed_per_rev_with_stopped_spindle_is_rejected() -> None:
 
 
 def test_c_move_while_c_turns_as_the_spindle_is_rejected() -> None:
-    machine = dataclasses.replace(load_machine(), has_c_own_drive=False)
+    machine = dataclasses.replace(load_machine(), has_separate_c_drive=False)
     (block,) = Maker().feed(0.0, -1.0, 0.5).blocks
     block = dataclasses.replace(block, c=90.0, modal=ModalState(spindle=1), kind=BlockKind.ROTATE)
     with raises_code(AlarmError, "c-is-spindle", text("executor.line-moves-c", line=1)):
@@ -135,7 +139,7 @@ def test_dropping_unknown_blocks_leaves_the_section_unchanged() -> None:
     section = PathSection(MotionLimits(), 3500.0)
     section.append_blocks(Maker().feed(0.0, -1.0, 5.0).feed(0.0, -2.0, 5.0).blocks)
     for n in (None, 7):
-        section.drop_blocks_before(n)
+        section.discard_earlier_blocks(n)
         assert [block.n for block in section.list_following_blocks(0)] == [1, 2]
 
 
@@ -192,12 +196,12 @@ def test_jog_of_c_names_whether_the_drive_rejects_c_or_switches_to_it() -> None:
     context.spindle, lock = locked()
     jogger = Jogger(context)
     lock.refusal = DriverError("the spindle is turning", "c-coupling", reason=SPINDLE_TURNS)
-    assert jogger.request_c_axis("C") == text("executor.c-still-turns")
+    assert jogger.request_c_axis_mode("C") == text("executor.c-still-turns")
     lock.refusal = None
-    assert jogger.request_c_axis("C") == text("executor.becomes-c")
+    assert jogger.request_c_axis_mode("C") == text("executor.becomes-c")
     assert lock.asked == [(True, False)]
     lock.ready = True
-    assert jogger.request_c_axis("C") == ""
+    assert jogger.request_c_axis_mode("C") == ""
 
 
 def test_drive_that_rejects_c_for_another_reason_is_an_error() -> None:
@@ -216,15 +220,18 @@ def test_hold_cancels_a_pending_change_to_c() -> None:
 
 def test_spindle_wait_reasons_are_reported_by_priority() -> None:
     spindle, _ = locked()
-    assert (spindle.start_inhibit_reason, spindle.slow_reason) == ("", text("executor.spindle-stopped"))
+    assert (spindle.start_inhibit_reason, spindle.spindle_stopped_reason) == (
+        "",
+        text("executor.spindle-stopped"),
+    )
     spindle.request_speed(SpindleRequest(600.0))
-    assert spindle.slow_reason == ""
+    assert spindle.spindle_stopped_reason == ""
     spindle.override = 0.0
-    assert spindle.slow_reason == text("executor.spindle-override-0")
+    assert spindle.spindle_stopped_reason == text("executor.spindle-override-0")
     spindle.is_auto = False
-    assert spindle.slow_reason == text("executor.spindle-switch-off")
+    assert spindle.spindle_stopped_reason == text("executor.spindle-switch-off")
     spindle.is_guard_open = True
-    assert spindle.slow_reason == text("executor.guard-open")
+    assert spindle.spindle_stopped_reason == text("executor.guard-open")
     spindle.record_external_stop("THE FEEDER HAS SWITCHED OFF")
     assert spindle.waiting_start_rpm == 0.0  # at an override of 0
     spindle.permit_start()
@@ -243,7 +250,7 @@ def test_missing_or_stopped_encoder_does_not_predict_the_angle() -> None:
     angle.add_reading((0.09, 9.0))  # not later than the last one
     assert angle.latest_revolutions == 2.5
     angle.add_reading(None)
-    assert not angle.is_predictable
+    assert not angle.can_predict_angle
 
 
 # --- what must not stop the rest ----------------------------------------------------------------------------
@@ -253,7 +260,7 @@ def test_failure_in_the_failure_handler_is_logged_as_second_error(caplog: pytest
     def tell(_error: BaseException) -> None:
         raise OSError("the log is gone")
 
-    with caplog.at_level(logging.ERROR), ReportedAttempt(tell):
+    with caplog.at_level(logging.ERROR), ErrorReporter(tell):
         raise ValueError("a failure that no other test has")
     assert [record.getMessage() for record in caplog.records] == [
         "the control has failed, 1",

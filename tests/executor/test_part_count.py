@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.executor.commands import CycleStart, PrepareStart, Reset, SetSwitch
+from core.executor.commands import CycleStart, PrepareCycleStart, Reset, SetSwitch
 from core.executor.snapshot import MachineState, Snapshot, StartAction
 from tests.executor.lines import TOOLS, mdi
 from tests.executor.rig import Rig
@@ -74,7 +74,7 @@ def test_mdi_line_and_aborted_program_count_no_part() -> None:
     rig = Rig()
     rig.ready()
     mdi(rig, "G90")
-    rig.post(PrepareStart(StartAction.PROGRAM))
+    rig.post(PrepareCycleStart(StartAction.PROGRAM))
     rig.start(SHORT)
     rig.run(0.1)
     assert rig.shot.counts

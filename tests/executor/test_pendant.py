@@ -64,7 +64,7 @@ def test_a_pendant_that_is_lost_holds_the_cycle_and_starts_nothing() -> None:
     rig.post(CycleStart())
     rig.run(0.1)
     assert rig.state is MachineState.HOLD
-    assert rig.shot.start_refusal == AWAY
+    assert rig.shot.start_refusal_reason == AWAY
     rig.pendant = {}
     rig.run(0.5)
     assert rig.said("disturbed")[-1] == "THE PENDANT IS CONNECTED AGAIN"
@@ -112,7 +112,7 @@ def test_start_inhibit_blocks_every_start_and_resume() -> None:
     rig.post(CycleStart())
     rig.run(0.1)
     assert rig.state is MachineState.HOLD
-    assert rig.shot.start_refusal == text("executor.inhibit-switch")
+    assert rig.shot.start_refusal_reason == text("executor.inhibit-switch")
     rig.sim.machine.set_input("start_inhibit", False)
     rig.run(0.5)
     rig.post(CycleStart())

@@ -42,7 +42,7 @@ class Recorded(Rig):
         self.recorder = ScopeRecorder(list_recorded_signals(self.machine, ports), self.folder)
 
         def hear(event: LogEvent) -> None:
-            self.events.append(self.recorder.assign_record_name(event))
+            self.events.append(self.recorder.add_record_name(event))
 
         self.executor = Executor(
             self.machine, ports, hear, self._passes, record_tick=self.recorder.queue_tick
@@ -102,8 +102,8 @@ class Loadless:
     def __init__(self, source: SampleSource) -> None:
         self._source, self.sample_rate_hz = source, source.sample_rate_hz
 
-    def take(self, max_rows: int = 8192) -> FloatArray:
-        rows = self._source.take(max_rows).copy()
+    def take_samples(self, max_rows: int = 8192) -> FloatArray:
+        rows = self._source.take_samples(max_rows).copy()
         rows[:, -2] = np.nan
         return rows
 
@@ -154,7 +154,7 @@ def test_failing_sample_driver_stops_nothing(monkeypatch: pytest.MonkeyPatch) ->
     def broken() -> FloatArray:
         raise DriverError("no samples")
 
-    monkeypatch.setattr(it.sim.ports.samples, "take", broken)
+    monkeypatch.setattr(it.sim.ports.samples, "take_samples", broken)
     it.make_part()
     assert it.shot.alarms == ()
 

@@ -9,12 +9,12 @@ import pytest
 from app.compose.program_proving import create_proof
 from app.searchto.restart_plan import plan_retract
 from app.searchto.searchto_model import RETRACT_TEXT
-from core.executor.commands import CycleStart, FeedHold, LoadJob, PrepareStart, Reset
+from core.executor.commands import CycleStart, FeedHold, LoadJob, PrepareCycleStart, Reset
 from core.executor.control_status import Workpiece
 from core.executor.job import Job, Proof, make_job
 from core.executor.snapshot import MachineState, Snapshot, StartAction
 from core.interpreter.restart.restart_approach import OperatorChoices
-from core.interpreter.restart.state_rebuild import OmniturnSearch
+from core.interpreter.restart.state_rebuild import OmniturnRestartSearch
 from core.interpreter.shared.checkpoint import StraightLeg
 from core.language.source import ProgramSource
 from core.proving.prove_program import prove
@@ -41,7 +41,7 @@ def restart_job(rig: Rig, line: int, choices: OperatorChoices | None = None, num
 def prepare(rig: Rig, job: Job) -> None:
     report = prove(job.source, job.setup, rig.machine)
     assert not report.errors, report.errors
-    rig.post(PrepareStart(StartAction.RESTART, job, create_proof(job, report)))
+    rig.post(PrepareCycleStart(StartAction.RESTART, job, create_proof(job, report)))
     rig.run(0.9)  # a start counts when it was meant before the hands came down
 
 
@@ -49,7 +49,7 @@ def restart(rig: Rig, line: int, choices: OperatorChoices | None = None) -> None
     rig.run(0.4)
     prepare(rig, restart_job(rig, line, choices))
     rig.post(CycleStart())
-    assert not rig.shot.start_refusal, rig.shot.start_refusal
+    assert not rig.shot.start_refusal_reason, rig.shot.start_refusal_reason
 
 
 def broken_off(rig: Rig, at_z: float = -0.3) -> None:
@@ -160,7 +160,7 @@ def refused(rig: Rig) -> str:
     rig.run(0.4)
     rig.post(CycleStart())
     assert rig.state is MachineState.IDLE
-    return rig.shot.start_refusal
+    return rig.shot.start_refusal_reason
 
 
 def test_restart_is_rejected_after_the_axes_have_moved() -> None:
@@ -195,7 +195,7 @@ def test_loading_a_program_cancels_a_prepared_restart() -> None:
     prepare(rig, restart_job(rig, 8))
     assert rig.shot.starts is StartAction.RESTART
     rig.load(PART, TOOLS)
-    assert (rig.shot.starts, rig.shot.prepared_digest) == (StartAction.RESTART, "")
+    assert (rig.shot.starts, rig.shot.prepared_job_digest) == (StartAction.RESTART, "")
     assert refused(rig) == text("executor.no-restart")
 
 
@@ -207,13 +207,15 @@ def test_cycle_start_pressed_together_with_confirmation_is_rejected(seconds: flo
     job = restart_job(rig, 8)
     rig.run(1.0)
     rig.post(
-        PrepareStart(StartAction.RESTART, job, create_proof(job, prove(job.source, job.setup, rig.machine)))
+        PrepareCycleStart(
+            StartAction.RESTART, job, create_proof(job, prove(job.source, job.setup, rig.machine))
+        )
     )
     rig.run(seconds)
     rig.sim.machine.press_start()
     rig.run(0.1)
     assert (rig.state is not MachineState.IDLE) is starts
-    assert (text("executor.meant-just-now") in rig.shot.start_refusal) is not starts
+    assert (text("executor.meant-just-now") in rig.shot.start_refusal_reason) is not starts
 
 
 def test_cycle_start_after_a_canceled_restart_reports_no_restart() -> None:
@@ -221,12 +223,12 @@ def test_cycle_start_after_a_canceled_restart_reports_no_restart() -> None:
     rig = Rig()
     broken_off(rig)
     rig.run(1.0)
-    rig.post(PrepareStart(StartAction.RESTART))
+    rig.post(PrepareCycleStart(StartAction.RESTART))
     rig.run(0.3)
     rig.sim.machine.press_start()
     rig.run(0.1)
     assert rig.state is MachineState.IDLE
-    assert rig.shot.start_refusal == text("executor.no-restart")
+    assert rig.shot.start_refusal_reason == text("executor.no-restart")
 
 
 def test_approach_beyond_the_travel_is_found_by_the_proof() -> None:
@@ -237,9 +239,9 @@ def test_approach_beyond_the_travel_is_found_by_the_proof() -> None:
     assert begin is not None
     far = tuple(
         step._replace(z=500.0) if isinstance(step, StraightLeg) and step.z is not None else step
-        for step in begin.approach
+        for step in begin.approach_steps
     )
-    setup = replace(job.setup, begin=begin._replace(approach=far))
+    setup = replace(job.setup, begin=begin._replace(approach_steps=far))
     report = prove(job.source, setup, rig.machine)
     assert any(each.code == "soft-limit" for each in report.errors)
 
@@ -248,9 +250,9 @@ def test_an_unproved_restart_does_not_start() -> None:
     rig = Rig()
     broken_off(rig)
     job = restart_job(rig, 8)
-    rig.post(PrepareStart(StartAction.RESTART, job))
+    rig.post(PrepareCycleStart(StartAction.RESTART, job))
     assert refused(rig) == text("executor.not-proved")
-    rig.post(PrepareStart(StartAction.RESTART, job, Proof("another", ())))
+    rig.post(PrepareCycleStart(StartAction.RESTART, job, Proof("another", ())))
     assert refused(rig).startswith(text("executor.other-proof"))
 
 
@@ -259,7 +261,7 @@ def test_restart_is_not_prepared_while_a_program_runs() -> None:
     rig.start(PART, TOOLS)
     job = rig.executor._control.status.job
     assert job is not None
-    rig.post(PrepareStart(StartAction.RESTART, job))
+    rig.post(PrepareCycleStart(StartAction.RESTART, job))
     assert text("executor.program-keeps-others-out") in rig.said("refused")[-1]
     rig.post(LoadJob(job))
     assert rig.shot.starts is StartAction.PROGRAM
@@ -289,7 +291,7 @@ def test_restart_with_an_unset_tool_is_rejected() -> None:
     job = restart_job(rig, 8)
     whole = rig.executor._control.status.job
     assert whole is not None
-    bare = replace(whole, set_tool_numbers=frozenset())
+    bare = replace(whole, entered_tool_numbers=frozenset())
     rig.post(LoadJob(bare, Proof(bare.digest, (), tool_numbers=(1,))))
     prepare(rig, job)
     assert refused(rig) == text("executor.tool-offset-unset", tools="T1")
@@ -323,16 +325,16 @@ def way_out_alone(rig: Rig) -> None:
     rig.run(0.4)
     whole = rig.executor._control.status.job
     assert whole is not None
-    cut = OmniturnSearch(whole.source, whole.setup, lambda _count: None).cut_record
+    cut = OmniturnRestartSearch(whole.source, whole.setup, lambda _count: None).cut_record
     out = plan_retract(cut, rig.shot, whole, OperatorChoices())
     assert not out.error_text, out.error_text
     setup = replace(whole.setup, start=rig.shot.demand, begin=out.start_state)
     job = make_job(ProgramSource("WAY OUT", RETRACT_TEXT), setup)
     report = prove(job.shared_program, job.setup, rig.machine)
     assert not report.errors, report.errors
-    rig.post(PrepareStart(StartAction.RETRACT, job, create_proof(job, report)))
+    rig.post(PrepareCycleStart(StartAction.RETRACT, job, create_proof(job, report)))
     rig.post(CycleStart())
-    assert not rig.shot.start_refusal, rig.shot.start_refusal
+    assert not rig.shot.start_refusal_reason, rig.shot.start_refusal_reason
 
 
 def test_restart_that_leaves_a_cut_incomplete_counts_no_part() -> None:
@@ -342,10 +344,10 @@ def test_restart_that_leaves_a_cut_incomplete_counts_no_part() -> None:
     begin, piece = job.setup.begin, Workpiece()
     assert begin is not None
     piece.start_run(job, begin.checkpoint.blocks)
-    assert piece.uncounted_reason == ""
+    assert piece.not_counted_reason == ""
     skips = replace(job.setup, begin=begin._replace(skips_cuts=True))
     piece.start_run(replace(job, setup=skips), begin.checkpoint.blocks)
-    assert piece.uncounted_reason == text("executor.left-out")
+    assert piece.not_counted_reason == text("executor.left-out")
 
 
 def test_retract_only_leaves_a_groove_along_x_and_starts_nothing() -> None:
@@ -355,7 +357,7 @@ def test_retract_only_leaves_a_groove_along_x_and_starts_nothing() -> None:
     rig.watch.append(seen.append)
     way_out_alone(rig)
     rig.until(MachineState.IDLE)
-    rig.post(PrepareStart(StartAction.RESTART))
+    rig.post(PrepareCycleStart(StartAction.RESTART))
     rig.tick()
     assert rig.shot.shows_diameter
     assert all(shot.shows_diameter for shot in seen)
@@ -453,7 +455,7 @@ def test_turning_pass_interrupted_again_on_retract_plans_a_retract() -> None:
     rig.run(0.5)
     whole = rig.executor._control.status.job
     assert whole is not None
-    cut = OmniturnSearch(whole.source, whole.setup, lambda _count: None).cut_record
+    cut = OmniturnRestartSearch(whole.source, whole.setup, lambda _count: None).cut_record
     out = plan_retract(cut, rig.shot, whole, OperatorChoices())
     assert not out.error_text
     assert [leg.label for leg in out.drawn_legs] == ["", "1 X", "2 Z", "3 Z"]
@@ -466,10 +468,10 @@ def test_in_a_program_that_was_changed_since_no_block_tells_where_the_tool_stand
     whole = rig.executor._control.status.job
     assert whole is not None
     assert rig.shot.interrupted_line == 7
-    cut = OmniturnSearch(whole.source, whole.setup, lambda _count: None).cut_record
+    cut = OmniturnRestartSearch(whole.source, whole.setup, lambda _count: None).cut_record
     out = plan_retract(cut, rig.shot, whole, OperatorChoices())
     assert out.error_text == text("executor.how-tool-came", tool=1)
-    assert not out.start_state.approach
+    assert not out.start_state.approach_steps
 
 
 def test_retract_is_rejected_from_an_unproved_position() -> None:
@@ -478,7 +480,7 @@ def test_retract_is_rejected_from_an_unproved_position() -> None:
     rig.run(0.4)
     whole = rig.executor._control.status.job
     assert whole is not None
-    cut = OmniturnSearch(whole.source, whole.setup, lambda _count: None).cut_record
+    cut = OmniturnRestartSearch(whole.source, whole.setup, lambda _count: None).cut_record
     out = plan_retract(cut, rig.shot, whole, OperatorChoices())
     job = make_job(
         ProgramSource("WAY OUT", RETRACT_TEXT),
@@ -486,5 +488,5 @@ def test_retract_is_rejected_from_an_unproved_position() -> None:
     )
     report = prove(job.shared_program, job.setup, rig.machine)
     mdi(rig, "G91", "X.01F5")
-    rig.post(PrepareStart(StartAction.MDI_LINE, job, create_proof(job, report)))
+    rig.post(PrepareCycleStart(StartAction.MDI_LINE, job, create_proof(job, report)))
     assert refused(rig) == text("executor.moved-since", remedy=text("executor.ask-way-out-again"))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.executor.commands import CycleStart, FeedHold, Jog, SetFeedOverride, SetSwitch
 from core.executor.snapshot import MachineState
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
@@ -234,21 +234,21 @@ def test_piecewise_planned_run_equals_the_path_planned_at_once() -> None:
     zigzag = "".join(f"X{0.02 * k:.4f}Z-{0.01 * k + 0.1 * (k // 5 % 2):.4f}\n" for k in range(1, 150))
     text = f"G90G94F300\nG01F100\n{zigzag}G02X3.2Z-2R.4\nG01X3.5Z-1\nX0Z0\nX1\nX2Z-1\nM30\n"
     rig = Rig()
-    setup = create_setup(rig.machine, tool_offsets={}, secondary_offsets={})
+    setup = create_power_up_setup(rig.machine, tool_offsets={}, secondary_offsets={})
     blocks = Interpreter(read_program(ProgramSource("PART", text)), setup).generate_blocks()
     whole = plan_motion(
         build_path(
             [block for block in blocks if block.moves],
-            MotionLimits.from_axes(rig.machine.axes, rig.machine.timing.setpoint),
+            MotionLimits.from_axes(rig.machine.axes, rig.machine.timing.setpoint_duration_s),
         )
     )
     rig.start(text)
-    began = rig.clock.now() + rig.machine.timing.commit
+    began = rig.clock.now() + rig.machine.timing.commit_time_s
     furthest = 0.0
     while rig.state is not MachineState.IDLE:
         rig.tick()
         there = rig.sim.ports.axes.demand_at(rig.clock.now())[0]
-        wanted = whole.positions_at(rig.clock.now() - began)[0]
+        wanted = whole.compute_positions(rig.clock.now() - began)[0]
         furthest = max(furthest, *(abs(a - b) for a, b in zip(there, wanted, strict=True)))
     assert rig.shot.parts == 1
     assert furthest < 1e-4
@@ -258,8 +258,8 @@ def test_next_block_text_differs_from_the_current_block() -> None:
     rig = Rig()
     rig.start("G90G94F300\nX1\nG04F1\nX0\nX1\nM30\n")
     rig.until_true(lambda shot: shot.line == 2 and shot.state is MachineState.RUN)
-    assert rig.shot.next_text == "G04F1"
+    assert rig.shot.next_block_text == "G04F1"
     rig.until_true(lambda shot: shot.waiting_for == "DWELL")
-    assert (rig.shot.block_text, rig.shot.next_text) == ("G04F1", "")  # read once the dwell is over
+    assert (rig.shot.block_text, rig.shot.next_block_text) == ("G04F1", "")  # read once the dwell is over
     rig.until_true(lambda shot: shot.line == 4)
-    assert rig.shot.next_text == "X1"
+    assert rig.shot.next_block_text == "X1"

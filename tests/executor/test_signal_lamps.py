@@ -7,7 +7,7 @@ import dataclasses
 import pytest
 
 from app.compose.machine.machine_files import load_machine, parse_machine
-from core.executor.commands import BlockNextPart, CycleStart, FeedHold, ForceOutput, Reset, SetSwitch
+from core.executor.commands import CycleStart, FeedHold, ForceOutput, PreventNextPart, Reset, SetSwitch
 from core.executor.executor import Executor
 from core.executor.snapshot import MachineState
 from core.machine.machine_model import Machine
@@ -125,7 +125,7 @@ def test_estop_lights_red_without_the_buzzer(rig: Rig) -> None:
 def test_blocked_next_part_blinks_amber_next_to_green(rig: Rig) -> None:
     rig.start(PART.replace("F30", "F10"))
     rig.run(0.3)
-    rig.post(BlockNextPart("T1: its life is gone"))
+    rig.post(PreventNextPart("T1: its life is gone"))
     rig.run(1.2)
     found = times(rig, 2.0)
     assert (found["amber"], found["green"]) == (2, 0)

@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from app.compose.machine.machine_files import load_machine, load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
-from app.compose.stored_offsets import read_offsets
+from app.compose.machine.machine_setup import create_power_up_setup
+from app.compose.stored_offsets import read_offsets_file
 from core.executor.commands import CycleStart, FeedHold, SetSwitch
 from core.executor.snapshot import MachineState
-from core.interpreter.shared.job_setup import SecondaryOffset, Setup, ToolOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, SecondaryOffset, ToolOffset
 from core.language.called_files import load_called_files
 from core.language.source import ProgramSource, load_source
 from core.machine.machine_model import Machine
@@ -37,7 +37,7 @@ RADIUS = 0.015 * INCH  # of the tool nose in the worked examples
 TOOLS = {number: ToolOffset() for number in range(1, 33)}
 
 
-def check(source: ProgramSource, setup: Setup, machine: Machine = LATHE) -> None:
+def check(source: ProgramSource, setup: InterpreterSetup, machine: Machine = LATHE) -> None:
     """Every block once, in order; then the place where the program ends, and one part."""
     rig, stops = stepped_through(source, setup, machine)
     assert rig.shot.alarms == ()
@@ -58,7 +58,10 @@ def test_worked_example_runs_to_its_end_in_single_block(path: Path) -> None:
     if not path.exists():
         pytest.skip(f"the worked examples are not here: {FOLDER}")
     nose = {1: SecondaryOffset(-RADIUS, -RADIUS, RADIUS)}
-    source, setup = load_source(path), create_setup(LATHE, tool_offsets=TOOLS, secondary_offsets=nose)
+    source, setup = (
+        load_source(path),
+        create_power_up_setup(LATHE, tool_offsets=TOOLS, secondary_offsets=nose),
+    )
     if has_errors(source, setup):
         assert path.stem == "caxis-too-little-turn"
         return
@@ -67,10 +70,10 @@ def test_worked_example_runs_to_its_end_in_single_block(path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["pinbar", "bushing", "grooves", "knob", "pin"])
 def test_sample_runs_to_its_end_in_single_block(name: str) -> None:
-    tools, secondary, *_ = read_offsets(SAMPLES / "offsets.toml")
+    tools, secondary, *_ = read_offsets_file(SAMPLES / "offsets.toml")
     check(
         load_source(SAMPLES / f"{name}.nc"),
-        create_setup(LATHE, tool_offsets=tools, secondary_offsets=secondary),
+        create_power_up_setup(LATHE, tool_offsets=tools, secondary_offsets=secondary),
     )
 
 
@@ -79,10 +82,10 @@ def test_sample_runs_to_its_end_in_single_block(name: str) -> None:
     [("roof.h", "ac-table-mill"), ("ring.mpf", "sinumerik-modulo"), ("ring.mpf", "sinumerik-linear")],
 )
 def test_sample_of_another_dialect_runs_to_its_end_in_single_block(name: str, machine: str) -> None:
-    tools, secondary, *_ = read_offsets(SAMPLES / "offsets.toml")
+    tools, secondary, *_ = read_offsets_file(SAMPLES / "offsets.toml")
     model = load_shipped_machine(machine)
     source = load_called_files(load_source(SAMPLES / name), [SAMPLES])
-    check(source, create_setup(model, tool_offsets=tools, secondary_offsets=secondary), model)
+    check(source, create_power_up_setup(model, tool_offsets=tools, secondary_offsets=secondary), model)
 
 
 # --- blocks that go nowhere

@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 import pytest
 
 from core.executor.commands import (
-    BlockNextPart,
     Command,
     ConfirmStart,
     EnableDrives,
     ForceOutput,
     HomeAxes,
     Jog,
+    PreventNextPart,
     SetFeedOverride,
     SetSpindleLimit,
     SetSwitch,
@@ -81,7 +81,7 @@ def test_active_alarm_prevents_enabling_drives_and_jogging() -> None:
 def test_next_part_block_is_reported_once_when_set_and_when_cleared() -> None:
     rig = Rig()
     for why in ("the insert is worn", "the insert is worn", "", ""):
-        rig.post(BlockNextPart(why))
+        rig.post(PreventNextPart(why))
     assert rig.said("switch") == [
         text("executor.no-other-part", why="the insert is worn"),
         text("executor.parts-may-go-on"),
@@ -138,7 +138,7 @@ def test_thread_chain_starts_at_its_first_position_and_lead() -> None:
     """Half a turn more lead each turn: 3 mm in two turns are 1.5 on average, 1 at the begin."""
     growing = thread(1, 0.0, -3.0, 1.5, growth=0.5, x0=4.0)
     path = ThreadPath.from_blocks([growing, thread(2, -3.0, -7.0, 2.0), OUT], LIMITS)
-    assert (path.x, path.z, path.lead_mm) == pytest.approx((4.0, 0.0, 1.0))
+    assert (path.start_x, path.start_z, path.lead_mm) == pytest.approx((4.0, 0.0, 1.0))
 
 
 def test_thread_joints_closer_than_a_revolution_are_followed() -> None:
@@ -234,7 +234,7 @@ def test_at_speed_timeout_starts_when_the_operator_permits_rotation() -> None:
         context.now = float(second)
         assert not wait.is_over(context.now)
     context.spindle.override = 1.0
-    context.now = 59.0 + context.machine.spindle.timeout - 0.1
+    context.now = 59.0 + context.machine.spindle.timeout_s - 0.1
     assert not wait.is_over(context.now)
     context.now += 0.2
     with pytest.raises(AlarmError) as told:

@@ -12,10 +12,10 @@ from core.executor.commands import (
     CycleStart,
     FeedHold,
     ForceOutput,
-    PrepareStart,
+    PrepareCycleStart,
     Reset,
     SetSpindleLimit,
-    SupplyProof,
+    SupplyJobProof,
 )
 from core.executor.job import Proof
 from core.executor.snapshot import MachineState, StartAction
@@ -85,10 +85,10 @@ def test_cycle_start_before_the_announcement_is_readable_is_rejected() -> None:
     rig.run(MIN_READING_TIME_S - 2 * TICK)
     rig.post(CycleStart())
     assert rig.state is MachineState.HOLD
-    assert rig.shot.start_refusal == text("executor.look-first", what=SAID)
+    assert rig.shot.start_refusal_reason == text("executor.look-first", what=SAID)
     never_turns(rig, 1.0)
     rig.post(CycleStart())
-    assert (rig.state, rig.shot.start_refusal) == (MachineState.WAIT, "")
+    assert (rig.state, rig.shot.start_refusal_reason) == (MachineState.WAIT, "")
 
 
 def test_cycle_start_and_spindle_switch_in_one_tick_start_nothing() -> None:
@@ -97,7 +97,7 @@ def test_cycle_start_and_spindle_switch_in_one_tick_start_nothing() -> None:
     rig.sim.machine.set_spindle_auto(True)
     rig.post(CycleStart())
     assert rig.state is MachineState.HOLD
-    assert rig.shot.start_refusal
+    assert rig.shot.start_refusal_reason
     never_turns(rig)
 
 
@@ -111,7 +111,7 @@ def test_raised_spindle_override_renews_the_announcement() -> None:
     rig.sim.machine.set_spindle_pot(1.0)
     rig.until_true(lambda shot: shot.announced == (SAID,))
     rig.post(CycleStart())
-    assert rig.shot.start_refusal == text("executor.look-first", what=SAID)
+    assert rig.shot.start_refusal_reason == text("executor.look-first", what=SAID)
     never_turns(rig, 1.0)
 
 
@@ -124,7 +124,7 @@ def test_spindle_stopped_by_zero_override_needs_cycle_start() -> None:
     assert rig.shot.waiting_for == text("executor.spindle-override-0")
     rig.until_true(lambda shot: shot.rpm_actual == 0.0)
     rig.post(CycleStart())
-    assert rig.shot.start_refusal == text("executor.spindle-override-0-refused")
+    assert rig.shot.start_refusal_reason == text("executor.spindle-override-0-refused")
     rig.sim.machine.set_spindle_pot(1.0)
     never_turns(rig)
     assert rig.shot.announced == (SAID,)
@@ -202,7 +202,7 @@ def test_waiting_spindle_does_not_start_with_an_open_collet() -> None:
     rig.sim.machine.set_spindle_auto(True)
     rig.run(1.0)
     rig.post(CycleStart())
-    assert rig.shot.start_refusal == text("executor.collet-open")
+    assert rig.shot.start_refusal_reason == text("executor.collet-open")
     never_turns(rig)
 
 
@@ -218,7 +218,7 @@ def test_collet_opened_by_the_program_can_be_closed_after_a_reset() -> None:
     assert stop is not None
     assert stop.number == 223
     rig.post(CycleStart())
-    assert rig.shot.start_refusal == text("executor.collet-opened-by-program")
+    assert rig.shot.start_refusal_reason == text("executor.collet-opened-by-program")
     never_turns(rig)
     rig.post(Reset())
     rig.until(MachineState.IDLE)
@@ -226,7 +226,7 @@ def test_collet_opened_by_the_program_can_be_closed_after_a_reset() -> None:
     rig.run(1.0)
     rig.post(CycleStart())
     assert re.fullmatch(
-        pattern("executor.interrupted-in-part", line=4, program="PART"), rig.shot.start_refusal
+        pattern("executor.interrupted-in-part", line=4, program="PART"), rig.shot.start_refusal_reason
     )  # the collet is no reason
 
 
@@ -343,7 +343,7 @@ def test_open_guard_stops_feed_and_spindle_and_closing_starts_nothing() -> None:
     assert (rig.shot.stop.code, rig.shot.stop.number) == ("guard-open", 604)
     rig.post(CycleStart())
     rig.run(0.1)
-    assert rig.shot.start_refusal == text("executor.guard-close")
+    assert rig.shot.start_refusal_reason == text("executor.guard-close")
     rig.sim.machine.set_input("guard", True)
     never_turns(rig)
     assert rig.state is MachineState.HOLD
@@ -368,7 +368,7 @@ def test_start_is_rejected_with_open_guard_and_closing_it_starts_nothing() -> No
     rig.sim.machine.set_input("guard", False)
     rig.start(CUT)
     rig.run(0.2)
-    assert (rig.state, rig.shot.start_refusal) == (MachineState.IDLE, text("executor.guard-close"))
+    assert (rig.state, rig.shot.start_refusal_reason) == (MachineState.IDLE, text("executor.guard-close"))
     rig.sim.machine.set_input("guard", True)
     never_turns(rig, 1.0)
     assert rig.state is MachineState.IDLE
@@ -380,10 +380,10 @@ def test_start_refusal_is_cleared_with_its_cause() -> None:
     rig.until(MachineState.HOLD)
     rig.post(CycleStart())
     rig.run(0.5)
-    assert rig.shot.start_refusal == text("executor.guard-close")
+    assert rig.shot.start_refusal_reason == text("executor.guard-close")
     rig.sim.machine.set_input("guard", True)
     rig.run(0.1)
-    assert rig.shot.start_refusal == ""
+    assert rig.shot.start_refusal_reason == ""
 
 
 # --- what the proof has warned of ----------------------------------------------------------------------
@@ -395,7 +395,7 @@ def warned(*what: str) -> Rig:
     job = rig.load(CUT)
     rig.ready()
     rig.run(1.0)
-    rig.post(SupplyProof(Proof(job.digest, (), warnings=what)))
+    rig.post(SupplyJobProof(Proof(job.digest, (), warnings=what)))
     return rig
 
 
@@ -404,7 +404,7 @@ def test_warnings_are_announced_before_the_first_start() -> None:
     said = text("executor.warning", what=text("executor.more-warnings", what=WARNED, count=1))
     rig.post(CycleStart())
     assert rig.state is MachineState.IDLE
-    assert rig.shot.start_refusal == text("executor.look-first", what=said)
+    assert rig.shot.start_refusal_reason == text("executor.look-first", what=said)
     assert rig.shot.announced == (said,)
     rig.run(MIN_READING_TIME_S)
     rig.post(CycleStart())
@@ -415,7 +415,7 @@ def test_warnings_are_announced_before_the_first_start() -> None:
 def test_warnings_can_be_acknowledged_while_the_drives_are_off() -> None:
     rig = Rig()
     job = rig.load(CUT)
-    rig.post(SupplyProof(Proof(job.digest, (), warnings=(WARNED,))))
+    rig.post(SupplyJobProof(Proof(job.digest, (), warnings=(WARNED,))))
     assert rig.state is MachineState.DISABLED
     assert rig.shot.announced == (text("executor.warning", what=WARNED),)
     rig.run(1.0)
@@ -437,9 +437,9 @@ def test_warnings_reappear_between_parts_without_blocking_the_next() -> None:
 
 def test_warnings_do_not_apply_to_mdi_or_another_program() -> None:
     rig = warned(WARNED)
-    rig.post(PrepareStart(StartAction.MDI_LINE))
+    rig.post(PrepareCycleStart(StartAction.MDI_LINE))
     assert rig.shot.announced == ()
-    rig.post(PrepareStart(StartAction.PROGRAM))
+    rig.post(PrepareCycleStart(StartAction.PROGRAM))
     assert rig.shot.announced
     rig.load(CUT.replace("1500", "1200"))
     assert rig.shot.announced == ()

@@ -18,11 +18,11 @@ from core.executor.commands import (
     LoadJob,
     Reset,
     SetSpindleLimit,
-    SupplyProof,
+    SupplyJobProof,
 )
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import STATE_TRANSITIONS, MachineState, TransitionError, require_transition
-from core.interpreter.shared.job_setup import Setup, ToolOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset
 from core.interpreter.shared.machine_requirements import THREADING, MachineRequirement
 from core.language.source import Dialect, ProgramSource
 from tests.executor.rig import Rig, unhomed_machine
@@ -33,16 +33,18 @@ TEXT = "G90G94F300\nX1\nM30\n"
 
 def nothing_moved(rig: Rig) -> bool:
     rig.run(1.0)
-    return rig.sim.machine.get_true_position() == (0.0, 0.0, 0.0) and rig.sim.machine.get_spindle_rpm() == 0.0
+    return (
+        rig.sim.machine.get_true_positions() == (0.0, 0.0, 0.0) and rig.sim.machine.get_spindle_rpm() == 0.0
+    )
 
 
 def refused(rig: Rig) -> str:
     rig.run(0.4)
     rig.post(CycleStart())
     assert rig.state not in {MachineState.RUN, MachineState.WAIT}
-    assert rig.said("refused")[-1] == rig.shot.start_refusal
+    assert rig.said("refused")[-1] == rig.shot.start_refusal_reason
     assert nothing_moved(rig)
-    return rig.shot.start_refusal
+    return rig.shot.start_refusal_reason
 
 
 def test_start_without_a_program_is_rejected() -> None:
@@ -58,7 +60,7 @@ def test_start_is_rejected_until_the_proof_arrives() -> None:
     rig.post(LoadJob(job))
     assert rig.shot.needs_proof
     assert text("executor.not-proved") in refused(rig)
-    rig.post(SupplyProof(Proof(job.digest, ())))
+    rig.post(SupplyJobProof(Proof(job.digest, ())))
     assert not rig.shot.needs_proof
     rig.post(CycleStart())
     assert rig.state is MachineState.RUN
@@ -87,7 +89,7 @@ def test_start_with_errors_in_the_proof_is_rejected() -> None:
     rig = Rig()
     rig.ready()
     job = rig.load(TEXT)
-    rig.post(SupplyProof(Proof(job.digest, ("line 2: no",))))
+    rig.post(SupplyJobProof(Proof(job.digest, ("line 2: no",))))
     assert refused(rig) == text("executor.program-errors", errors="line 2: no")
 
 
@@ -95,7 +97,7 @@ def test_start_with_an_unset_tool_is_rejected() -> None:
     rig = Rig()
     rig.ready()
     job = rig.load(TEXT)
-    rig.post(SupplyProof(Proof(job.digest, (), tool_numbers=(3, 4))))
+    rig.post(SupplyJobProof(Proof(job.digest, (), tool_numbers=(3, 4))))
     assert refused(rig) == text("executor.tool-offset-unset", tools="T3, T4")
 
 
@@ -103,7 +105,7 @@ def test_tool_measured_by_the_program_needs_no_offset() -> None:
     rig = Rig()
     rig.ready()
     job = rig.load(TEXT)
-    rig.post(SupplyProof(Proof(job.digest, (), tool_numbers=(3, 4), measured_tools=(4,))))
+    rig.post(SupplyJobProof(Proof(job.digest, (), tool_numbers=(3, 4), measured_tools=(4,))))
     assert refused(rig) == text("executor.tool-offset-unset", tools="T3")
 
 
@@ -312,7 +314,9 @@ def test_start_of_a_thread_without_an_encoder_is_rejected(monkeypatch: pytest.Mo
     rig = Rig()
     rig.ready()
     program = "G90G94F300\nT1\nM03S500\nX.5Z.2\nG33X.45Z-.5K.05\nM30\n"
-    job = make_job(ProgramSource("thread.nc", program), Setup(tools={1: ToolOffset(0.0, 0.0, 0.0)}))
+    job = make_job(
+        ProgramSource("thread.nc", program), InterpreterSetup(tools={1: ToolOffset(0.0, 0.0, 0.0)})
+    )
     monkeypatch.setattr(rig.sim.ports.spindle, "read_angle", lambda: None)
     rig.post(
         LoadJob(
@@ -326,7 +330,7 @@ def test_start_of_a_thread_without_an_encoder_is_rejected(monkeypatch: pytest.Mo
 def test_unassigned_m_function_refusal_shows_the_machine_file_lines() -> None:
     rig = Rig()
     rig.ready()
-    job = make_job(ProgramSource("part.mpf", "M80\nG0 X30\nM30\n", Dialect.SINUMERIK), Setup())
+    job = make_job(ProgramSource("part.mpf", "M80\nG0 X30\nM30\n", Dialect.SINUMERIK), InterpreterSetup())
     rig.post(LoadJob(job, Proof(job.digest, (), required_functions=(MachineRequirement("M80", 1),))))
     said = refused(rig)
     assert re.match(pattern("executor.no-m-code", line=1, code="M80"), said)
@@ -356,7 +360,7 @@ def test_confirmation_and_two_hand_start_together_start_nothing(seconds: float, 
     rig.post(ConfirmStart(rig.shot.interrupted.at))
     slapped(rig, seconds)
     assert (rig.state is not MachineState.IDLE) is starts
-    assert bool(rig.shot.start_refusal) is not starts
+    assert bool(rig.shot.start_refusal_reason) is not starts
 
 
 @pytest.mark.parametrize(("seconds", "starts"), [(0.0, False), (0.7, False), (0.9, True)])

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from core.alarms import CATALOG, Reaction
+from core.alarms import CATALOG, AlarmReaction
 from core.executor.commands import CycleStart, FeedHold, Jog, Reset, SetSwitch
 from core.executor.raised_alarm import HOLD_CODES, find_hold_code
 from core.executor.snapshot import MachineState
@@ -191,11 +191,11 @@ def test_late_computer_within_a_tick_does_not_resume_automatically(
 
     monkeypatch.setattr(cycle, "advance_one_tick", late)
     rig.tick()
-    stood = rig.sim.machine.get_true_position()
+    stood = rig.sim.machine.get_true_positions()
     rig.until(MachineState.HOLD, limit=0.1)
     rig.run(1.0)
     assert rig.state is MachineState.HOLD
-    assert rig.sim.machine.get_true_position() == pytest.approx(stood, abs=1e-4)
+    assert rig.sim.machine.get_true_positions() == pytest.approx(stood, abs=1e-4)
     rig.post(CycleStart())
     rig.until(MachineState.PROGRAM_STOP)
     assert rig.shot.demand[:2] == pytest.approx((0.5 * 25.4, -0.5 * 25.4))
@@ -255,5 +255,5 @@ def test_every_hold_reason_has_a_hold_code() -> None:
 
 
 def test_number_of_hold_codes_equals_number_of_catalog_holds() -> None:
-    holds = [entry for entry in CATALOG.values() if entry.reaction is Reaction.HOLD]
+    holds = [entry for entry in CATALOG.values() if entry.reaction is AlarmReaction.HOLD]
     assert len(HOLD_CODES) == len(holds)

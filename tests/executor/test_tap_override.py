@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.compose.machine.machine_files import load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.executor.program_motion.path_section import OverrideFactors, PathSection
 from core.executor.snapshot_publisher import _feed_in_force
 from core.interpreter.dialects import interpret_program
@@ -23,14 +23,14 @@ TAP = (
 
 def test_tap_follows_only_the_spindle_override() -> None:
     """1.5 mm at S600 are 15 mm/s; with the spindle at 80 % 12 mm/s, whatever the feed override is."""
-    setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     blocks = list(interpret_program(ProgramSource("T.H", TAP), setup).generate_blocks())
     tap = next(block for block in blocks if block.follows_spindle)
     assert _feed_in_force(tap, tap.modal) == pytest.approx(15.0)  # what the desk shows a minute
     cut = next(block for block in blocks if block.text.startswith("L Z+40"))
     for block, plain, changed in ((tap, 15.0, 12.0), (cut, 15.0, 7.5)):
         section = PathSection(
-            MotionLimits.from_axes(MILL.axes, MILL.timing.setpoint), rpm_max=MILL.spindle.max_rpm
+            MotionLimits.from_axes(MILL.axes, MILL.timing.setpoint_duration_s), rpm_max=MILL.spindle.max_rpm
         )
         section.append_blocks([block])
         assert section.scale_path(OverrideFactors(), None).pieces.rate.max() == pytest.approx(plain)

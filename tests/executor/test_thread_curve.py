@@ -58,40 +58,40 @@ def test_z_follows_the_next_lead_after_a_joint() -> None:
     curve = build_thread_curve(CHAIN, LIMITS)
     assert curve.length_mm == pytest.approx(6.0)
     for s, z, lead in ((2.0, -2.0, -1.0), (5.0, -6.0, -2.0)):
-        assert curve.evaluate_at(s) == pytest.approx((5.0, z, 0.0, lead))
-        assert curve.find_s(z) == pytest.approx(s)
+        assert curve.evaluate_curve(s) == pytest.approx((5.0, z, 0.0, lead))
+        assert curve.find_curve_position(z) == pytest.approx(s)
     assert curve.compute_max_acceleration(A, A) == pytest.approx(A / 2)  # Z goes twice as fast as s
 
 
 def test_joint_is_rounded_using_half_of_the_acceleration() -> None:
     """From 1 to 2 mm/s at A/2 takes 2/A s, so 1/A mm of s on each side; in its middle Z is 1/4A behind."""
     curve = build_thread_curve(CHAIN, LIMITS)
-    assert curve.s_mm[1] == pytest.approx(4.0 - 1.0 / A)
-    assert curve.s_mm[-2] == pytest.approx(4.0 + 1.0 / A)
-    assert curve.evaluate_at(4.0)[1] == pytest.approx(-4.0 - 0.25 / A, abs=1e-9)
+    assert curve.curve_positions_mm[1] == pytest.approx(4.0 - 1.0 / A)
+    assert curve.curve_positions_mm[-2] == pytest.approx(4.0 + 1.0 / A)
+    assert curve.evaluate_curve(4.0)[1] == pytest.approx(-4.0 - 0.25 / A, abs=1e-9)
 
 
 def test_joint_rounding_is_set_by_the_axis_that_changes_speed_most() -> None:
     """A cylinder goes over into 45 degrees outwards: from 0 to 1 mm/s of X at half of A/4 takes 8/A s."""
     cone = [thread(1, 0.0, -4.0, 1.0), thread(2, -4.0, -8.0, 1.0, x=9.0)]
     curve = build_thread_curve(cone, MotionLimits(vmax=(127.0, 127.0, 1200.0), amax=(A / 4.0, A, 12000.0)))
-    assert curve.s_mm[1] == pytest.approx(4.0 - 4.0 / A)
-    assert curve.s_mm[-2] == pytest.approx(4.0 + 4.0 / A)
-    assert curve.evaluate_at(4.0)[0] == pytest.approx(5.0 + 1.0 / A, abs=1e-9)
+    assert curve.curve_positions_mm[1] == pytest.approx(4.0 - 4.0 / A)
+    assert curve.curve_positions_mm[-2] == pytest.approx(4.0 + 4.0 / A)
+    assert curve.evaluate_curve(4.0)[0] == pytest.approx(5.0 + 1.0 / A, abs=1e-9)
 
 
 def test_joint_without_a_change_is_unchanged() -> None:
     same = [thread(1, 0.0, -4.0, 1.0), thread(2, -4.0, -6.0, 1.0)]
-    assert build_thread_curve(same, LIMITS).s_mm.tolist() == [0.0, 4.0, 6.0]
+    assert build_thread_curve(same, LIMITS).curve_positions_mm.tolist() == [0.0, 4.0, 6.0]
 
 
 def test_growing_lead_is_followed_per_revolution() -> None:
     """From 1 mm on .5 mm more a turn: (1 + q/4)·q, 1.25 mm in a turn and 3 mm in two; 1.5 on average."""
     curve = build_thread_curve([thread(1, 0.0, -3.0, 1.5, growth=0.5)], LIMITS)
-    assert len(curve.s_mm) == 33  # sixteen a turn
+    assert len(curve.curve_positions_mm) == 33  # sixteen a turn
     assert curve.length_mm == pytest.approx(2.0)
-    assert curve.evaluate_at(1.0)[1] == pytest.approx(-1.25)
-    assert curve.evaluate_at(2.0)[1] == pytest.approx(-3.0)
+    assert curve.evaluate_curve(1.0)[1] == pytest.approx(-1.25)
+    assert curve.evaluate_curve(2.0)[1] == pytest.approx(-3.0)
 
 
 @pytest.mark.parametrize("block", [thread(1, -4.0, -4.0, 1.0), thread(1, 0.0, -4.0, 0.0)])
@@ -109,7 +109,7 @@ def test_axes_follow_a_thread_chain_and_leave_it_by_its_rapid() -> None:
     assert place(way, 5.0) == pytest.approx((5.0, -6.0))
     assert left == pytest.approx(6.0, abs=0.001)
     assert place(way, 99.0) == pytest.approx((9.0, -8.0))
-    assert path.find_s_and_speed(-6.0, -2.0) == pytest.approx((5.0, 1.0))
+    assert path.find_position_and_speed(-6.0, -2.0) == pytest.approx((5.0, 1.0))
     back = path.make_retract()
     assert back is not None
     assert place(back, 0.0) == pytest.approx((5.0, -8.0))
@@ -130,7 +130,9 @@ def test_synchronized_pull_out_follows_its_own_path() -> None:
 def test_stop_in_a_thread_chain_follows_the_chain() -> None:
     """At s 5 with 1 mm/s; s brakes with A/2: 1/A mm further, of which Z makes two."""
     path = ThreadPath.from_blocks([*CHAIN, OUT], LIMITS)
-    assert place(path.make_stop(0.0, 5.0, 1.0), 99.0) == pytest.approx((5.0, -6.0 - 2.0 / A), abs=1e-9)
+    assert place(path.make_stop_setpoints(0.0, 5.0, 1.0), 99.0) == pytest.approx(
+        (5.0, -6.0 - 2.0 / A), abs=1e-9
+    )
 
 
 def retract(measured: float, behind: Sequence[Block], **words: object) -> ThreadRetract:

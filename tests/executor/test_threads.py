@@ -45,7 +45,7 @@ class Recorder:
         if shot.block_text.startswith("G33") and not shot.block_text.endswith("P"):
             machine = self.rig.sim.machine
             (_, z, _), _ = self.rig.sim.ports.axes.demand_at(self.rig.clock.now())
-            row = z / INCH, machine.get_true_position()[1] / INCH, machine.spindle_turns()
+            row = z / INCH, machine.get_true_positions()[1] / INCH, machine.spindle_turns()
             self.rows.setdefault(shot.block, []).append(row)
 
     def phases(self, column: int) -> list[FloatArray]:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from core.executor.commands import (
-    BlockNextPart,
     CycleStart,
     FeedHold,
-    PrepareStart,
+    PrepareCycleStart,
+    PreventNextPart,
     Reset,
     SetFeedOverride,
     SetSwitch,
@@ -86,7 +86,7 @@ def test_worn_tool_lets_the_current_part_finish_and_blocks_the_next() -> None:
     rig.post(SetSwitch("cycle_repeat", True))
     rig.start(PART, TOOLS)
     rig.run(0.5)
-    rig.post(BlockNextPart(SPENT))
+    rig.post(PreventNextPart(SPENT))
     assert rig.state is MachineState.RUN
     rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
@@ -94,19 +94,19 @@ def test_worn_tool_lets_the_current_part_finish_and_blocks_the_next() -> None:
     rig.run(0.4)
     rig.post(CycleStart())
     assert rig.state is MachineState.IDLE
-    assert rig.shot.start_refusal == SPENT
+    assert rig.shot.start_refusal_reason == SPENT
 
 
 def test_new_insert_allows_the_next_part() -> None:
     rig = Rig()
     rig.ready()
     rig.load(PART, TOOLS)
-    rig.post(BlockNextPart(SPENT))
+    rig.post(PreventNextPart(SPENT))
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.shot.start_refusal == SPENT
-    rig.post(BlockNextPart(""))
-    assert (rig.shot.start_refusal, rig.shot.next_barred) == ("", "")
+    assert rig.shot.start_refusal_reason == SPENT
+    rig.post(PreventNextPart(""))
+    assert (rig.shot.start_refusal_reason, rig.shot.next_barred) == ("", "")
     rig.run(0.4)
     rig.post(CycleStart())
     assert rig.state is MachineState.RUN
@@ -117,7 +117,7 @@ def test_blocked_next_part_still_allows_resume_from_hold() -> None:
     rig = Rig()
     rig.start(PART, TOOLS)
     rig.run(0.5)
-    rig.post(BlockNextPart(SPENT), FeedHold())
+    rig.post(PreventNextPart(SPENT), FeedHold())
     rig.until(MachineState.HOLD)
     rig.run(0.4)
     rig.post(CycleStart())
@@ -128,27 +128,27 @@ def test_blocked_next_part_still_allows_resume_from_hold() -> None:
 def test_mdi_line_runs_while_the_next_part_is_blocked() -> None:
     rig = Rig()
     rig.ready()
-    rig.post(BlockNextPart(SPENT))
+    rig.post(PreventNextPart(SPENT))
     mdi(rig, "G90")
     assert rig.shot.lines == 1
-    rig.post(PrepareStart(StartAction.PROGRAM))
+    rig.post(PrepareCycleStart(StartAction.PROGRAM))
 
 
 def test_missing_program_is_reported_before_the_blocked_next_part() -> None:
     """The cause told first is the one to be removed first."""
     rig = Rig()
-    rig.post(BlockNextPart(SPENT))
+    rig.post(PreventNextPart(SPENT))
     rig.ready()
     rig.run(0.4)
     rig.post(CycleStart())
-    assert rig.shot.start_refusal == text("executor.no-program")
+    assert rig.shot.start_refusal_reason == text("executor.no-program")
 
 
 def test_repeated_next_part_block_is_reported_once() -> None:
     rig = Rig()
-    rig.post(BlockNextPart(SPENT))
-    rig.post(BlockNextPart(SPENT))
-    rig.post(BlockNextPart(""))
+    rig.post(PreventNextPart(SPENT))
+    rig.post(PreventNextPart(SPENT))
+    rig.post(PreventNextPart(""))
     assert rig.said("switch") == [text("executor.no-other-part", why=SPENT), text("executor.parts-may-go-on")]
 
 

@@ -12,23 +12,23 @@ from core.executor.commands import EnableDrives, Jog, JogByStep, Reset, SelectHa
 from core.executor.snapshot import MachineState, TouchPhase
 from core.machine.hardware_model import AnalogInputModel
 from core.machine.machine_model import InputModel, Machine
-from core.machine.setter_table import SetterModel, compute_stopping_distance
+from core.machine.setter_table import ToolSetterModel, compute_stopping_distance
 from drivers.simulated.simulated_table import SimulatedTable
 from tests.executor.rig import FINE, INCH, Rig
 from tests.texts import text
 
 LEASE = 0.25
-SETTER = SetterModel(
+SETTER = ToolSetterModel(
     x=10.0, z=20.0, width=6.0, overtravel=3.0, speed=8.0, slow=0.25, search=12.0, back_off=1.0
 )
 TIP = (3.7, -41.3)  # where the slides stand when the tip is on part zero
 
 
-def with_setter(setter: SetterModel = SETTER, *inputs: str, tip: tuple[float, float] = TIP) -> Machine:
+def with_setter(setter: ToolSetterModel = SETTER, *inputs: str, tip: tuple[float, float] = TIP) -> Machine:
     """The shipped lathe with a tool setter, and one tool whose tip is where only the simulation knows."""
     machine = load_machine()
     wired = {name: InputModel(name, f"test {name}") for name in ("probe", *inputs)}
-    tables = {**machine.hardware.tables, "setter": setter, "sim": SimulatedTable(tips=(tip,))}
+    tables = {**machine.hardware.tables, "setter": setter, "sim": SimulatedTable(tool_tip_positions=(tip,))}
     hardware = dataclasses.replace(machine.hardware, tables=tables)
     return dataclasses.replace(machine, inputs={**machine.inputs, **wired}, hardware=hardware)
 

@@ -19,7 +19,7 @@ from core.executor.safety.watchdog import (
     ExecutorThread,
     Watchdog,
     WatchdogSupervisor,
-    is_thread_running,
+    is_python_thread_alive,
 )
 from core.executor.snapshot import MachineState
 from drivers.grblhal import grblhal_codes
@@ -255,7 +255,7 @@ def test_end_of_another_thread_is_reported_once() -> None:
     assert told == []
     ending.set()
     other.join()
-    assert not is_thread_running(name)
+    assert not is_python_thread_alive(name)
     for _ in range(3 * EXECUTOR_CHECKS_PER_THREAD_CHECK):
         dog.check_threads()
     assert told == [name]

@@ -20,7 +20,7 @@ import resources
 from app.cli import scope_command
 from app.cli.program_options import read_inputs_file
 from app.compose.machine.machine_files import load_shipped_machine, parse_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from app.compose.machine.setup_archive import ARCHIVE_FORMAT, MANIFEST
 from app.compose.machine.setup_file import check_setup
 from app.desk.command_errors import CommandError
@@ -28,14 +28,14 @@ from app.offsets.offsets_file import read_offset_rows, read_tool_shapes
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import Dialect, SourceError, decode_source
 from core.machine.machine_file import read_machine_text
-from core.part.stock_spec import StockError, parse_profile
+from core.part.stock_spec import StockError, parse_stock_profile
 from core.ports import DriverError
 from core.proving.prove_program import prove
 from core.records.record_file import save_record
 from core.records.record_ring import RingLayout, ScopeRing
 from core.records.ring_file import RingFile
 from core.table_schema import MachineFileError
-from drivers.canopen.canopen_objects import build_drive_dictionary, load_dictionary
+from drivers.canopen.canopen_objects import build_drive_dictionary, load_object_dictionary
 from drivers.canopen.drive_profiles import PROFILES
 from tests.extras.modules import of_extras
 from tests.fuzz.damage import EDITS, in_archive
@@ -60,7 +60,7 @@ def _language(dialect: Dialect) -> Target:
 
     def run(data: bytes) -> Iterator[str]:
         machine = load_shipped_machine(machine_name)
-        setup = create_setup(machine, tool_offsets=_TOOLS, secondary_offsets=_SECONDARY)
+        setup = create_power_up_setup(machine, tool_offsets=_TOOLS, secondary_offsets=_SECONDARY)
         report = prove(decode_source(name, data), setup, machine)
         for each in report.diagnostics:
             yield each.format_one_line(name)
@@ -151,7 +151,7 @@ def _file(name: str, data: bytes) -> Path:
 
 
 def _profile_stock(data: bytes) -> Iterable[str]:
-    parse_profile("fuzz", data.decode("utf-8", "replace"), 1.0, 0.0)
+    parse_stock_profile("fuzz", data.decode("utf-8", "replace"), 1.0, 0.0)
     return ()
 
 
@@ -257,7 +257,7 @@ def _sealed(data: bytes, chance: random.Random) -> bytes:
 
 
 def _dictionary(data: bytes) -> Iterable[str]:
-    load_dictionary("X", str(_file("fuzz.eds", data)), canopen.ObjectDictionary)
+    load_object_dictionary("X", str(_file("fuzz.eds", data)), canopen.ObjectDictionary)
     return ()
 
 

@@ -41,13 +41,13 @@ def _good() -> Path:
         store.programs.save_version("part.nc", b"G90\nM30\n" * 100, "written").result()
         store.events.log_event("alarm", "alarm 101 x line 3: X", 3).result()
         store.runs.add_parts("part.nc").result()
-        store.runs.record_start("part.nc").result()
+        store.runs.record_run_start("part.nc").result()
         store.settings.save_setting("target:part.nc", 10).result()
         row = FeatureRow(0, "part.nc", "PIN", "diameter", 10.0, -0.1, 0.1, "tool", 1, 1, 0, 1)
         store.write(lambda c: measured_parts.save_feature(c, row)).result()
         reading = ReadingRow(0, 1, 1, 10.0, "mm", "", "typed", "")
         store.write(lambda c: measured_parts.add_reading(c, reading)).result()
-        store.write(lambda c: tool_lives.save_limits(c, ToolLifeRow(1, limit_parts=5))).result()
+        store.write(lambda c: tool_lives.save_tool_life_limits(c, ToolLifeRow(1, limit_parts=5))).result()
     return home
 
 
@@ -105,7 +105,7 @@ def _read(data: bytes) -> Iterator[str]:
     """Opened as the desk opens it, and everything read that a page shows; each may refuse in a sentence."""
     home = _spoilt(data)
     with suppress(StoreError):
-        yield from backup.find_problems(home / STORE_FILE_NAME)
+        yield from backup.find_store_problems(home / STORE_FILE_NAME)
     with Store.open(home) as store:
         yield from store.repair_messages
         yield from store.find_damaged_rows()
@@ -114,7 +114,7 @@ def _read(data: bytes) -> Iterator[str]:
             *(partial(store.offsets.get_table(kind).read_history, 50) for kind in OffsetKind),
             store.programs.list_programs, lambda: store.programs.list_versions("part.nc"),
             lambda: store.programs.load_version("part.nc"), store.events.read_events,
-            store.runs.read_records, store.jobs.read_jobs, lambda: store.runs.read_part_count("part.nc"),
+            store.runs.read_run_records, store.jobs.read_jobs, lambda: store.runs.read_part_count("part.nc"),
             lambda: store.settings.read_setting("target:part.nc"),
             lambda: store.settings.read_setting("under_way"),
             lambda: store.settings.read_setting(make_stock_setting_key("part.nc")), lambda: _measured(store),

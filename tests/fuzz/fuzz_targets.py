@@ -21,7 +21,7 @@ def _transfer(data: bytes) -> Iterator[str]:
     """The first byte says how the line is set; the others come in, in pieces."""
     how, rest = (data[0], data[1:]) if data else (0, b"")
     line = LineSettings("fuzz", 9600, 7 if how & 1 else 8, "E" if how & 1 else "N", 1, "none")
-    settings = TransferSettings(line, delimiter="" if how & 2 else "%", sends_dc_codes=bool(how & 4))
+    settings = TransferSettings(line, delimiter="" if how & 2 else "%", has_dc_codes=bool(how & 4))
     incoming, size = ProgramParser(settings), 1 + (how >> 4)
     for at in range(0, len(rest), size):
         incoming.add_characters(rest[at : at + size])
@@ -29,7 +29,7 @@ def _transfer(data: bytes) -> Iterator[str]:
     assert incoming.phase is ReceptionPhase.COMPLETE
     whole = incoming.build_program()
     encode_program(whole.program_bytes, settings)
-    yield whole.name or "no name"
+    yield whole.program_name or "no name"
     find_response(rest, 1, 3)
 
 

@@ -40,9 +40,9 @@ def _frames(data: bytes) -> Iterable[str]:
         bench.run(1.0)
         sample = axes.sample()
         assert not (sample.fault and sample.enabled), f"enabled with {sample.fault}"
-        before = bench.peers.machine.get_true_position()
+        before = bench.peers.machine.get_true_positions()
         bench.run(0.1)
-        after = bench.peers.machine.get_true_position()
+        after = bench.peers.machine.get_true_positions()
         assert max(abs(a - b) for a, b in zip(before, after, strict=True)) < _STANDS, "a slide moves on"
         return [sample.fault] if sample.fault else []
     finally:

@@ -15,7 +15,7 @@ from app.cli.program_options import read_inputs_file
 from app.compose.machine.setup_file import check_setup
 from app.desk.command_errors import CommandError
 from app.offsets.offsets_file import read_offset_rows, read_tool_shapes
-from app.programs.atomic_files import FileOperationError, read_if_exists
+from app.programs.atomic_files import FileOperationError, read_file_if_exists
 from core.input_file import (
     NotAFileError,
     TooLargeError,
@@ -32,7 +32,7 @@ from core.records.record_file import open_record
 from core.store import backup
 from core.store.store_errors import StoreError
 from core.table_schema import MachineFileError
-from drivers.canopen.canopen_objects import load_dictionary
+from drivers.canopen.canopen_objects import load_object_dictionary
 from tests.coded import raises_code
 from tests.extras.modules import of_extras
 
@@ -50,14 +50,14 @@ class Door(NamedTuple):
 
 
 def _dictionary(path: Path) -> object:
-    return load_dictionary("X", str(path), canopen.ObjectDictionary)
+    return load_object_dictionary("X", str(path), canopen.ObjectDictionary)
 
 
 DOORS = (
     Door("part.nc", load_source, SourceError, "file-unreadable", "file-too-large"),
     Door("part.h", load_source, SourceError, "file-unreadable", "file-too-large"),
     Door("part.mpf", load_source, SourceError, "file-unreadable", "file-too-large"),
-    Door("old.nc", read_if_exists, FileOperationError, "unreadable", "unreadable"),
+    Door("old.nc", read_file_if_exists, FileOperationError, "unreadable", "unreadable"),
     Door("lathe.toml", read_machine_text, MachineFileError, "unreadable", "too-large"),
     Door("offsets.toml", read_offset_rows, CommandError, "unreadable", "too-large"),
     Door("tools.toml", read_tool_shapes, CommandError, "unreadable", "too-large"),
@@ -66,11 +66,11 @@ DOORS = (
     Door("now.ring", open_record, RecordError, "unusable", "too-large"),
     Door("lathe.setup", check_setup, CommandError, "unreadable", "too-large"),
     Door(
-        "backup.db", backup.find_problems, StoreError, "not-a-file", "not-a-database"
+        "backup.db", backup.find_store_problems, StoreError, "not-a-file", "not-a-database"
     ),  # it is read by pages
     Door(
         "x.eds",
-        lambda path: load_dictionary("X", str(path), canopen.ObjectDictionary),
+        lambda path: load_object_dictionary("X", str(path), canopen.ObjectDictionary),
         DriverError,
         "driver",
         "driver",

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from core.geometry.chamfer_and_rounding import (
     CornerError,
     CornerTooLargeError,
-    NoCornerError,
+    SameDirectionError,
     chamfer,
     make_rounding,
 )
@@ -75,7 +75,7 @@ def test_corner_may_use_the_whole_line() -> None:
 
 
 def test_collinear_lines_have_no_corner() -> None:
-    with pytest.raises(NoCornerError):
+    with pytest.raises(SameDirectionError):
         chamfer(FACE, Line((5, 0), (9, 0)), 1)
 
 

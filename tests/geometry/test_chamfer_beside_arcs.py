@@ -10,7 +10,7 @@ import pytest
 from core.geometry.chamfer_and_rounding import (
     CornerError,
     CornerTooLargeError,
-    NoCornerError,
+    SameDirectionError,
     chamfer,
     find_chamfer_leg,
 )
@@ -109,7 +109,7 @@ def test_chamfer_that_consumes_a_whole_arc_is_rejected() -> None:
 
 
 def test_tangent_elements_have_no_corner() -> None:
-    with pytest.raises(NoCornerError):
+    with pytest.raises(SameDirectionError):
         chamfer(Line((-5.0, 10.0), (0.0, 10.0)), BALL, 1.0)
 
 

@@ -10,8 +10,8 @@ import pytest
 
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point, compute_distance_to_point
 from core.geometry.pocket_area import (
-    AreaError,
     ElementLoop,
+    PocketAreaError,
     WindingCalculator,
     find_boundary,
     is_counterclockwise,
@@ -117,7 +117,7 @@ def test_point_is_inside_the_inset_only_if_far_enough_from_boundaries() -> None:
         by = dice.choice((0.5, 2.0, 4.0))
         try:
             inner = [WindingCalculator(loop) for loop in make_inset_loops(loops, by)]
-        except AreaError:
+        except PocketAreaError:
             given_up += 1
             continue
         for _ in range(80):
@@ -135,5 +135,5 @@ def test_point_is_inside_the_inset_only_if_far_enough_from_boundaries() -> None:
 
 def test_open_contour_is_rejected() -> None:
     open_end: list[Element] = [Line((0.0, 0.0), (10.0, 0.0)), Line((10.0, 0.0), (10.0, 10.0))]
-    with pytest.raises(AreaError):
+    with pytest.raises(PocketAreaError):
         find_boundary([open_end], lambda point: point[1] > 0.0)

@@ -19,19 +19,19 @@ STEP = polyline((10, 1), (6, 1), (6, 20), (2, 20))
 
 def test_passes_end_at_the_shoulder_and_at_the_face() -> None:
     area = RoughingArea(STEP, 0.5)
-    assert area.find_spans(1) == [(0, pytest.approx(19.5))]
-    assert area.find_spans(5) == [(0, pytest.approx(19.5))]
-    assert area.find_spans(5.5) == [(0, pytest.approx(19.5))]  # on the offset of the cylinder itself
-    assert area.find_spans(5.6) == [(0, pytest.approx(1 - sqrt(0.25 - 0.4**2), abs=1e-5))]
-    assert area.find_spans(9) == [(0, pytest.approx(0.5))]
-    assert area.find_spans(10.1) == []
+    assert area.find_clear_spans(1) == [(0, pytest.approx(19.5))]
+    assert area.find_clear_spans(5) == [(0, pytest.approx(19.5))]
+    assert area.find_clear_spans(5.5) == [(0, pytest.approx(19.5))]  # on the offset of the cylinder itself
+    assert area.find_clear_spans(5.6) == [(0, pytest.approx(1 - sqrt(0.25 - 0.4**2), abs=1e-5))]
+    assert area.find_clear_spans(9) == [(0, pytest.approx(0.5))]
+    assert area.find_clear_spans(10.1) == []
 
 
 def test_zero_allowance_follows_the_contour() -> None:
     area = RoughingArea(STEP, 0)
     assert area.path == STEP
-    assert area.find_spans(5.9) == [(0, pytest.approx(20))]
-    assert area.find_spans(7) == [(0, pytest.approx(1))]
+    assert area.find_clear_spans(5.9) == [(0, pytest.approx(20))]
+    assert area.find_clear_spans(7) == [(0, pytest.approx(1))]
 
 
 def test_protrusion_divides_a_pass_in_two() -> None:
@@ -39,8 +39,8 @@ def test_protrusion_divides_a_pass_in_two() -> None:
     assert bump[1].get_point(bump[1].length / 2) == pytest.approx((4, 12))
     area = RoughingArea(bump, 1)
     half = sqrt(3**2 - 1**2)  # the offset circle of radius 3 about (6, 12), cut at depth 5
-    assert area.find_spans(2.9) == [(0, 30)]
-    assert area.find_spans(5) == [
+    assert area.find_clear_spans(2.9) == [(0, 30)]
+    assert area.find_clear_spans(5) == [
         (0, pytest.approx(12 - half, abs=1e-5)),
         (pytest.approx(12 + half, abs=1e-5), 30),
     ]
@@ -52,7 +52,7 @@ def test_span_does_not_reach_under_an_edge() -> None:
     hook = polyline((6, 0), (6, 20), (2, 20), (2, 12), (1, 12))
     area = RoughingArea(hook, 0)
     assert area.reverses_in_z
-    assert area.find_spans(4) == [(0, 12)]
+    assert area.find_clear_spans(4) == [(0, 12)]
 
 
 def test_path_rounds_outside_corners_and_meets_in_inside_corners() -> None:
@@ -176,13 +176,13 @@ def test_spans_stay_clear_of_the_contour_and_reach_it(
 ) -> None:
     """No point of a stretch, nor above it, is too near; just past its ends there is a reason to stop."""
     area = area_of(contour, left)
-    for start, end in area.find_spans(depth):
+    for start, end in area.find_clear_spans(depth):
         for k in range(21):
             way = start + (end - start) * k / 20
             for level in (depth, depth * 0.7, depth * 0.3):
                 assert min(compute_distance_to_point(each, (level, way)) for each in contour) >= left - 0.002
     if left > 0:
-        for start, end in area.find_spans(depth):
+        for start, end in area.find_clear_spans(depth):
             at_wall = [start] * (start > 0) + [end] * (end < area.path[-1].end[1] - 1e-6)
             for way in at_wall:
                 if way == pytest.approx(area.path[0].start[1]):
@@ -201,6 +201,6 @@ def test_deeper_spans_are_within_shallower_ones(
     contour: list[Element], left: float, depth: float, more: float
 ) -> None:
     area = area_of(contour, left)
-    shallow = area.find_spans(depth)
-    for start, end in area.find_spans(depth + more):
+    shallow = area.find_clear_spans(depth)
+    for start, end in area.find_clear_spans(depth + more):
         assert any(a - 1e-6 <= start and end <= b + 1e-6 for a, b in shallow)

@@ -8,7 +8,7 @@ from math import cos, dist, pi, sin
 
 import pytest
 
-from core.geometry.chamfer_and_rounding import CornerError, NoCornerError, make_rounding
+from core.geometry.chamfer_and_rounding import CornerError, SameDirectionError, make_rounding
 from core.geometry.lines_and_arcs import Arc, Element, Line, make_arc
 from tests.coded import raises_code
 
@@ -84,7 +84,7 @@ def _way(dice: random.Random, start: Point) -> Element:
 def test_tangent_elements_have_no_corner() -> None:
     line = Line((10.0, 20.0), (10.0, 0.0))
     arc = make_arc((10.0, 0.0), (0.0, -10.0), (0.0, 0.0), is_clockwise=True)
-    with pytest.raises(NoCornerError):
+    with pytest.raises(SameDirectionError):
         make_rounding(line, arc, 1.0)
 
 

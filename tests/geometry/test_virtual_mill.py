@@ -76,14 +76,14 @@ def test_rounded_center_is_adjusted_so_the_arc_meets_its_end() -> None:
 
 def test_minimum_distance_from_the_axis_is_found() -> None:
     line = PlaneMove(FacePlane(0.0), (8.0, -6.0, 0.0), (8.0, 2.0, 0.0))
-    assert line.get_critical_fraction() == pytest.approx(0.75)
-    assert line.compute_distance_from_axis(line.get_critical_fraction()) == pytest.approx(8.0)
+    assert line.get_fastest_rotation_fraction() == pytest.approx(0.75)
+    assert line.compute_distance_from_axis(line.get_fastest_rotation_fraction()) == pytest.approx(8.0)
     behind = PlaneMove(FacePlane(0.0), (8.0, 1.0, 0.0), (8.0, 2.0, 0.0))
-    assert behind.get_critical_fraction() == 0.0
+    assert behind.get_fastest_rotation_fraction() == 0.0
     arc = PlaneMove(FacePlane(0.0), (5.0, -3.0, 0.0), (5.0, 3.0, 0.0), center=(5.0, 0.0), clockwise=True)
-    assert arc.compute_distance_from_axis(arc.get_critical_fraction()) == pytest.approx(2.0)
+    assert arc.compute_distance_from_axis(arc.get_fastest_rotation_fraction()) == pytest.approx(2.0)
     away = PlaneMove(FacePlane(0.0), (5.0, -3.0, 0.0), (5.0, 3.0, 0.0), center=(5.0, 0.0))
-    assert away.compute_distance_from_axis(away.get_critical_fraction()) == pytest.approx(
+    assert away.compute_distance_from_axis(away.get_fastest_rotation_fraction()) == pytest.approx(
         math.hypot(5.0, 3.0)
     )
 
@@ -125,7 +125,7 @@ def test_c_is_continuous_along_a_move(
     move = PlaneMove(FacePlane(0.0), start, (i, j, 0.0), math.atan2(y, x))
     if round_:
         move = PlaneMove(FacePlane(0.0), start, start, math.atan2(y, x), (i, j), clockwise)
-    if move.length < 1.0 or move.compute_distance_from_axis(move.get_critical_fraction()) < 0.05:
+    if move.length < 1.0 or move.compute_distance_from_axis(move.get_fastest_rotation_fraction()) < 0.05:
         return
     points, machine = move.compute_mill_points(MANY), move.compute_machine_positions(MANY)
     step = move.length / (len(MANY) - 1)

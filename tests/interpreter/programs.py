@@ -9,7 +9,7 @@ from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import Program, read_program
 from core.interpreter.shared.actions import Action
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.shared.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset
+from core.interpreter.shared.job_setup import ControlLimits, InterpreterSetup, SecondaryOffset, ToolOffset
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import ProgramSource
 
@@ -33,13 +33,13 @@ def setup(
     metric: bool = False,
     last_rapid: float = 100.0,
     start: tuple[float, float] = (0.0, 0.0),
-) -> Setup:
+) -> InterpreterSetup:
     """Circumstances; lengths in inches, the rapid rate in in/min; ``secondary`` are X, Z and, if any, R."""
     pairs = {n: SecondaryOffset(*(v * INCH for v in each)) for n, each in (secondary or {}).items()}
-    return Setup(
+    return InterpreterSetup(
         tools=tools,
         secondary=pairs,
-        limits=limits or ControlLimits(m_outputs=OUTPUTS),
+        limits=limits or ControlLimits(m_code_outputs=OUTPUTS),
         inputs=inputs,
         block_delete=block_delete,
         metric=metric,
@@ -102,7 +102,7 @@ def in_feed(block: Block) -> float:
     return block.feed / INCH * (1 if block.per_rev else 60)
 
 
-def passed(text: str, given: Setup | None = None, *, strict: bool = False) -> Pass:
+def passed(text: str, given: InterpreterSetup | None = None, *, strict: bool = False) -> Pass:
     """A program gone through to its end; lines may be separated by blanks or line ends."""
     program = read_program(ProgramSource("PART", text), strict)
     interpreter = Interpreter(program, given or setup())

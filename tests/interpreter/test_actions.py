@@ -8,10 +8,10 @@ import pickle
 import pytest
 
 from core.executor import commands
-from core.executor.commands import FeedHold, JogByStep, SupplyProof
+from core.executor.commands import FeedHold, JogByStep, SupplyJobProof
 from core.interpreter.shared import actions
 from core.interpreter.shared.actions import ColletSwitch, CoolantSwitch, CycleRepeatCancel, SpindleRun
-from core.plain_value import PlainValue
+from core.plain_value import ValueObject
 
 
 @pytest.mark.parametrize(
@@ -24,7 +24,7 @@ from core.plain_value import PlainValue
         (FeedHold("key", 3), FeedHold("panel", 4)),
     ],
 )
-def test_equal_values_have_the_same_hash(one: PlainValue, other: PlainValue) -> None:
+def test_equal_values_have_the_same_hash(one: ValueObject, other: ValueObject) -> None:
     assert one == other
     assert len({one, other}) == 1
 
@@ -41,7 +41,7 @@ def test_equal_values_have_the_same_hash(one: PlainValue, other: PlainValue) -> 
         (actions.SpindleStop(), commands.StopSpindle()),
     ],
 )
-def test_values_of_other_classes_or_with_other_attributes_differ(one: PlainValue, other: object) -> None:
+def test_values_of_other_classes_or_with_other_attributes_differ(one: ValueObject, other: object) -> None:
     assert one != other
 
 
@@ -64,4 +64,4 @@ def test_unknown_attributes_and_arguments_are_rejected() -> None:
     with pytest.raises(AttributeError):
         CoolantSwitch(True).off = False  # type: ignore[attr-defined]
     with pytest.raises(TypeError):
-        SupplyProof()  # type: ignore[call-arg]
+        SupplyJobProof()  # type: ignore[call-arg]

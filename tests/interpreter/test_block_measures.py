@@ -50,7 +50,7 @@ def test_secondary_offset_shifts_the_extent_of_a_milled_path() -> None:
     (way,) = (block for block in passed(text).moves if block.kind is BlockKind.PLANE_LINE)
     low_x, high_x, low_z, high_z = way.reach()
     assert low_x < high_x
-    moved = replace(way, modal=way.modal._replace(secondary_x=1.5, secondary_z=-2.0))
+    moved = replace(way, modal=way.modal._replace(secondary_offset_x=1.5, secondary_offset_z=-2.0))
     assert moved.reach() == pytest.approx((low_x + 1.5, high_x + 1.5, low_z - 2.0, high_z - 2.0))
 
 
@@ -83,20 +83,22 @@ def test_css_is_required_only_with_a_turning_spindle_and_listed_once() -> None:
 )
 def test_frame_transform_is_invertible(frame: ProgrammedFrame) -> None:
     for x, z in ((1.0, 0.0), (0.0, 1.0), (-3.5, 7.25)):
-        assert frame.invert_distance(*frame.transform_distance(x, z)) == pytest.approx((x, z), abs=1e-12)
+        assert frame.convert_to_program_distance(*frame.convert_to_machine_distance(x, z)) == pytest.approx(
+            (x, z), abs=1e-12
+        )
 
 
 def test_frame_rotation_is_from_z_toward_x() -> None:
     """By 90 degrees Z of the program is X of the machine, and X its -Z."""
     frame = ProgrammedFrame().add_rotation(90.0)
-    assert frame.transform_distance(0.0, 1.0) == pytest.approx((1.0, 0.0), abs=1e-12)
-    assert frame.invert_distance(1.0, 0.0) == pytest.approx((0.0, 1.0), abs=1e-12)
-    assert frame.invert_distance(0.0, 1.0) == pytest.approx((-1.0, 0.0), abs=1e-12)
+    assert frame.convert_to_machine_distance(0.0, 1.0) == pytest.approx((1.0, 0.0), abs=1e-12)
+    assert frame.convert_to_program_distance(1.0, 0.0) == pytest.approx((0.0, 1.0), abs=1e-12)
+    assert frame.convert_to_program_distance(0.0, 1.0) == pytest.approx((-1.0, 0.0), abs=1e-12)
     assert not frame.is_shift_only
-    assert frame.is_uniform
+    assert frame.has_uniform_scale
     assert not frame.is_mirrored
     assert ProgrammedFrame().add_scaling(-1.0, 1.0).is_mirrored
-    assert not ProgrammedFrame().add_scaling(2.0, 1.0).is_uniform
+    assert not ProgrammedFrame().add_scaling(2.0, 1.0).has_uniform_scale
 
 
 # --- a program without a line to execute --------------------------------------------------------------------

@@ -15,7 +15,7 @@ from tests.interpreter.programs import INCH, OUTPUTS, Pass, passed, setup
 
 FOLDER = Path(__file__).parents[2].parent / "shared" / "conformance" / "omniturn"
 pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="the worked examples are not at hand")
-LIMITS = ControlLimits(m_outputs={**OUTPUTS, 27: ("mill", True), 28: ("mill", False)})
+LIMITS = ControlLimits(m_code_outputs={**OUTPUTS, 27: ("mill", True), 28: ("mill", False)})
 
 
 def example(name: str) -> Pass:

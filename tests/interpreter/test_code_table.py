@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.omniturn.codes.code_entry import (
     EXAMPLE_HEAD,
     EXAMPLE_TAIL,
@@ -69,7 +69,7 @@ def test_codes_have_a_single_entry() -> None:
 def test_code_entry_is_complete(code: CodeEntry) -> None:
     assert code.syntax
     assert code.description.endswith(".")
-    assert code.name.strip("()") in code.example + code.subroutine
+    assert code.name.strip("()") in code.example + code.example_subroutine
     assert callable(load_handler(code))
     assert code.action_kind is ActionKind.WORD or not code.word_rules.keys() - code.allowed_words
     # Either it may stand alone, or something says why not: nothing falls through in MDI.
@@ -84,7 +84,7 @@ def test_code_example_proves_without_errors(code: CodeEntry) -> None:
         2: SecondaryOffset(x=-0.0127),
         3: SecondaryOffset(-NOSE, -NOSE, NOSE),
     }
-    setup = create_setup(
+    setup = create_power_up_setup(
         machine, tool_offsets={n: ToolOffset() for n in range(1, 9)}, secondary_offsets=secondary
     )
     report = prove(ProgramSource(code.name, code.example_program), setup, machine)
@@ -114,9 +114,9 @@ def spoilt(letter: str, rule: WordRule) -> Iterator[tuple[str | None, ErrorTempl
     yield "1", rule.unwanted_number_error
     if rule.minimum > -inf:
         yield f"{rule.minimum if rule.excludes_minimum else rule.minimum / 2 or -1:f}", rule.invalid_error
-    if rule.is_nonzero:
+    if rule.requires_nonzero:
         yield "0", rule.invalid_error
-    if rule.is_whole:
+    if rule.requires_whole_number:
         yield f"{max(rule.minimum, 0) + 0.5:g}", rule.invalid_error
     most = VALUE_RANGES[letter][1] if isinstance(rule.maximum, WordLimit) else rule.maximum + 1
     if most < inf:
@@ -145,7 +145,7 @@ def test_rule_rejects_a_missing_or_invalid_word(
         lines[at] = re.sub(rf"{other}[-+.\d]+", "", lines[at])
     bare = word.sub("", lines[at], count=1)
     lines[at] = bare if number is None else f"{bare}{letter}{number}"
-    text = EXAMPLE_HEAD + "\n".join(lines) + "\n" + EXAMPLE_TAIL + code.subroutine
+    text = EXAMPLE_HEAD + "\n".join(lines) + "\n" + EXAMPLE_TAIL + code.example_subroutine
     assert refusal.diagnostic_code in [found for _, _, found in passed(text).errors], text
 
 

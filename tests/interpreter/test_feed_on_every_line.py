@@ -12,11 +12,11 @@ import pytest
 from core.interpreter.omniturn.motion import straight_moves
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
-from core.interpreter.shared.job_setup import ControlLimits, Setup, ToolOffset
+from core.interpreter.shared.job_setup import ControlLimits, InterpreterSetup, ToolOffset
 from core.language.diagnostics import Diagnostic
 from core.language.source import ProgramSource
 
-SETUP = Setup(tools={1: ToolOffset(0.0, 0.0)}, limits=ControlLimits(max_feed_mm_s=300 * 25.4 / 60))
+SETUP = InterpreterSetup(tools={1: ToolOffset(0.0, 0.0)}, limits=ControlLimits(max_feed_mm_s=300 * 25.4 / 60))
 HEAD = ["G90G94F300G72", "M03S2000", "T1", "X1Z.1", "G95F.003"]
 # What stands between the moves, and changes what the next F means; what is refused, or needs more beside it.
 MEANT = ["G94F5", "G95F.004", "G00", "G01", "G00 (TITLE)", "G04F1", "(noted)", "M03S900", "X.5Z-.1"]
@@ -38,7 +38,7 @@ ODD = [
 STRANGE = [f"F{each}" for each in (".06", ".3", "0", ".00001", "5", "6.5", "300", "301", "9999")]
 
 
-def gone_through(text: str, setup: Setup = SETUP) -> tuple[list[str], list[Diagnostic]]:
+def gone_through(text: str, setup: InterpreterSetup = SETUP) -> tuple[list[str], list[Diagnostic]]:
     """All fields of all blocks, and what was found."""
     interpreter = Interpreter(read_program(ProgramSource("PART", text)), setup)
     return [repr(block) for block in interpreter.generate_blocks()], list(interpreter.diagnostics)
@@ -46,7 +46,7 @@ def gone_through(text: str, setup: Setup = SETUP) -> tuple[list[str], list[Diagn
 
 def by_statements(text: str) -> tuple[list[str], list[Diagnostic]]:
     """The same, each line with another F by its statement."""
-    with patch.object(straight_moves, "set_plain_feed", lambda _state, _f: False):
+    with patch.object(straight_moves, "set_plain_move_feed", lambda _state, _f: False):
         return gone_through(text)
 
 

@@ -21,7 +21,7 @@ from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
 from core.interpreter.shared import actions
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
-from core.interpreter.shared.job_setup import Setup, ToolOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset
 from core.language.diagnostics import Severity
 from core.language.source import ProgramSource
 from tests.dialects.golden_rows import flow_words, switch_words
@@ -33,7 +33,7 @@ NEAR = 6e-6  # half of the fifth place
 RPM_NEAR = 6e-3
 
 
-def circumstances(header: list[list[str]]) -> Setup:
+def circumstances(header: list[list[str]]) -> InterpreterSetup:
     """What the lines after ``#`` say."""
     given = {words[0] for words in header}
     closed = {words[1] for words in header if words[0] == "input"}

@@ -19,7 +19,7 @@ from pathlib import Path
 import pytest
 
 from app.compose.machine.machine_files import load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.dialects import SharedProgram
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.diagnostics import Severity
@@ -41,7 +41,7 @@ def test_program_produces_blocks_of_its_table(path: Path) -> None:
     source = ProgramSource(path.name, path.read_text("utf-8"))
     machine = load_shipped_machine(MACHINE[source.dialect])
     run = SharedProgram(source).start_pass(
-        create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+        create_power_up_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     )
     found = [row(block, axes=axes) for block in run.generate_blocks()]
     told = [f"{d.severity} {d.line} {d.column} {d.code}" for d in run.diagnostics]

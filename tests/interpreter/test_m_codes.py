@@ -77,7 +77,7 @@ def test_modal_state_follows_m_codes() -> None:
 
 def test_m30_resets_modal_state_and_m02_leaves_it() -> None:
     on = lines("G90G72G95F.003", "M03S800", "M08", "M25", "T1", "X1Z1")
-    reset, left = passed(on + "M30\n").interpreter.modal, passed(on + "M02\n").interpreter.modal
+    reset, left = passed(on + "M30\n").interpreter.modal_state, passed(on + "M02\n").interpreter.modal_state
     assert (reset.spindle, reset.coolant, reset.outputs) == (0, False, frozenset())
     assert (left.spindle, left.rpm, left.coolant, left.outputs) == (1, 800, True, frozenset({"catcher"}))
     for modal in (reset, left):
@@ -91,7 +91,7 @@ def test_nothing_runs_after_the_end() -> None:
 
 
 def test_metric_mode_remains_after_program_end() -> None:
-    assert passed(lines("G90G71F300", "X1", "M30")).interpreter.modal.metric
+    assert passed(lines("G90G71F300", "X1", "M30")).interpreter.modal_state.metric
 
 
 def test_comments_last_until_the_next() -> None:

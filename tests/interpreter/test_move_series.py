@@ -15,12 +15,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.omniturn.motion.plain_moves import LineColumns, parse_columns, parse_plain_move
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
 from core.interpreter.shared.elementary_blocks import Block, StraightMoveSeries
-from core.interpreter.shared.job_setup import Setup, ToolOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset
 from core.language.diagnostics import Diagnostic
 from core.language.source import ProgramSource
 from core.proving.prove_program import prove
@@ -47,7 +47,7 @@ def at_once(least: int, most: int = 20_000) -> Iterator[None]:
         yield
 
 
-def gone_through(text: str, given: Setup) -> tuple[list[str], list[Diagnostic], int]:
+def gone_through(text: str, given: InterpreterSetup) -> tuple[list[str], list[Diagnostic], int]:
     """The blocks with all their fields, what was found, and how many series there were."""
     interpreter = Interpreter(read_program(ProgramSource("PART", text)), given)
     passed = list(interpreter.generate_series())
@@ -56,7 +56,7 @@ def gone_through(text: str, given: Setup) -> tuple[list[str], list[Diagnostic], 
     return [repr(block) for block in blocks], interpreter.diagnostics, series
 
 
-def assert_same(text: str, given: Setup | None = None, most: int = 20_000) -> int:
+def assert_same(text: str, given: InterpreterSetup | None = None, most: int = 20_000) -> int:
     """Both ways give the same; how many series there were."""
     given = given or setup()
     with at_once(NEVER):
@@ -148,7 +148,9 @@ def test_series_matches_single_lines_for_corrupted_programs(seed: int) -> None:
 
 def reported(text: str) -> str:
     machine = load_machine(None)
-    given = create_setup(machine, tool_offsets={n: ToolOffset() for n in range(1, 33)}, secondary_offsets={})
+    given = create_power_up_setup(
+        machine, tool_offsets={n: ToolOffset() for n in range(1, 33)}, secondary_offsets={}
+    )
     return repr(prove(ProgramSource("PART", text), given, machine))
 
 

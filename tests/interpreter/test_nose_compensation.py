@@ -12,7 +12,7 @@ from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
 from core.interpreter.shared.actions import Dwell, ProgramStop
 from core.interpreter.shared.elementary_blocks import BlockKind
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.language.source import ProgramSource
 from tests.interpreter.programs import INCH, Pass, body, lines, passed, setup
 
@@ -21,7 +21,7 @@ FACING = ("X0Z.05F9", "G41", "X0Z0D2")  # lines 3 to 5; the nose is .02
 SHAFT = (*FACING, "X.2", "Z-.3", "X.3", "Z1", "G40")
 
 
-def given() -> Setup:
+def given() -> InterpreterSetup:
     return setup(secondary=D)
 
 
@@ -139,7 +139,7 @@ def test_zero_length_move_does_not_change_compensated_path() -> None:
 def test_compensated_blocks_carry_compensation_state() -> None:
     result = run(*SHAFT)
     assert [b.modal.compensation_code for b in result.moves] == [40, 41, 41, 41, 41, 41, 41]
-    assert result.interpreter.modal.compensation_code == 40
+    assert result.interpreter.modal_state.compensation_code == 40
     assert not any("G4" in b.text for b in result.blocks)
 
 

@@ -98,7 +98,7 @@ def test_dry_run_work_shift_is_three_inches() -> None:
     result = example("workshift-dry-run")
     assert all(block.mz - block.z == pytest.approx(3 * INCH) for block in result.moves)
     assert all(block.mx == pytest.approx(block.x) for block in result.moves)
-    assert result.interpreter.modal.shift_z == 0
+    assert result.interpreter.modal_state.shift_z == 0
     assert result.blocks[-1].mz == pytest.approx(result.blocks[-1].z)
 
 

@@ -11,7 +11,7 @@ from core.interpreter.omniturn import omniturn_program
 from core.interpreter.omniturn.motion.plain_moves import parse_lines, parse_plain_move
 from core.interpreter.omniturn.omniturn_interpreter import LONG_PROGRAM_LINE_COUNT
 from core.interpreter.omniturn.omniturn_statement import make_statement
-from core.interpreter.shared.job_setup import Setup, ToolOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset
 from core.language.omniturn import lex_line
 from core.language.source import ProgramSource
 
@@ -19,7 +19,7 @@ MOVES = [f"X{0.5 + k % 3 * 0.01:.2f}Z{-0.001 * k:.3f}" for k in range(LONG_PROGR
 # Lines that no column holds: an increment (G91), a word with a comment, a corner that looks ahead.
 RARE = ["G91", "X.01", "G90", "(turned)", "X1Z-1,C.02", "Z-2"]
 TEXT = "\n".join(["G90G94F300G72", "T1", *MOVES[:-20], *RARE, *MOVES[-20:], "M30"])
-SETUP = Setup(tools={1: ToolOffset(0.0, 0.0)})
+SETUP = InterpreterSetup(tools={1: ToolOffset(0.0, 0.0)})
 
 
 def told(reading: SharedProgram) -> list[str]:

@@ -104,8 +104,8 @@ def test_other_words_in_contour_are_ignored_with_one_warning() -> None:
     plain = rough(*SHAFT, code="G78U.02F4")
     assert cycle(result) == cycle(plain)
     assert [note for note in result.notes if note[2] == "cycle-ignored"] == [(5, 6, "cycle-ignored")]
-    assert result.interpreter.modal.tool == 0
-    assert result.interpreter.modal.rpm == 1000
+    assert result.interpreter.modal_state.tool == 0
+    assert result.interpreter.modal_state.rpm == 1000
     assert {b.rpm for b in result.moves} == {1000}
 
 

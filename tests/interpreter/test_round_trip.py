@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
-from app.compose.stored_offsets import read_offsets
+from app.compose.machine.machine_setup import create_power_up_setup
+from app.compose.stored_offsets import read_offsets_file
 from core.interpreter.omniturn.codes.code_table import CODE_CHAPTERS
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
@@ -39,7 +39,7 @@ def programs() -> list[tuple[str, ProgramSource]]:
 
 def moves(source: ProgramSource, tools: dict[int, ToolOffset]) -> list[Block]:
     """The moves of a program in machine coordinates; empty when it has errors."""
-    setup = create_setup(load_machine(None), tool_offsets=tools, secondary_offsets=SECONDARY)
+    setup = create_power_up_setup(load_machine(None), tool_offsets=tools, secondary_offsets=SECONDARY)
     interpreter = Interpreter(read_program(source), setup)
     blocks = [block for block in islice(interpreter.generate_blocks(), 20_000) if block.moves]
     return [] if interpreter.has_errors else blocks
@@ -63,7 +63,7 @@ def _line(block: Block) -> str:
     ("name", "source"), programs(), ids=lambda value: value if isinstance(value, str) else ""
 )
 def test_plain_lines_reproduce_the_path(name: str, source: ProgramSource) -> None:
-    tools, *_ = read_offsets(SAMPLES / "offsets.toml")
+    tools, *_ = read_offsets_file(SAMPLES / "offsets.toml")
     path = [b for b in moves(source, {n: ToolOffset() for n in range(1, 9)} | dict(tools)) if _long_enough(b)]
     if not path or not PLAIN.issuperset(block.kind for block in path):
         pytest.skip(f"{name} has no moves, or moves that plain lines cannot say")

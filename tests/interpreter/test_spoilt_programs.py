@@ -7,7 +7,7 @@ import random
 import pytest
 
 from app.compose.machine.machine_files import load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Dialect, ProgramSource
 from core.proving.prove_program import prove
@@ -33,13 +33,13 @@ def test_corrupted_program_is_proved_or_rejected(dialect: Dialect, seed: int) ->
     text = mutated(random.Random(seed), dialect)
     report = prove(
         ProgramSource(source, text),
-        create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
+        create_power_up_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
         machine,
     )
     assert report.elementary_block_count > 0 or report.errors
     low, high = report.branch_summary.cycle_time_range
     assert report.branch_summary.proved_count >= 1
-    assert report.errors or low - 1e-6 <= report.times.cycle_s <= high + 1e-6
+    assert report.errors or low - 1e-6 <= report.program_times.cycle_time_s <= high + 1e-6
     for found in report.diagnostics:
         assert 0 <= found.line <= text.count("\n") + 1
         assert found.message

@@ -88,13 +88,18 @@ def test_a_new_tool_clears_preset_and_secondary_offset() -> None:
     result = passed(body("G92X1Z1", "X2Z2D3", "T2"), setup(tools=TOOLS))
     modal = result.blocks[-2].modal
     assert (modal.tool, modal.preset_x, modal.preset_z) == (2, 0, 0)
-    assert (modal.secondary, modal.secondary_x, modal.secondary_z, modal.compensation_code) == (0, 0, 0, 40)
+    assert (modal.secondary, modal.secondary_offset_x, modal.secondary_offset_z, modal.compensation_code) == (
+        0,
+        0,
+        0,
+        40,
+    )
 
 
 @pytest.mark.parametrize("end", ["M30", "M02"])
 def test_program_end_clears_work_shift(end: str) -> None:
     result = passed(f"G90F300\nG10Z3\nT1\nX1Z1\nG10Z1\n{end}\n", setup(tools=TOOLS))
-    final = result.interpreter.modal
+    final = result.interpreter.modal_state
     assert (final.shift_z, final.pending_shift_z, final.tool) == (0, 0, 1)
     assert result.blocks[-1].mz == pytest.approx(2 * INCH)
 

@@ -71,7 +71,7 @@ def scene() -> Scene:
 
 
 def held(scene: Scene) -> Scene:
-    scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
+    scene.hold.handle_direction_press("Left", "Z", -1, is_rapid=False)
     scene.frames(0.5)
     assert scene.hold.active_jog is not None
     return scene
@@ -91,10 +91,10 @@ def test_key_release_stops_jog(scene: Scene) -> None:
 
 
 def test_silent_key_stops_jog_when_release_is_lost(scene: Scene) -> None:
-    scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
+    scene.hold.handle_direction_press("Left", "Z", -1, is_rapid=False)
     for _ in range(20):
         scene.frames(0.032)
-        scene.hold.record_repeat("Left")
+        scene.hold.record_key_repeat("Left")
     scene.frames(0.48)
     assert scene.hold.active_jog is not None
     scene.frames(0.05)
@@ -104,7 +104,7 @@ def test_silent_key_stops_jog_when_release_is_lost(scene: Scene) -> None:
 
 
 def test_loss_of_keyboard_focus_stops_jog_and_releases_key(scene: Scene) -> None:
-    held(scene).hold.release_all("THE KEYBOARD WENT ELSEWHERE")
+    held(scene).hold.release_all_keys("THE KEYBOARD WENT ELSEWHERE")
     assert scene.stopped
     scene.hold.release_key("Left")  # the release arrives after all
     assert scene.nothing_more()
@@ -123,10 +123,10 @@ def test_jog_does_not_resume_after_screen_was_blocked(scene: Scene) -> None:
 
 
 def test_two_jog_keys_stop_motion_until_both_are_released(scene: Scene) -> None:
-    held(scene).hold.press_direction("Up", "X", -1, is_rapid=False)
+    held(scene).hold.handle_direction_press("Up", "X", -1, is_rapid=False)
     assert scene.stopped
     scene.hold.release_key("Left")
-    scene.hold.press_direction("Left", "Z", -1, is_rapid=False)  # Up is still down
+    scene.hold.handle_direction_press("Left", "Z", -1, is_rapid=False)  # Up is still down
     assert scene.nothing_more()
     assert shows(scene.said[-1], "jog.two-at-once")
     scene.hold.release_key("Up")
@@ -135,14 +135,14 @@ def test_two_jog_keys_stop_motion_until_both_are_released(scene: Scene) -> None:
 
 
 def test_opposite_key_stops_jog_without_reversing(scene: Scene) -> None:
-    held(scene).hold.press_direction("Right", "Z", 1, is_rapid=False)
+    held(scene).hold.handle_direction_press("Right", "Z", 1, is_rapid=False)
     assert scene.stopped
     assert all(jog.velocity < 0 for jog in scene.jogs)
     assert scene.nothing_more()
 
 
 def test_touch_button_and_key_together_stop_jog(scene: Scene) -> None:
-    held(scene).hold.press_direction("finger Z-1", "Z", -1, is_rapid=False)
+    held(scene).hold.handle_direction_press("finger Z-1", "Z", -1, is_rapid=False)
     assert scene.stopped
     assert scene.nothing_more()
 
@@ -154,23 +154,23 @@ def test_any_other_key_stops_jog(scene: Scene) -> None:
 
 
 def test_rapid_jog_stops_when_shift_is_released(scene: Scene) -> None:
-    scene.hold.press_direction("Left", "Z", -1, is_rapid=True)
+    scene.hold.handle_direction_press("Left", "Z", -1, is_rapid=True)
     scene.frames(0.1)
     assert scene.jogs[-1].velocity == pytest.approx(-100 * INCH / 60)
-    scene.hold.release_shift()
+    scene.hold.release_shift_key()
     assert scene.stopped
     assert scene.nothing_more()
 
 
 def test_shift_release_does_not_affect_slow_jog(scene: Scene) -> None:
-    held(scene).hold.release_shift()
+    held(scene).hold.release_shift_key()
     assert scene.hold.active_jog is not None
 
 
 def test_auto_repeat_release_and_press_pairs_are_ignored(scene: Scene) -> None:
     held(scene)
     for _ in range(10):
-        scene.hold.record_repeat("Left")
+        scene.hold.record_key_repeat("Left")
         scene.frames(0.03)
     assert scene.hold.active_jog is not None
     assert StopJog() not in scene.posted
@@ -190,7 +190,7 @@ def test_jog_ended_by_machine_is_not_restarted(scene: Scene, state: MachineState
 
 
 def test_jog_request_stops_when_machine_does_not_start(scene: Scene) -> None:
-    scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
+    scene.hold.handle_direction_press("Left", "Z", -1, is_rapid=False)
     scene.frames(1.0, MachineState.IDLE)
     assert len(scene.jogs) == 1
     assert scene.stopped
@@ -198,7 +198,7 @@ def test_jog_request_stops_when_machine_does_not_start(scene: Scene) -> None:
 
 def test_blocked_jog_moves_nothing_and_shows_reason(scene: Scene) -> None:
     scene.why = "A PROGRAM IS UNDER WAY"
-    scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
+    scene.hold.handle_direction_press("Left", "Z", -1, is_rapid=False)
     assert scene.posted == []
     assert scene.said == ["A PROGRAM IS UNDER WAY"]
 
@@ -221,7 +221,7 @@ def test_jog_step_changes_displayed_position_by_step_length(
     scene.modal = ModalState(metric=metric, diameter=diameter)
     scene.frames(FRAME, MachineState.IDLE)
     scene.hold.jog_speeds.step_index = step
-    scene.hold.press_direction("key", axis, -1, is_rapid=False)
+    scene.hold.handle_direction_press("key", axis, -1, is_rapid=False)
     (command,) = scene.posted
     assert isinstance(command, JogByStep)
     assert command.distance == pytest.approx(-length, abs=1e-12)
@@ -229,19 +229,19 @@ def test_jog_step_changes_displayed_position_by_step_length(
 
 def test_key_hold_does_not_repeat_step_and_release_does_not_end_it(scene: Scene) -> None:
     scene.hold.jog_speeds.step_index = 1
-    scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
+    scene.hold.handle_direction_press("Left", "Z", -1, is_rapid=False)
     for _ in range(30):
-        scene.hold.record_repeat("Left")
+        scene.hold.record_key_repeat("Left")
         scene.frames(0.03)
     scene.hold.release_key("Left")
     assert len(scene.posted) == 1
-    scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
+    scene.hold.handle_direction_press("Left", "Z", -1, is_rapid=False)
     assert len(scene.posted) == 2
 
 
 def test_rapid_step_is_rejected(scene: Scene) -> None:
     scene.hold.jog_speeds.step_index = 1
-    scene.hold.press_direction("Left", "Z", -1, is_rapid=True)
+    scene.hold.handle_direction_press("Left", "Z", -1, is_rapid=True)
     assert scene.posted == []
     assert shows(scene.said[-1], "jog.continuous-for-rapid")
 

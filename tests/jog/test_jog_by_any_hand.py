@@ -22,22 +22,22 @@ def do(scene: Scene, event: tuple[str, str | None, bool | None], state: MachineS
     what, source, rapid = event
     if what == "press" and source is not None:
         axis, sign = SOURCES[source]
-        scene.hold.press_direction(source, axis, sign, is_rapid=bool(rapid))
+        scene.hold.handle_direction_press(source, axis, sign, is_rapid=bool(rapid))
     elif what == "release" and source is not None:
         scene.hold.release_key(source)
     elif what == "repeat" and source is not None:
-        scene.hold.record_repeat(source)
+        scene.hold.record_key_repeat(source)
     elif what == "other":
         scene.hold.stop_for_other_key()
     elif what == "shift":
-        scene.hold.release_shift()
+        scene.hold.release_shift_key()
     elif what == "step":
-        scene.hold.release_all("another step")
+        scene.hold.release_all_keys("another step")
         scene.hold.jog_speeds.select_next_step()
     elif what == "away":
         scene.t += 1.0
     elif what == "lost":
-        scene.hold.release_all("the keyboard")
+        scene.hold.release_all_keys("the keyboard")
     else:
         scene.frames(5 * FRAME, state)
 

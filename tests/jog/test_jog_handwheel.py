@@ -141,7 +141,7 @@ def test_step_not_valid_for_handwheel_deselects_it_permanently(step: int) -> Non
 
 def test_handwheel_selection_stops_active_jog() -> None:
     scene = Scene()
-    scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
+    scene.hold.handle_direction_press("Left", "Z", -1, is_rapid=False)
     assert isinstance(scene.posted[-1], Jog)
     scene.wheel.select_axis("X")
     assert StopJog() in scene.posted

@@ -15,7 +15,7 @@ from core.executor.commands import Jog, JogByStep, StopJog
 from core.executor.hand_motion.jog_line import JogLine
 from core.executor.snapshot import MachineState, Snapshot
 from core.geometry.rotation_frames import IDENTITY, X_AXIS, make_rotation
-from core.interpreter.shared.working_plane import PlanePosition, PlaneSystem
+from core.interpreter.shared.working_plane import PlaneCoordinateSystem, PlanePosition
 from tests.executor.rig import Rig
 from tests.machine.mill import MILL
 from tests.texts import begins, shows, text
@@ -128,7 +128,9 @@ def shot(machine: str, *at: float, tilted: bool = False) -> Snapshot:
     assert chain is not None
     place = chain.make_transform({"A": 30.0}, PLANE) if tilted else chain.make_transform({})
     frame, targets = (PLANE, (30.0, 0.0, 0.0)) if tilted else (IDENTITY, (0.0, 0.0, 0.0))
-    system = PlaneSystem(place, chain, frame, is_tilted=tilted, target_angles=targets, plane_block_line=7)
+    system = PlaneCoordinateSystem(
+        place, chain, frame, is_tilted=tilted, target_angles=targets, plane_block_line=7
+    )
     zero = (0.0, 0.0, 0.0)
     rig = Rig()
     rig.ready()

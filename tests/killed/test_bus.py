@@ -122,4 +122,4 @@ def test_killed_control_stops_on_path_with_outputs_off(
         shop.until(lambda: abs(shop.place[0] - moved) > 3.0, lambda: (again.popen.poll(), shop.place))
     if command is SCREEN:
         with Store.open(home, read_only=True) as store:
-            assert [run.program for run in store.runs.read_records()] == ["part.nc"]
+            assert [run.program for run in store.runs.read_run_records()] == ["part.nc"]

@@ -73,7 +73,7 @@ def between_start_and_end(home: Path) -> bool:
     """Whether a part has been counted and the next is under way, both as the disk has it."""
     with Store.open(home, read_only=True) as store:
         return store.runs.read_part_count("part.nc") >= 1 and [
-            run.outcome for run in store.runs.read_records()
+            run.outcome for run in store.runs.read_run_records()
         ] == [""]
 
 
@@ -94,7 +94,7 @@ def test_killed_screen_and_control_preserve_entries_and_leave_no_process(
         assert store.runs.read_part_count("part.nc") >= made
         assert store.programs.load_version("part.nc") == PROGRAM.encode()
         assert {"load", "part"} <= {event.kind for event in store.events.read_events()}
-        (run,) = store.runs.read_records()
+        (run,) = store.runs.read_run_records()
         assert (run.program, run.outcome, run.started is not None) == ("part.nc", "", True)
         counted = store.runs.read_part_count("part.nc")
     with process(home, OPERATOR, *files) as again:
@@ -113,12 +113,12 @@ def test_killed_screen_and_control_preserve_entries_and_leave_no_process(
 
 def test_unfinished_run_is_reported_at_next_start(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
-        store.runs.record_start("cut.nc")
-        store.runs.record_start("whole.nc")
-        store.runs.record_end("whole.nc", "COMPLETE")
+        store.runs.record_run_start("cut.nc")
+        store.runs.record_run_start("whole.nc")
+        store.runs.record_run_end("whole.nc", "COMPLETE")
         store.runs.add_parts("counted.nc")
     journal = Journal(tmp_path)
-    ended = {run.program: run.outcome for run in journal.require_store().runs.read_records()}
+    ended = {run.program: run.outcome for run in journal.require_store().runs.read_run_records()}
     journal.close()
     assert ended == {"cut.nc": "CUT OFF", "whole.nc": "COMPLETE", "counted.nc": ""}
 
@@ -152,7 +152,7 @@ def test_killed_screen_puts_program_in_feed_hold_and_reconnects(
         kinds = [event.kind for event in store.events.read_events()]
         assert kinds.count("stop") == 1  # the feed hold by the control
         assert kinds.count("part") == store.runs.read_part_count("part.nc") >= made + 1
-        assert [run.outcome for run in store.runs.read_records()] != ["CUT OFF"]
+        assert [run.outcome for run in store.runs.read_run_records()] != ["CUT OFF"]
 
 
 def test_cycle_of_each_part_is_stored_once_when_screen_is_killed(

@@ -10,7 +10,7 @@ from core.interpreter.klartext.klartext_interpreter import Interpreter
 from core.interpreter.klartext.klartext_program import read_program
 from core.interpreter.klartext.klartext_state import State
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
-from core.interpreter.shared.job_setup import ControlLimits, Setup, ToolOffset
+from core.interpreter.shared.job_setup import ControlLimits, InterpreterSetup, ToolOffset
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import ProgramSource
 from tests.klartext.table import AC
@@ -71,6 +71,6 @@ def run_source(source: ProgramSource, machine: Kinematics = AC, **setup: Any) ->
         "limits": ControlLimits(max_rpm=12000.0),
     }
     around |= {"tools": {1: ToolOffset()}, **setup}
-    interpreter = Interpreter(read_program(source), Setup(kinematics=machine, **around), machine)
+    interpreter = Interpreter(read_program(source), InterpreterSetup(kinematics=machine, **around), machine)
     blocks = list(interpreter.generate_blocks())
     return Ran(blocks, interpreter.diagnostics, interpreter.state)

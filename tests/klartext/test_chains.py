@@ -20,7 +20,7 @@ from core.geometry.rotation_frames import (
     make_rotation,
     multiply_matrices,
 )
-from core.geometry.swivel_angles import SolutionSide, choose_solution, find_all_solutions
+from core.geometry.swivel_angles import PrimaryAxisSide, choose_solution, find_all_solutions
 from tests.klartext.table import AC, CHAMFERS, ORIGIN, SLIDES, A, C
 
 Array = npt.NDArray[np.float64]
@@ -133,8 +133,8 @@ def test_single_rotary_axis_does_not_reach_other_planes(chamfer: int) -> None:
 
 def test_single_rotary_axis_has_one_solution_side() -> None:
     frame = make_frame_from_points(*CHAMFERS[1])
-    assert choose_solution(machine(A), frame, {}, SolutionSide.SYM_PLUS) is not None
-    assert choose_solution(machine(A), frame, {}, SolutionSide.SYM_MINUS) is None
+    assert choose_solution(machine(A), frame, {}, PrimaryAxisSide.SYM_PLUS) is not None
+    assert choose_solution(machine(A), frame, {}, PrimaryAxisSide.SYM_MINUS) is None
 
 
 def test_c_table_alone_rotates_but_cannot_tilt() -> None:
@@ -164,7 +164,7 @@ def test_limited_c_axis_uses_revolution_nearest_to_its_position() -> None:
     limited = dataclasses.replace(C, is_modulo=False, travel_min=-360.0, travel_max=360.0)
     chain, frame = machine(limited, A), make_frame_from_points(*CHAMFERS[2])
     for present, wanted in ((0.0, 90.0), (-200.0, -270.0), (359.0, 90.0)):
-        found = choose_solution(chain, frame, {"A": 45.0, "C": present}, SolutionSide.SYM_PLUS)
+        found = choose_solution(chain, frame, {"A": 45.0, "C": present}, PrimaryAxisSide.SYM_PLUS)
         assert found is not None
         assert found.axis_angles["C"] == pytest.approx(wanted)
 
@@ -172,7 +172,7 @@ def test_limited_c_axis_uses_revolution_nearest_to_its_position() -> None:
 def test_reversed_axis_gives_opposite_angle() -> None:
     backwards = dataclasses.replace(A, direction=(-1.0, 0.0, 0.0))
     found = choose_solution(
-        machine(C, backwards), make_frame_from_points(*CHAMFERS[1]), {}, SolutionSide.SYM_MINUS
+        machine(C, backwards), make_frame_from_points(*CHAMFERS[1]), {}, PrimaryAxisSide.SYM_MINUS
     )
     assert found is not None
     assert (found.axis_angles["A"], found.axis_angles["C"] % 360.0) == pytest.approx((-45.0, 0.0))
@@ -184,7 +184,10 @@ def test_reversed_table_axis_does_not_swap_solution_sides() -> None:
         machine(dataclasses.replace(C, direction=(0.0, 0.0, -1.0)), A),
         make_frame_from_points(*CHAMFERS[2]),
     )
-    for side, wanted in ((SolutionSide.SYM_PLUS, (45.0, 270.0)), (SolutionSide.SYM_MINUS, (-45.0, 90.0))):
+    for side, wanted in (
+        (PrimaryAxisSide.SYM_PLUS, (45.0, 270.0)),
+        (PrimaryAxisSide.SYM_MINUS, (-45.0, 90.0)),
+    ):
         found = choose_solution(chain, frame, {}, side)
         assert found is not None
         assert (found.axis_angles["A"], found.axis_angles["C"]) == pytest.approx(wanted)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.compose.machine.machine_files import load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.code_book_page import render_code_book
 from core.interpreter.dialects import get_code_book
 from core.interpreter.klartext.cycles import contour_cycles, cycle_calls, older_cycles
@@ -28,7 +28,7 @@ MILL = load_shipped_machine("ac-table-mill")
 def errors_of(entry: CodeBookEntry, lines: str) -> list[Diagnostic]:
     text = lines if entry.whole else f"{BOOK.head}{lines}\n{BOOK.lines_after_example}{entry.behind}{END}"
     files = tuple(ProgramSource(name, each) for name, each in entry.files)
-    setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     report = prove(ProgramSource("EXAMPLE.H", text, subprograms=files), setup, MILL)
     return [each for each in report.diagnostics if each.severity is Severity.ERROR]
 

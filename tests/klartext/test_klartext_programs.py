@@ -17,7 +17,7 @@ from core.interpreter.shared.actions import (
     ToolChange,
 )
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
-from core.interpreter.shared.job_setup import ControlLimits, Setup, ToolOffset
+from core.interpreter.shared.job_setup import ControlLimits, InterpreterSetup, ToolOffset
 from core.language.klartext import parse_line
 from core.language.klartext.canonical_text import format_block
 from core.language.source import ProgramSource
@@ -320,7 +320,9 @@ def test_tool_def_tool_is_used_and_not_missing() -> None:
     """TOOL DEF tells length and radius, the tool table none: it is used all the same, and not missing."""
     text = whole("TOOL DEF 7 L+0 R+4\nTOOL CALL 7 Z S100 DR2:+0.05\nTOOL CALL 1 Z")
     program = read_program(ProgramSource("T.H", text))
-    setup = Setup(kinematics=AC, start=HOME, limits=ControlLimits(max_rpm=12000.0), tools={1: ToolOffset()})
+    setup = InterpreterSetup(
+        kinematics=AC, start=HOME, limits=ControlLimits(max_rpm=12000.0), tools={1: ToolOffset()}
+    )
     interpreter = Interpreter(program, setup, AC)
     list(interpreter.generate_blocks())
     assert (interpreter.used_tools, interpreter.tools_without_offset) == ([7, 1], [])

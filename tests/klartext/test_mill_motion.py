@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 
 from app.compose.machine.machine_files import load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Dialect, ProgramSource
 from core.machine.machine_model import Machine
@@ -28,7 +28,7 @@ Array = npt.NDArray[np.float64]
 
 def traced(text: str, machine: Machine = MILL) -> tuple[Array, Array]:
     """Axes (n, 5) and lines (n,) of a program's setpoints."""
-    setup = create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     timeline = Timeline.from_program(ProgramSource("T.H", text, Dialect.KLARTEXT), setup, machine)
     chunks = list(iter_setpoints(timeline, DT))
     assert not timeline.has_errors, timeline.diagnostics
@@ -117,19 +117,19 @@ def test_swivel_time_follows_its_feed() -> None:
 def test_move_that_exceeds_travel_between_its_ends_is_found() -> None:
     """The table swivels the tip down and back; between the ends Z goes lower than at either of them."""
     text = whole(TOOL + "L X+0 Y+0 Z-80 R0 FMAX\nPLANE AXIAL A-60 MOVE FMAX\nPLANE AXIAL A+60 MOVE FMAX")
-    setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     report = prove(ProgramSource("T.H", text, Dialect.KLARTEXT), setup, MILL)
     low = min(limits[0] for limits in _z_reach(text))
     assert low < -430.0
     assert not report.errors
     tight = tuple(dataclasses.replace(a, travel=(low + 1.0, 0.0)) if a.name == "Z" else a for a in MILL.axes)
     machine = dataclasses.replace(MILL, axes=tight)
-    setup = create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     found = prove(ProgramSource("T.H", text, Dialect.KLARTEXT), setup, machine).errors
     assert {error.code for error in found} == {"soft-limit"}
 
 
 def _z_reach(text: str) -> list[tuple[float, float]]:
-    setup = create_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(MILL, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     timeline = Timeline.from_program(ProgramSource("T.H", text, Dialect.KLARTEXT), setup, MILL)
     return [block.compute_machine_bounds()[2] for block, _, _ in iter_timed_blocks(timeline) if block.moves]

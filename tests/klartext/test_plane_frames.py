@@ -21,7 +21,7 @@ from core.geometry.rotation_frames import (
     make_rotation,
     multiply_matrices,
 )
-from core.geometry.swivel_angles import SolutionSide, choose_solution, find_all_solutions
+from core.geometry.swivel_angles import PrimaryAxisSide, choose_solution, find_all_solutions
 from tests.coded import raises_code
 from tests.klartext.table import AC, CHAMFERS, DATUMS, limited
 
@@ -66,7 +66,7 @@ def stands(
     table_rot: bool = False,
 ) -> tuple[float, float, float] | None:
     """A, C and what is left to turn; None where there is no solution."""
-    asked = SolutionSide(side) if side else None
+    asked = PrimaryAxisSide(side) if side else None
     found = choose_solution(machine, frame, {"A": a, "C": c}, asked, rotates_table=table_rot)
     return (
         None if found is None else (found.axis_angles["A"], found.axis_angles["C"], found.tool_rotation_deg)
@@ -91,7 +91,7 @@ def test_frame_of_chamfer_is_same_for_every_definition(chamfer: int) -> None:
 def test_both_solutions_of_chamfer_give_expected_positions(chamfer: int, row: int, side: str) -> None:
     frame = make_frame_from_points(*CHAMFERS[chamfer])
     angles, middle, origin = STANDS[chamfer][row]
-    found = choose_solution(AC, frame, {}, SolutionSide(side))
+    found = choose_solution(AC, frame, {}, PrimaryAxisSide(side))
     assert found is not None
     assert (found.axis_angles["A"], found.axis_angles["C"], found.tool_rotation_deg) == about(angles)
     place = AC.make_transform(found.axis_angles, frame, DATUMS[chamfer])

@@ -9,15 +9,15 @@ import pytest
 
 from app.compose.machine.kinematics_chain import build_kinematics
 from app.compose.machine.machine_files import load_shipped_machine
-from app.desk.status.machine_status import make_status
+from app.desk.status.machine_status import make_machine_status
 from app.desk.status.readouts import Lamp, ReadoutKind, make_lamps
 from app.path.path_picture import build_picture
 from app.working_plane.plane_drawing import VIEW_ASPECTS, Camera, SceneDrawing, draw_scene, make_camera
 from app.working_plane.plane_instant import (
     SceneInstant,
     describe_plane,
-    make_line_instant,
-    make_run_instant,
+    make_instant_after_line,
+    make_instant_from_snapshot,
     make_view_title,
 )
 from app.working_plane.plane_scene import MillScene, MoveStyle
@@ -34,7 +34,7 @@ NAMES = ("X", "Y", "Z", "A", "C")
 
 def scene_of(text: str) -> tuple[MillScene, list[Block]]:
     blocks = run_file(text).blocks
-    scene = build_picture(((block, 0.0, 1.0) for block in blocks), lambda _count: None).scene
+    scene = build_picture(((block, 0.0, 1.0) for block in blocks), lambda _count: None).mill_scene
     assert scene is not None
     return scene, blocks
 
@@ -61,14 +61,14 @@ def cut_of(blocks: list[Block], number: int) -> Block:
 
 
 def values(snapshot: Snapshot, readout: ReadoutKind) -> list[str]:
-    view = make_status(snapshot, readout, has_c_axis=False)
+    view = make_machine_status(snapshot, readout, has_c_axis=False)
     return [axis.value for axis in view.position.axes]
 
 
 def test_readout_is_in_working_plane(chamfers: tuple[MillScene, list[Block]]) -> None:
     cut = cut_of(chamfers[1], 2)
     snapshot = snapshot_at(cut)
-    view = make_status(snapshot, ReadoutKind.POSITION, has_c_axis=False).position
+    view = make_machine_status(snapshot, ReadoutKind.POSITION, has_c_axis=False).position
     assert [axis.name for axis in view.axes] == list(NAMES)
     assert values(snapshot, ReadoutKind.POSITION) == ["115.0000", "−7.0710", "0.0000", "45.000", "90.000"]
     assert view.x_label.startswith("TILTED PLANE FROM LINE")
@@ -78,7 +78,7 @@ def test_readout_is_in_working_plane(chamfers: tuple[MillScene, list[Block]]) ->
 def test_readout_from_home_is_in_machine_coordinates(chamfers: tuple[MillScene, list[Block]]) -> None:
     snapshot = snapshot_at(cut_of(chamfers[1], 1))
     assert values(snapshot, ReadoutKind.HOME) == ["345.0000", "278.2843", "−352.2183", "45.000", "0.000"]
-    assert make_status(snapshot, ReadoutKind.HOME, has_c_axis=False).position.x_label == "MACHINE"
+    assert make_machine_status(snapshot, ReadoutKind.HOME, has_c_axis=False).position.x_label == "MACHINE"
 
 
 def test_distance_to_go_is_along_axes_of_plane(chamfers: tuple[MillScene, list[Block]]) -> None:
@@ -94,7 +94,9 @@ def test_c_readout_is_below_360_degrees(chamfers: tuple[MillScene, list[Block]])
     snapshot = snapshot_at(chamfers[1][-1])
     assert snapshot.actual[4] == pytest.approx(360.0)
     assert values(snapshot, ReadoutKind.POSITION)[4] == "0.000"
-    assert make_status(snapshot, ReadoutKind.POSITION, has_c_axis=False).position.x_label == "WORKPIECE"
+    assert (
+        make_machine_status(snapshot, ReadoutKind.POSITION, has_c_axis=False).position.x_label == "WORKPIECE"
+    )
 
 
 def test_lamps_show_tilted_plane_and_rotated_table(chamfers: tuple[MillScene, list[Block]]) -> None:
@@ -135,7 +137,7 @@ def test_view_title_names_rotary_part(machine: str, title: str) -> None:
 
 def test_finished_cuts_are_stored_on_workpiece(chamfers: tuple[MillScene, list[Block]]) -> None:
     scene, blocks = chamfers
-    ends = scene.points[scene.move_styles == MoveStyle.CUT]
+    ends = scene.tip_points[scene.move_styles == MoveStyle.CUT]
     assert len(ends) == 8
     assert ends[1] == pytest.approx((115.0, 5.0, -5.0), abs=1e-4)
     assert ends[3] == pytest.approx((95.0, 115.0, -5.0), abs=1e-4)
@@ -146,29 +148,29 @@ def test_finished_cuts_are_stored_on_workpiece(chamfers: tuple[MillScene, list[B
 
 def test_line_instant_has_plane_of_its_line(chamfers: tuple[MillScene, list[Block]]) -> None:
     scene, _ = chamfers
-    first, *_ = sorted(scene.plane_lines)
-    here = make_line_instant(scene, first)
+    first, *_ = sorted(scene.plane_line_numbers)
+    here = make_instant_after_line(scene, first)
     assert here.axis_positions["A"] == 45.0
     assert describe_plane(here.plane_position) == (
         f"TILTED PLANE FROM LINE {first}:  A+45.000  C+0.000   Z' 0.000  −0.707  0.707"
     )
     assert (
-        make_line_instant(scene, first + 1).plane_position is here.plane_position
+        make_instant_after_line(scene, first + 1).plane_position is here.plane_position
     )  # a line without a block: the one before it
-    assert make_line_instant(scene, 0).plane_position is None
+    assert make_instant_after_line(scene, 0).plane_position is None
     assert describe_plane(None) == ""
 
 
 def test_plane_with_stay_shows_table_at_target_angles() -> None:
     ran = run("PLANE AXIAL A+30 C+20 STAY")
-    scene = build_picture(((block, 0.0, 1.0) for block in ran.blocks), lambda _count: None).scene
+    scene = build_picture(((block, 0.0, 1.0) for block in ran.blocks), lambda _count: None).mill_scene
     assert scene is not None
-    here = make_line_instant(scene, 3)
+    here = make_instant_after_line(scene, 3)
     assert (here.axis_positions["A"], here.axis_positions["C"]) == (30.0, 20.0)
 
 
 def test_programs_without_planes_have_no_scene() -> None:
-    assert build_picture((), lambda _count: None).scene is None
+    assert build_picture((), lambda _count: None).mill_scene is None
 
 
 # --- the figure ------------------------------------------------------------------------------------------
@@ -176,7 +178,7 @@ def test_programs_without_planes_have_no_scene() -> None:
 
 def drawn(scene: MillScene, instant: SceneInstant, aspect: str = "3-D") -> tuple[SceneDrawing, Camera]:
     number = [each.name for each in VIEW_ASPECTS].index(aspect)
-    camera = dataclasses.replace(make_camera(scene), aspect_index=number)
+    camera = dataclasses.replace(make_camera(scene), view_direction_index=number)
     return draw_scene(scene, instant, camera, WIDE, HIGH), camera
 
 
@@ -184,7 +186,7 @@ def drawn(scene: MillScene, instant: SceneInstant, aspect: str = "3-D") -> tuple
 def test_plane_z_is_vertical_in_machine_view(chamfers: tuple[MillScene, list[Block]], chamfer: int) -> None:
     """Seen from the front and from the right alike: the table has turned the plane towards the tool."""
     scene, blocks = chamfers
-    instant = make_run_instant(scene, snapshot_at(cut_of(blocks, chamfer)))
+    instant = make_instant_from_snapshot(scene, snapshot_at(cut_of(blocks, chamfer)))
     for aspect in ("FRONT", "RIGHT"):
         made, _ = drawn(scene, instant, aspect)
         z = next(stroke for stroke in made.strokes if stroke.color_role == "z")
@@ -198,7 +200,7 @@ def test_tool_is_drawn_at_end_of_finished_path(chamfers: tuple[MillScene, list[B
     scene, blocks = chamfers
     cut = cut_of(blocks, 2)
     assert cut.swivel is not None
-    made, camera = drawn(scene, make_run_instant(scene, snapshot_at(cut)), aspect)
+    made, camera = drawn(scene, make_instant_from_snapshot(scene, snapshot_at(cut)), aspect)
     tip = camera.project_points(np.array([cut.swivel.machine_position]), WIDE, HIGH)[0, :2]
     ends = [stroke.points[-1] for stroke in made.strokes if stroke.color_role == "done"]
     assert min(np.linalg.norm(end - tip) for end in ends) < 1e-6
@@ -212,7 +214,7 @@ def test_table_rotation_changes_its_drawing(chamfers: tuple[MillScene, list[Bloc
     """From the front at A0 the disc is seen edge on; tilted to the rear it has a height, from above."""
     scene, blocks = chamfers
     level, _ = drawn(scene, SceneInstant(dict.fromkeys(NAMES, 0.0), None), "FRONT")
-    tilted, _ = drawn(scene, make_run_instant(scene, snapshot_at(cut_of(blocks, 1))), "FRONT")
+    tilted, _ = drawn(scene, make_instant_from_snapshot(scene, snapshot_at(cut_of(blocks, 1))), "FRONT")
     heights = [
         np.ptp(next(face for face in made.faces if face.color_role.startswith("table")).points[:, 1])
         for made in (level, tilted)
@@ -226,7 +228,7 @@ def test_everything_on_table_is_in_view(
 ) -> None:
     scene, blocks = chamfers
     for chamfer in range(1, 5):
-        made, _ = drawn(scene, make_run_instant(scene, snapshot_at(cut_of(blocks, chamfer))))
+        made, _ = drawn(scene, make_instant_from_snapshot(scene, snapshot_at(cut_of(blocks, chamfer))))
         for face in made.faces:
             if face.color_role.startswith(("table", "blank")):
                 assert (face.points >= -20.0).all()
@@ -240,7 +242,7 @@ def test_small_blank_at_edge_is_drawn_on_top_of_table() -> None:
         "TOOL CALL 1 Z S900\nL X+0 Y+0 Z+5 R0 FMAX\nEND PGM S MM\n"
     )
     scene, _blocks = scene_of(small)
-    roles = [face.color_role for face in drawn(scene, make_line_instant(scene, 5))[0].faces]
+    roles = [face.color_role for face in drawn(scene, make_instant_after_line(scene, 5))[0].faces]
     assert roles[0] == "table"
     assert {"blank", "blank-top"} <= set(roles[1:])
 
@@ -270,12 +272,12 @@ def test_tilted_head_does_not_move_workpiece_in_view(chamfers: tuple[MillScene, 
 
 def test_camera_can_be_rotated_moved_and_zoomed(chamfers: tuple[MillScene, list[Block]]) -> None:
     camera = make_camera(chamfers[0])
-    names = [camera.view_aspect.name]
+    names = [camera.view_direction.name]
     for _ in range(3):
-        camera = camera.with_next_aspect()
-        names.append(camera.view_aspect.name)
+        camera = camera.with_next_view_direction()
+        names.append(camera.view_direction.name)
     assert names == ["3-D", "FRONT", "RIGHT", "TOP"]
-    assert camera.with_next_aspect().view_aspect.name == "3-D"
+    assert camera.with_next_view_direction().view_direction.name == "3-D"
     moved = camera.with_zoom(3).with_pan(1, -1)
     assert moved.zoom_factor > 1.0
     assert moved.with_full_view() == dataclasses.replace(camera, zoom_factor=1.0)
@@ -291,10 +293,10 @@ def test_top_view_shows_machine_directions() -> None:
 
 def test_long_path_is_drawn_with_fewer_points() -> None:
     scene, _ = scene_of(AXIAL)
-    many = np.tile(scene.points, (3000, 1))
+    many = np.tile(scene.tip_points, (3000, 1))
     long = dataclasses.replace(
         scene,
-        points=many,
+        tip_points=many,
         move_styles=np.tile(scene.move_styles, 3000),
         block_numbers=np.arange(len(many)),
     )
@@ -309,7 +311,7 @@ def test_swivel_feed_is_shown_in_degrees(feed: str, shown: tuple[str, str]) -> N
     snapshot = snapshot_at(
         block, feed=block.feed, rapid=block.rapid, turns=block.has_angular_feed and not block.rapid
     )
-    made = make_status(snapshot, ReadoutKind.POSITION, has_c_axis=False).feed
+    made = make_machine_status(snapshot, ReadoutKind.POSITION, has_c_axis=False).feed
     assert (made.programmed_value, made.programmed_unit) == shown
 
 

@@ -80,7 +80,7 @@ def test_blank_comment_or_unknown_start_has_no_completion(typed: str) -> None:
 
 def _words(dialect: Dialect, head: str) -> dict[str, str]:
     book = get_code_book(dialect)
-    return dict(book.list_words(next(each for each in book.entries if each.head == head)))
+    return dict(book.list_word_meanings(next(each for each in book.entries if each.head == head)))
 
 
 @pytest.mark.parametrize(
@@ -107,7 +107,7 @@ def test_code_words_are_listed_in_order_of_code() -> None:
 @pytest.mark.parametrize("dialect", list(Dialect))
 def test_every_word_meaning_belongs_to_a_code(dialect: Dialect) -> None:
     book = get_code_book(dialect)
-    used = {f"{entry.head}.{word}" for entry in book.entries for word, _ in book.list_words(entry)}
+    used = {f"{entry.head}.{word}" for entry in book.entries for word, _ in book.list_word_meanings(entry)}
     bare = {each.rpartition(".")[2] for each in used}
     assert {word for word in book.word_meanings if "." not in word} <= bare
     told = {

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from core.language.code_book import CodeBook
-from core.language.code_book_files import CODE_BOOKS_FOLDER, read_book
+from core.language.code_book_files import CODE_BOOKS_FOLDER, read_code_book
 
 HOUSE = Path(__file__).parents[2]
 FRAME = """
@@ -35,7 +35,7 @@ def book(folder: Path, codes: str, **further: str) -> CodeBook:
     (folder / "book.toml").write_text(FRAME.replace('"codes"', names), encoding="utf-8")
     for name, text in {"codes": codes, **further}.items():
         (folder / f"{name}.toml").write_text(text, encoding="utf-8")
-    return read_book(folder)
+    return read_code_book(folder)
 
 
 def test_entry_has_values_of_its_file(tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.compose.machine.machine_files import load_machine, load_named_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.diagnostics import Diagnostic
 from core.language.omniturn import lex_line
@@ -18,7 +18,9 @@ def errors(*lines: str, name: str = "A", machine: str | None = None) -> list[Dia
     on = load_named_machine(machine)
     source = ProgramSource(name, "\n".join((*lines, "")))
     return list(
-        prove(source, create_setup(on, tool_offsets={1: ToolOffset()}, secondary_offsets={}), on).errors
+        prove(
+            source, create_power_up_setup(on, tool_offsets={1: ToolOffset()}, secondary_offsets={}), on
+        ).errors
     )
 
 
@@ -107,7 +109,7 @@ def test_plane_comment_without_its_sign_is_reported(behind: str, weight: str) ->
     text = "\n".join((*HEAD, "(PLXC)", "", behind, "(END)", "M30", ""))
     report = prove(
         ProgramSource("A", text),
-        create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
+        create_power_up_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
         machine,
     )
     found = [each for each in report.diagnostics if each.code == "plane-sign"]

@@ -9,7 +9,7 @@ from app.compose.backends.hal_file_writer import build_hal_file
 from app.compose.machine.machine_files import parse_machine
 from app.desk.command_errors import CommandError
 from core.table_schema import FileFinding, MachineFileError
-from drivers.hal.boards.hal_file_builder import render_file
+from drivers.hal.boards.hal_file_builder import render_hal_file
 from tests.coded import raises_code
 from tests.texts import text as wording
 
@@ -239,7 +239,7 @@ def test_hal_file_of_machine_without_board_or_hal_is_rejected() -> None:
 def lines(text: str) -> list[str]:
     return [
         line.split("#")[0].rstrip()
-        for line in render_file(build_hal_file(parse_machine(text, "test.toml"))).splitlines()
+        for line in render_hal_file(build_hal_file(parse_machine(text, "test.toml"))).splitlines()
     ]
 
 

@@ -87,7 +87,7 @@ def test_serial_and_grbl_tables_are_read() -> None:
         machine.hardware.find_driver_table(SerialLineModel),
     )
     assert vfd is not None
-    assert (vfd.family, vfd.line_settings.baud, vfd.line_settings.parity, vfd.comm_loss) == (
+    assert (vfd.family, vfd.line_settings.baud, vfd.line_settings.parity, vfd.communication_timeout_s) == (
         "delta-vfdb",
         9600,
         "N",

@@ -17,7 +17,7 @@ from core.key_declaration import (
     get_declared_keys,
     make_key_table,
 )
-from core.table_schema import FileValues, read_table
+from core.table_schema import FileValues, read_table_values
 
 
 @make_key_table
@@ -42,7 +42,7 @@ class Plain:
 
 
 def found(table: object) -> list[tuple[str, str]]:
-    return [(each.path, each.code) for each in read_table(table, Line, "line", FileValues(True))]
+    return [(each.path, each.code) for each in read_table_values(table, Line, "line", FileValues(True))]
 
 
 def test_annotation_sets_kind_of_key() -> None:
@@ -63,7 +63,7 @@ def test_annotation_sets_kind_of_key() -> None:
 def test_the_reader_fills_the_object_in_units_of_the_model() -> None:
     values = FileValues(True)
     table = {"port": "tty0", "reply_ms": 500, "range": [0, 1], "words": ["one", "two"]}
-    assert read_table(table, Line, "line", values) == []
+    assert read_table_values(table, Line, "line", values) == []
     line = values.make_model(Line, "line", others=("more",))
     assert line == Line("tty0", 0.5, "N", (0.0, 25.4), "one two", ("more",))
 

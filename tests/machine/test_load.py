@@ -50,11 +50,21 @@ def test_shipped_lathe_is_read_in_model_units() -> None:
 def test_shipped_lathe_has_its_times_spindle_and_interlocks() -> None:
     machine = load_machine(None)
     timing, spindle = machine.timing, machine.spindle
-    assert (timing.commit, timing.lookahead, timing.low_water, timing.lease) == (0.03, 1.0, 0.08, 0.2)
-    assert timing.setpoint == 0.001
-    assert (machine.collet.open_time, machine.collet.close_time) == (0.25, 0.3)
-    assert (spindle.min_rpm, spindle.max_rpm, spindle.accel, spindle.decel) == (50, 3500, 1500, 2500)
-    assert (spindle.at_speed, spindle.at_speed_time, spindle.timeout) == (0.05, 0.3, 5)
+    assert (
+        timing.commit_time_s,
+        timing.lookahead_time_s,
+        timing.low_water_time_s,
+        timing.motion_lease_s,
+    ) == (0.03, 1.0, 0.08, 0.2)
+    assert timing.setpoint_duration_s == 0.001
+    assert (machine.collet.open_time_s, machine.collet.close_time_s) == (0.25, 0.3)
+    assert (spindle.min_rpm, spindle.max_rpm, spindle.acceleration_rpm_s, spindle.deceleration_rpm_s) == (
+        50,
+        3500,
+        1500,
+        2500,
+    )
+    assert (spindle.at_speed_tolerance, spindle.at_speed_time_s, spindle.timeout_s) == (0.05, 0.3, 5)
     assert not machine.interlocks.spindle_with_collet_open
     assert machine.interlocks.unclamp_while_turning
     assert machine.interlocks.two_hand_start
@@ -67,9 +77,9 @@ def test_shipped_io_signals_and_m_codes() -> None:
     assert machine.outputs["coolant"].safe_state is False
     assert machine.inputs["estop"].is_active_low
     assert {"TB2-5", "TB2-7", "TB2-9", *(str(n) for n in range(1, 17))} <= set(machine.inputs)
-    assert machine.m_codes[25] == ("catcher", True)
-    assert machine.m_codes[16] == ("live1", False)
-    assert 11 not in machine.m_codes  # the loader option is off until its owner enables it
+    assert machine.m_code_outputs[25] == ("catcher", True)
+    assert machine.m_code_outputs[16] == ("live1", False)
+    assert 11 not in machine.m_code_outputs  # the loader option is off until its owner enables it
 
 
 def test_metric_file_is_read_in_millimeters(tmp_path: Path) -> None:
@@ -90,7 +100,7 @@ def test_metric_file_is_read_in_millimeters(tmp_path: Path) -> None:
 def test_enabled_loader_code_is_available() -> None:
     text = SHIPPED.replace("on = false, enabled = false", "on = false, enabled = true")
     text = text.replace('11 = { output = "loader_feed", on = true, enabled = false }', "")
-    assert parse_machine(text, "t").m_codes[10] == ("loader_feed", False)
+    assert parse_machine(text, "t").m_code_outputs[10] == ("loader_feed", False)
 
 
 def test_unknown_key_names_the_nearest() -> None:
@@ -175,7 +185,7 @@ def test_ignored_m_codes_are_read_and_checked() -> None:
     )
     assert machine.ignored_m_codes == {80}
     assert machine.disabled_m_codes >= {81}
-    assert 80 not in machine.m_codes
+    assert 80 not in machine.m_code_outputs
     for wrong in ("{ ignored = false }", '{ ignored = true, output = "catcher" }', "{ ignored = 1 }"):
         assert findings(changed("[m_codes]", f"[m_codes]\n80 = {wrong}"))[0].path.startswith("m_codes.80.")
     assert only(changed("[m_codes]", "[m_codes]\n8 = { ignored = true }")).path == "m_codes.8"

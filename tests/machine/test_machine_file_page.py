@@ -14,15 +14,15 @@ import app.extras
 import core.extras
 import core.machine
 import drivers
-from app.compose.machine_file_page import generate_page, iterate_references, main, number
+from app.compose.machine_file_page import generate_page, iterate_table_references, main, number
 from core.key_declaration import KeyField, ValueKind, declare_key, get_declared_keys
 from core.machine.machine_tables import LATHE_TABLES
 from core.page_contents import make_anchor
-from core.table_schema import TableReference
+from core.table_schema import TableDescription
 from tests.whole_product import WHOLE_PRODUCT
 
 PAGE = Path(__file__).parents[2] / "docs" / "integrator" / "machine-file.md"
-TABLES = tuple(iterate_references())
+TABLES = tuple(iterate_table_references())
 KEYS = tuple(
     (f"{table.heading}: {field.key}", field) for table in TABLES for field in get_declared_keys(table.keys)
 )
@@ -90,7 +90,7 @@ def test_table_of_contents_links_to_unique_headings() -> None:
 
 def test_purposes_are_sentences() -> None:
     for table in TABLES:
-        assert isinstance(table, TableReference)
+        assert isinstance(table, TableDescription)
         assert re.match(r"[A-Z].*\.$", table.purpose), table.heading
 
 

@@ -6,7 +6,7 @@ import pytest
 
 import resources
 from app.compose.machine.machine_files import parse_machine
-from core.machine.setter_table import SetterModel
+from core.machine.setter_table import ToolSetterModel
 from core.table_schema import MachineFileError
 from tests.texts import text as wording
 
@@ -31,7 +31,7 @@ def text(*changes: tuple[str, str]) -> str:
 
 
 def test_tool_setter_gives_touch_position() -> None:
-    setter = parse_machine(text(), "test").hardware.find_driver_table(SetterModel)
+    setter = parse_machine(text(), "test").hardware.find_driver_table(ToolSetterModel)
     assert setter is not None
     assert setter.compute_touch_position("X", -1) == pytest.approx(25.4 * (0.5 + 0.125))
     assert setter.compute_touch_position("Z", 1) == pytest.approx(25.4 * (1.0 - 0.125))

@@ -6,7 +6,7 @@ import pytest
 
 import resources
 from app.compose.machine.machine_files import DEFAULT_MACHINE_FILE, parse_machine
-from app.compose.part_data import MACHINE_FILE_REASON, read_known_part
+from app.compose.part_data import MACHINE_FILE_REASON, make_part_settings
 from core.machine.machine_model import Machine
 from core.proving.checks.part_checks import PART_CHECKS
 from core.table_schema import MachineFileError
@@ -24,7 +24,7 @@ def machine(checks: str) -> Machine:
 def test_checks_are_silenced_by_their_ids() -> None:
     silenced = machine('silenced = ["chip-load", "cuts-air"]')
     assert silenced.silenced_checks == ("chip-load", "cuts-air")
-    setting = read_known_part(silenced, {}, {})
+    setting = make_part_settings(silenced, {}, {})
     assert setting.silenced == {"chip-load": MACHINE_FILE_REASON, "cuts-air": MACHINE_FILE_REASON}
 
 

@@ -31,17 +31,17 @@ def test_the_example_of_the_specification_loads() -> None:
     x, z, c = machine.axes
     assert x.travel == pytest.approx((-2.54, 152.4))
     assert (x.max_acceleration, z.max_acceleration) == pytest.approx((4064.0, 4064.0))  # 160 in/s²
-    assert machine.timing.setpoint == 0.001
-    assert z.following_window == x.following_window == pytest.approx(0.04 * 25.4)
+    assert machine.timing.setpoint_duration_s == 0.001
+    assert z.following_error_window == x.following_error_window == pytest.approx(0.04 * 25.4)
     assert z.in_position_tolerance == x.in_position_tolerance == pytest.approx(0.0002 * 25.4)
     assert not machine.is_c_enabled
-    assert (c.max_acceleration, c.following_window, c.in_position_tolerance) == pytest.approx(
+    assert (c.max_acceleration, c.following_error_window, c.in_position_tolerance) == pytest.approx(
         (3600.0, 5.0, 0.1)
     )  # 600 rpm/s
-    assert machine.spindle.decel == 1500
+    assert machine.spindle.deceleration_rpm_s == 1500
     assert (machine.limits.max_feed, machine.limits.manual_rapid) == pytest.approx((127.0, 100 * 25.4 / 60))
     assert (machine.limits.resolution, machine.limits.clearance) == pytest.approx((0.00127, 31.75))
-    assert (machine.collet.open_time, machine.collet.close_time) == (0.5, 0.5)
+    assert (machine.collet.open_time_s, machine.collet.close_time_s) == (0.5, 0.5)
     assert machine.hardware.analog_inputs["spindle_pot"].switch == "spindle_auto"
 
 
@@ -71,7 +71,7 @@ def test_missing_axis_values_are_derived_from_speed_and_count() -> None:
     machine = parse_machine(text.replace("in_pos = 0.0002", ""), "t")
     for slide in machine.axes[:2]:
         # Position loop of 40 Hz, damping 1: lag 2 / (2 · 3.1416 · 40) s = 7.958 ms, at 127 mm/s, twice
-        assert slide.following_window == pytest.approx(2.0213, abs=1e-4)
+        assert slide.following_error_window == pytest.approx(2.0213, abs=1e-4)
         assert slide.in_position_tolerance == pytest.approx(4 * 0.00127)
     assert machine.limits.max_feed == pytest.approx(127.0)
 
@@ -124,13 +124,13 @@ def test_missing_value_without_safe_default_is_rejected(line: str, path: str) ->
 
 def test_shipped_lathe_uses_no_defaults() -> None:
     machine = load_machine(None)
-    assert (machine.collet.open_time, machine.spindle.decel) == (0.25, 2500)
+    assert (machine.collet.open_time_s, machine.spindle.deceleration_rpm_s) == (0.25, 2500)
 
 
 @pytest.mark.parametrize(("stated", "power"), [("", 0.0), ("power_kw = 2.2\n", 2200.0)])
 def test_the_power_of_the_spindle_is_stated_in_kilowatts(stated: str, power: float) -> None:
     text = without().replace("[spindle]\n", f"[spindle]\n{stated}", 1)
-    assert parse_machine(text, "t").spindle.power == pytest.approx(power)
+    assert parse_machine(text, "t").spindle.power_w == pytest.approx(power)
 
 
 @pytest.mark.parametrize("wrong", ["0", "-1.5", "1500", '"1.5"', "true", "nan"])

@@ -37,7 +37,7 @@ def test_typed_text_is_completed(dialect: Dialect, typed: str, down: int, writte
     completion = line(dialect, typed)
     assert press(completion, "Tab", *(["Down"] * down), "Enter") == written
     assert completion.mdi_input.cursor_index == len(written)
-    assert not completion.is_open
+    assert not completion.is_choice_list_open
 
 
 def test_selected_code_is_inserted_at_cursor() -> None:
@@ -73,14 +73,14 @@ def test_only_head_is_inserted_when_whole_block_does_not_fit() -> None:
     completion = line(Dialect.OMNITURN, full)
     press(completion, "Tab", "Enter")
     assert completion.mdi_input.text == full
-    assert not completion.is_open
+    assert not completion.is_choice_list_open
 
 
 def test_any_other_key_edits_line_and_closes_choices() -> None:
     completion = line(Dialect.OMNITURN, "G0")
     press(completion, "Tab")
     assert not completion.handle_key("X")
-    assert not completion.is_open
+    assert not completion.is_choice_list_open
     assert completion.mdi_input.text == "G0"
 
 

@@ -9,7 +9,7 @@ from math import atan2, cos, degrees, radians
 import pytest
 
 from app.compose.machine.machine_files import load_named_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.executor.control_status import make_modal_state_after_cancel
 from core.interpreter.dialects import interpret_mdi_line
 from core.interpreter.shared.actions import ToolChange
@@ -34,7 +34,7 @@ class Mdi:
     def enters(self, text: str) -> str:
         """The block runs, or the code of what it is refused for."""
         setup = replace(
-            create_setup(self.machine, tool_offsets=self.tools, secondary_offsets={}),
+            create_power_up_setup(self.machine, tool_offsets=self.tools, secondary_offsets={}),
             start=self.at,
             begin=PassStart(self.point, is_mdi_line=True),
         )
@@ -150,7 +150,7 @@ def test_block_rejected_in_transmit_is_rejected_in_mdi() -> None:
 
 def test_tool_call_is_one_action_block(mill: Mdi) -> None:
     setup = replace(
-        create_setup(mill.machine, tool_offsets=mill.tools, secondary_offsets={}),
+        create_power_up_setup(mill.machine, tool_offsets=mill.tools, secondary_offsets={}),
         start=mill.at,
         begin=PassStart(mill.point, is_mdi_line=True),
     )

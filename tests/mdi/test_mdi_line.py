@@ -39,7 +39,7 @@ def test_history_recalls_lines_and_unfinished_line() -> None:
     typing = MdiInput()
     for line in ("G90", "X1", "X2"):
         typing.set_text(line)
-        typing.finish_line()
+        typing.store_started_line()
     press(typing, ["Z", "Up", "Up"])
     assert (typing.text, typing.recall_index) == ("X1", 2)
     press(typing, ["Up", "Up", "Up"])  # the oldest is the end
@@ -52,7 +52,7 @@ def test_repeated_line_is_stored_once_and_empty_line_never() -> None:
     typing = MdiInput()
     for line in ("X1", "X1", "  ", "X2"):
         typing.set_text(line)
-        typing.finish_line()
+        typing.store_started_line()
     assert typing.history_lines == ["X1", "X2"]
 
 
@@ -61,7 +61,7 @@ def test_history_is_stored_and_invalid_entries_are_dropped() -> None:
     typing = MdiInput(keep)
     for number in range(MAX_HISTORY_LINES + 3):
         typing.set_text(f"X{number}")
-        typing.finish_line()
+        typing.store_started_line()
     again = MdiInput(keep)
     assert (len(again.history_lines), again.history_lines[0], again.history_lines[-1]) == (
         MAX_HISTORY_LINES,
@@ -84,7 +84,7 @@ def test_failed_store_does_not_lose_history() -> None:
 
     typing = MdiInput(Broken())
     typing.set_text("X1")
-    typing.finish_line()
+    typing.store_started_line()
     assert typing.history_lines == ["X1"]
 
 
@@ -92,13 +92,13 @@ def test_rejected_line_stays_in_history_with_error_position() -> None:
     typing = MdiInput()
     press(typing, "G01X")
     typing.add_rejected_line(4)
-    assert (typing.history_lines, typing.error_columns) == (["G01X"], {"G01X": 4})
+    assert (typing.history_lines, typing.error_columns_by_line) == (["G01X"], {"G01X": 4})
     assert typing.text == "G01X"  # to be mended where it stands
     press(typing, "1")
-    typing.finish_line()
+    typing.store_started_line()
     assert typing.history_lines == ["G01X", "G01X1"]
-    assert "G01X1" not in typing.error_columns
+    assert "G01X1" not in typing.error_columns_by_line
     press(typing, "G01X")
     # what was wrong with it has been put right elsewhere, such as a tool that was never set
-    typing.finish_line()
-    assert not typing.error_columns
+    typing.store_started_line()
+    assert not typing.error_columns_by_line

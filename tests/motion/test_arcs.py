@@ -18,7 +18,7 @@ def test_clockwise_arc_is_convex_corner_of_shaft() -> None:
     """X.1 Z0 to X.25 Z-.15 round (.1, -.15), inches: halfway at 45 degrees outside the corner."""
     block = arc((2.54, 0.0), (6.35, -3.81), (2.54, -3.81), 20.0)
     profile = plan_motion(build_path([block], LIMITS))
-    halfway = profile.positions_at(profile.duration_s / 2)[0]
+    halfway = profile.compute_positions(profile.duration_s / 2)[0]
     side = 3.81 / math.sqrt(2)
     assert halfway == pytest.approx([2.54 + side, -3.81 + side, 0.0], abs=1e-9)
 
@@ -27,7 +27,7 @@ def test_counterclockwise_arc_bulges_to_other_side() -> None:
     block = arc((2.54, 0.0), (6.35, -3.81), (2.54, -3.81), 20.0, clockwise=False)
     path = build_path([block], LIMITS)
     assert path.length == pytest.approx(3.81 * 1.5 * math.pi)
-    middle = path.positions_at(np.array([path.length / 2]))[0]
+    middle = path.compute_positions(np.array([path.length / 2]))[0]
     assert middle[:2] == pytest.approx([2.54 - 3.81 / math.sqrt(2), -3.81 - 3.81 / math.sqrt(2)])
 
 
@@ -43,7 +43,7 @@ def test_speed_and_total_acceleration_on_arc_stay_within_limits() -> None:
     assert profile.phases.start_speeds.max() == pytest.approx(limit)
     assert np.abs(profile.phases.accelerations).max() == pytest.approx(0.6 * A)
     t = np.linspace(0.0, profile.duration_s, 4001)
-    felt = np.diff(profile.positions_at(t), 2, axis=0)[:, :2] / (t[1] - t[0]) ** 2
+    felt = np.diff(profile.compute_positions(t), 2, axis=0)[:, :2] / (t[1] - t[0]) ** 2
     assert np.hypot(*felt.T).max() <= A * (1.0 + 1e-6)
 
 
@@ -62,7 +62,7 @@ def test_a_slow_arc_may_use_nearly_all_the_acceleration() -> None:
 def test_arc_with_rounded_center_ends_exactly_at_end() -> None:
     block = arc((0, 10), (10, 0), (0.0005, -0.0008))
     profile = plan_motion(build_path([block], LIMITS))
-    assert profile.positions_at(np.array([0.0, profile.duration_s]))[:, :2] == pytest.approx(
+    assert profile.compute_positions(np.array([0.0, profile.duration_s]))[:, :2] == pytest.approx(
         np.array([[0.0, 10.0], [10.0, 0.0]]), abs=1e-9
     )
 

@@ -26,7 +26,7 @@ STEPPED = dataclasses.replace(LIMITS, grain=GRAIN)
 
 
 def joints(path: MotionPath) -> FloatArray:
-    return np.vstack([path.pieces.start, path.positions_at(path.joint_distances[-1:])])
+    return np.vstack([path.pieces.start, path.compute_positions(path.joint_distances[-1:])])
 
 
 def written(blocks: list[Block]) -> FloatArray:
@@ -37,7 +37,7 @@ def felt(profile: MotionProfile, dt: float) -> float:
     """Largest second difference of setpoints ``dt`` apart, as a share of the acceleration."""
     worst = 0.0
     for begin in (0.0, 0.3 * dt, 0.7 * dt):
-        p = profile.positions_at(np.arange(begin, profile.duration_s, dt))
+        p = profile.compute_positions(np.arange(begin, profile.duration_s, dt))
         worst = max(worst, float(np.abs(np.diff(p, 2, axis=0)).max(initial=0.0)))
     return worst / dt**2 / A
 
@@ -137,8 +137,8 @@ def test_windowed_plan_equals_whole_plan(window: int) -> None:
     assert [n for chunk in chunks for n in chunk.block_numbers.tolist()] == [b.n for b in blocks]
     for before, after in pairwise(chunks):
         ends, begins = (
-            before.profile.positions_at(before.profile.duration_s),
-            after.profile.positions_at(0.0),
+            before.profile.compute_positions(before.profile.duration_s),
+            after.profile.compute_positions(0.0),
         )
         assert ends == pytest.approx(begins, abs=1e-9)
 
@@ -154,17 +154,17 @@ def test_growing_path_does_not_move_current_position(seed: int, grid: float) -> 
     builder.add_blocks(blocks[:at])
     profile = plan_motion(builder.build_path())
     while at < len(blocks):
-        (s,), (v,) = profile.distance_and_speed_at(float(chance.random()) * profile.duration_s)
-        here = builder.build_path().positions_at(np.array([s]))
+        (s,), (v,) = profile.compute_distances_and_speeds(float(chance.random()) * profile.duration_s)
+        here = builder.build_path().compute_positions(np.array([s]))
         builder.drop_blocks_before(
-            int(builder.build_path().block_numbers[profile.path.piece_at(np.array([s]))[0]])
+            int(builder.build_path().block_numbers[profile.path.find_piece_indices(np.array([s]))[0]])
         )
         count = int(chance.integers(1, 150))
         builder.add_blocks(blocks[at : at + count], s + v * v / (2.0 * 0.2 * A))
         at += count
-        assert builder.build_path().positions_at(np.array([s])) == pytest.approx(here, abs=1e-9)
+        assert builder.build_path().compute_positions(np.array([s])) == pytest.approx(here, abs=1e-9)
         profile = plan_motion(builder.build_path(), start_distance=s, start_speed=v)
-    assert profile.positions_at(profile.duration_s)[0][0] == pytest.approx(blocks[-1].x, abs=1e-9)
+    assert profile.compute_positions(profile.duration_s)[0][0] == pytest.approx(blocks[-1].x, abs=1e-9)
 
 
 def test_chords_added_later_smooth_previous_end() -> None:
@@ -200,7 +200,7 @@ def test_other_elements_added_later_are_not_smoothed(near: int) -> None:
     assert path.find_block_span(204)[1] - path.find_block_span(204)[0] == pytest.approx(90.0, abs=1e-9)
     ends = path.pieces.point(path.pieces.length)
     assert ends[:-1] == pytest.approx(path.pieces.start[1:], abs=1e-9)
-    assert path.positions_at(path.joint_distances[-1:])[0] == pytest.approx([*top, 90.0], abs=1e-9)
+    assert path.compute_positions(path.joint_distances[-1:])[0] == pytest.approx([*top, 90.0], abs=1e-9)
 
 
 def test_path_close_to_current_position_is_not_changed() -> None:
@@ -222,7 +222,7 @@ def test_c_rotation_added_during_motion_retains_its_length() -> None:
     builder.add_blocks([turn], math.inf)
     path = builder.build_path()
     assert path.pieces.length[-1] == pytest.approx(10.0)
-    assert path.positions_at(path.joint_distances[-1:])[0] == pytest.approx([20.0, 7.0, -355.0])
+    assert path.compute_positions(path.joint_distances[-1:])[0] == pytest.approx([20.0, 7.0, -355.0])
 
 
 _short = st.lists(

@@ -10,7 +10,7 @@ import pytest
 import resources
 from app.cli.outputs.proof_output import make_report_json
 from app.compose.machine.machine_files import parse_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import ProgramSource
@@ -34,7 +34,7 @@ def machine(tolerance: str = "") -> Machine:
 
 def limits(tolerance: float) -> MotionLimits:
     lathe = machine()
-    return MotionLimits.from_axes(lathe.axes, lathe.timing.setpoint, tolerance)
+    return MotionLimits.from_axes(lathe.axes, lathe.timing.setpoint_duration_s, tolerance)
 
 
 def moved(blocks: list[Block], tolerance: float) -> float:
@@ -69,7 +69,9 @@ def test_corner_tolerance_does_not_move_exact_chords() -> None:
 def test_corner_tolerance_is_read_in_unit_of_file() -> None:
     lathe = machine("0.0002")
     assert lathe.limits.corner_tolerance == pytest.approx(0.00508)
-    grain = MotionLimits.from_axes(lathe.axes, lathe.timing.setpoint, lathe.limits.corner_tolerance).grain
+    grain = MotionLimits.from_axes(
+        lathe.axes, lathe.timing.setpoint_duration_s, lathe.limits.corner_tolerance
+    ).grain
     assert grain == pytest.approx(0.00508 / math.sqrt(2.0))
 
 
@@ -80,7 +82,7 @@ def test_grain_is_axis_count_without_corner_tolerance() -> None:
 
 def test_proof_report_shows_corner_tolerance() -> None:
     lathe = machine("0.0002")
-    setup = create_setup(lathe, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(lathe, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     report = prove(ProgramSource("A", "G90G94F300\nT1\nX.5Z.1\nM30\n"), setup, lathe)
     assert make_report_json("A", report)["corner_tolerance"] == pytest.approx(0.0002)
 

@@ -15,7 +15,11 @@ from tests.motion.paths import build_path
 def corner_speed(points: list[tuple[float, float]], feed: float = 100.0) -> float:
     path = build_path(polyline(points, feed), LIMITS)
     profile = plan_motion(path)
-    return float(profile.distance_and_speed_at(profile.times_at_distances(path.joint_distances[1:2]))[1][0])
+    return float(
+        profile.compute_distances_and_speeds(profile.compute_times_at_distances(path.joint_distances[1:2]))[
+            1
+        ][0]
+    )
 
 
 def felt(points: list[tuple[float, float]], feed: float = 100.0) -> float:
@@ -23,7 +27,7 @@ def felt(points: list[tuple[float, float]], feed: float = 100.0) -> float:
     profile = plan_motion(build_path(polyline(points, feed), LIMITS))
     worst = 0.0
     for begin in np.linspace(0.0, T, 8, endpoint=False):
-        p = profile.positions_at(np.arange(begin - 2 * T, profile.duration_s + 2 * T, T))
+        p = profile.compute_positions(np.arange(begin - 2 * T, profile.duration_s + 2 * T, T))
         worst = max(worst, float(np.abs(np.diff(p, 2, axis=0)).max()))
     return worst / T**2 / A
 
@@ -90,7 +94,7 @@ def test_chord_speed_is_centripetal_limit_for_any_chord_length(chord: float) -> 
     count = round(5.0 * math.pi / chord)
     profile = plan_motion(build_path(chords(5.0, math.pi, count, 127.0), LIMITS))
     limit = math.sqrt(0.8 * A * 5.0)
-    on_axis = profile.distance_and_speed_at(profile.duration_s / 2)[1][0]
+    on_axis = profile.compute_distances_and_speeds(profile.duration_s / 2)[1][0]
     assert on_axis == pytest.approx(limit, rel=0.02)
     assert profile.phases.start_speeds.max() <= limit * 2**0.25
 
@@ -99,7 +103,7 @@ def test_chords_do_not_exceed_axis_acceleration() -> None:
     """What a drive sees: second differences of setpoints, away from the start and the end."""
     profile = plan_motion(build_path(chords(5.0, math.pi, 3000, 127.0), LIMITS))
     t = np.arange(0.0, profile.duration_s, T)
-    felt = np.abs(np.diff(profile.positions_at(t), 2, axis=0)) / T**2
+    felt = np.abs(np.diff(profile.compute_positions(t), 2, axis=0)) / T**2
     assert felt.max() < 1.02 * A
 
 
@@ -107,7 +111,7 @@ def test_rounded_chords_are_as_fast_as_their_circle() -> None:
     """Four places of a millimetre on chords of 0.02 mm: a joint turns by up to half a degree to and fro."""
     profile = plan_motion(build_path(rounded_chords(7854, 100.0, 0.0001), LIMITS))
     assert profile.duration_s < 1.01 * (math.pi * 50.0 / 100.0 + 100.0 / A)
-    felt = np.abs(np.diff(profile.positions_at(np.arange(0.0, profile.duration_s, T)), 2, axis=0)) / T**2
+    felt = np.abs(np.diff(profile.compute_positions(np.arange(0.0, profile.duration_s, T)), 2, axis=0)) / T**2
     assert felt.max() < 1.02 * A
 
 
@@ -124,13 +128,15 @@ def test_corner_between_short_chords_slows_motion() -> None:
     path = build_path(polyline([*there, *across], 100.0), LIMITS)
     profile = plan_motion(path)
     assert float(
-        profile.distance_and_speed_at(profile.times_at_distances(path.joint_distances[199:200]))[1][0]
+        profile.compute_distances_and_speeds(
+            profile.compute_times_at_distances(path.joint_distances[199:200])
+        )[1][0]
     ) == pytest.approx(A * T / 2)
 
 
 def test_zero_length_block_is_not_a_corner() -> None:
     straight = corner_speed([(0, 0), (0, 50), (0, 100)])
     path = build_path(polyline([(0, 0), (0, 50), (0, 50), (0, 100)], 100.0), LIMITS)
-    assert plan_motion(path).distance_and_speed_at(
-        plan_motion(path).times_at_distances(path.joint_distances[1:2])
+    assert plan_motion(path).compute_distances_and_speeds(
+        plan_motion(path).compute_times_at_distances(path.joint_distances[1:2])
     )[1][0] == pytest.approx(straight)

@@ -84,7 +84,7 @@ def test_drive_segments_are_flat_and_end_at_end_point() -> None:
         points = move.frame.convert_to_mill(p + (v + 0.5 * a * tau) * tau)
         assert np.abs(points[:, 0] - 2.0).max() < 0.5 * FLAT
     assert np.abs(np.diff(t) - dt[:-1]).max() < 1e-9
-    assert profile.positions_at(profile.duration_s)[0].tolist() == pytest.approx(
+    assert profile.compute_positions(profile.duration_s)[0].tolist() == pytest.approx(
         move.compute_machine_positions(ENDS)[1].tolist()
     )
 
@@ -94,7 +94,7 @@ def test_feed_is_relative_to_milling_tool() -> None:
     move = face_line((8.0, -6.0), (8.0, 6.0))
     profile = plan_motion(build_path([milled(move)], LIMITS))
     assert profile.duration_s == pytest.approx(3.0, abs=0.03)
-    points = move.frame.convert_to_mill(profile.positions_at(np.array([1.0, 2.0])))
+    points = move.frame.convert_to_mill(profile.compute_positions(np.array([1.0, 2.0])))
     assert points[1, 1] - points[0, 1] == pytest.approx(4.0, abs=2e-3)
 
 
@@ -120,7 +120,7 @@ def axis_speeds(profile: MotionProfile) -> FloatArray:
 )  # fmt: skip
 def test_no_axis_exceeds_its_limits(x: float, y: float, u: float, v: float, feed: float) -> None:
     move = face_line((x, y), (u, v))
-    if move.length < 0.1 or move.compute_distance_from_axis(move.get_critical_fraction()) < 0.01:
+    if move.length < 0.1 or move.compute_distance_from_axis(move.get_fastest_rotation_fraction()) < 0.01:
         return
     path = build_path([milled(move, feed)], LIMITS)
     profile = plan_motion(path)
@@ -133,7 +133,9 @@ def test_no_axis_exceeds_its_limits(x: float, y: float, u: float, v: float, feed
 
 def joint_steps(profile: MotionProfile, path: MotionPath) -> FloatArray:
     """Change of each axis' velocity (k, 3) at the joints of pieces."""
-    v = profile.distance_and_speed_at(profile.times_at_distances(path.joint_distances[1:-1]))[1]
+    v = profile.compute_distances_and_speeds(profile.compute_times_at_distances(path.joint_distances[1:-1]))[
+        1
+    ]
     steps: FloatArray = np.abs(np.diff(path.pieces.direction, axis=0)) * v[:, None]
     return steps
 
@@ -163,7 +165,7 @@ def test_c_alone_turns_at_its_speed() -> None:
     """90 degrees at 300 degrees/s and 3600 degrees/s²: 90/300 + 300/3600 s."""
     profile = plan_motion(build_path([turned(10.0, 100.0, 300.0)], LIMITS))
     assert profile.duration_s == pytest.approx(90.0 / 300.0 + 300.0 / 3600.0)
-    assert profile.positions_at(profile.duration_s)[0].tolist() == pytest.approx([10.0, 5.0, 100.0])
+    assert profile.compute_positions(profile.duration_s)[0].tolist() == pytest.approx([10.0, 5.0, 100.0])
 
 
 def test_shifted_c_count_is_converted_to_machine() -> None:
@@ -177,7 +179,7 @@ def test_linear_feed_follows_c_revolutions() -> None:
     profile = plan_motion(build_path([fed_by_c(-way, -45.1, 0.8 * 25.4, -3.5)], LIMITS))
     assert len(profile.path) == 2
     t = np.linspace(0.0, profile.duration_s, 500)
-    at = profile.positions_at(t)
+    at = profile.compute_positions(t)
     arrived = at[:, 2] <= -45.0
     assert at[arrived, 1] == pytest.approx(-way)
     assert at[~arrived, 1] == pytest.approx(at[~arrived, 2] / 45.0 * way)
@@ -191,7 +193,7 @@ def test_c_with_own_drive_moves_along_with_feed() -> None:
     profile = plan_motion(build_path([block], LIMITS))
     assert len(profile.path) == 1
     assert profile.duration_s == pytest.approx(10.0, abs=0.01)
-    assert profile.positions_at(profile.duration_s)[0].tolist() == pytest.approx([10.0, -10.0, 5.0])
+    assert profile.compute_positions(profile.duration_s)[0].tolist() == pytest.approx([10.0, -10.0, 5.0])
 
 
 def test_exactly_sufficient_c_rotation_is_one_piece() -> None:
@@ -226,12 +228,12 @@ def test_stop_and_restart_stay_on_path() -> None:
     move = face_line((8.0, -6.0), (8.0, 6.0))
     path = build_path([milled(move)], LIMITS)
     running = plan_motion(path)
-    s, v = running.distance_and_speed_at(1.5)
+    s, v = running.compute_distances_and_speeds(1.5)
     stopped = plan_motion(path, start_distance=float(s[0]), start_speed=float(v[0]), stop_early=True)
     assert stopped.duration_s < 0.05
     assert off_line(stopped, move, 0.0005) < 0.5 * FLAT
     on = plan_motion(path, start_distance=stopped.end_distance)
-    assert on.positions_at(on.duration_s)[0].tolist() == pytest.approx(
+    assert on.compute_positions(on.duration_s)[0].tolist() == pytest.approx(
         move.compute_machine_positions(ENDS)[1].tolist()
     )
 
@@ -261,13 +263,13 @@ def test_stop_near_axis_decelerates_c() -> None:
     """The mill creeps there while C turns fast: no speed is too small to be braked."""
     path = build_path([milled(face_line((3.0, 0.001), (-3.0, 0.001)), 8.0)], LIMITS)
     running = plan_motion(path)
-    near = running.times_at_distances(path.joint_distances[:1] + 3.0)
-    s, v = running.distance_and_speed_at(near)
+    near = running.compute_times_at_distances(path.joint_distances[:1] + 3.0)
+    s, v = running.compute_distances_and_speeds(near)
     assert 0.0 < v[0] < 0.1
     stopped = plan_motion(path, start_distance=float(s[0]), start_speed=1e-3 * float(v[0]), stop_early=True)
     assert stopped.duration_s > 0.0
     _, dt, _, begin, a = stopped.make_segments(0.0, stopped.duration_s)
-    tangent = path.pieces.direction[path.piece_at(s)]
+    tangent = path.pieces.direction[path.find_piece_indices(s)]
     assert begin[0] == pytest.approx(tangent[0] * 1e-3 * v[0])
     assert np.abs(begin[-1] + a[-1] * dt[-1]).max() < 1e-6
 

@@ -15,7 +15,7 @@ from core.geometry.working_plane import AxisMove
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.modal_state import ModalState
 from core.motion.axis_limits import MotionError
-from core.motion.block_table import read_blocks
+from core.motion.block_table import build_block_table
 from core.motion.motion_plan import plan_motion
 from core.motion.speed_limits import find_surface_rpms
 from tests.coded import raises_code
@@ -90,7 +90,7 @@ def test_arc_at_surface_speed_is_split_and_remains_arc() -> None:
     path = build_path([quarter], LIMITS)
     assert len(path) >= math.log(3) / math.log(1.02)
     assert path.length == pytest.approx(20.0 * math.pi)
-    x, z, _ = path.positions_at(np.linspace(0.0, path.length, 100)).T
+    x, z, _ = path.compute_positions(np.linspace(0.0, path.length, 100)).T
     assert np.hypot(x - 20.0, z - 10.0) == pytest.approx(np.full(100, 40.0), abs=1e-9)
     ends = path.pieces.point(path.pieces.length)[:, 0]
     assert (ends / path.pieces.start[:, 0]).max() < 1.03
@@ -123,7 +123,7 @@ def test_invalid_surface_speed_is_rejected() -> None:
 
 @pytest.mark.parametrize("radius", [0.0, 1e-9, 5.0, -5.0, 20.0, 1e4])
 def test_array_and_scalar_speeds_agree(radius: float) -> None:
-    words = read_blocks(
+    words = build_block_table(
         [turning((1, 0), (2, 0), modal=ModalState(min_css_rpm=30.0, max_css_rpm=2500.0))], 2000.0
     )
     assert find_surface_rpms(words, np.array([radius]))[0] == find_surface_rpm(SURFACE, radius, 30.0, 2000.0)
@@ -159,7 +159,7 @@ def test_blocks_with_and_without_all_axes_cannot_be_mixed() -> None:
     whole = line((0, 0), (0, 5), n=4)
     travel = AxisMove((0.0, 0.0, 0.0), (0.0, 5.0, 0.0), 5.0)
     with raises_code(MotionError, "axes-differ", "Block 4"):
-        read_blocks([replace(whole, travel=travel), line((0, 5), (0, 6), n=5)], 3000.0)
+        build_block_table([replace(whole, travel=travel), line((0, 5), (0, 6), n=5)], 3000.0)
 
 
 def test_radius_of_surface_speed_uses_program_axis_offset() -> None:

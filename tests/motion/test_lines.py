@@ -26,7 +26,7 @@ def test_long_line_has_trapezoidal_speed() -> None:
 def test_short_line_has_triangular_speed() -> None:
     profile = plan_motion(build_path([line((0, 0), (1, 0), 100.0)], LIMITS))
     assert profile.duration_s == pytest.approx(2.0 * math.sqrt(1.0 / A), rel=1e-12)
-    assert profile.distance_and_speed_at(profile.duration_s / 2)[1][0] == pytest.approx(math.sqrt(A))
+    assert profile.compute_distances_and_speeds(profile.duration_s / 2)[1][0] == pytest.approx(math.sqrt(A))
 
 
 def test_diagonal_uses_speed_of_both_axes() -> None:
@@ -47,7 +47,7 @@ def test_slower_axis_limits_line() -> None:
 def test_offsets_convert_to_machine_coordinates() -> None:
     block = replace(line((1, 2), (3, 4)), offset_x=10.0, offset_z=-20.0)
     profile = plan_motion(build_path([block], LIMITS))
-    assert profile.positions_at(np.array([0.0, profile.duration_s])) == pytest.approx(
+    assert profile.compute_positions(np.array([0.0, profile.duration_s])) == pytest.approx(
         np.array([[11.0, -18.0, 0.0], [13.0, -16.0, 0.0]]), abs=1e-12
     )
 
@@ -72,7 +72,7 @@ def test_splitting_line_does_not_change_motion(parts: int) -> None:
     cut = plan_motion(build_path(polyline(points, 80.0), LIMITS))
     assert cut.duration_s == pytest.approx(whole.duration_s, rel=1e-9)
     t = np.linspace(0.0, whole.duration_s, 50)
-    assert cut.positions_at(t) == pytest.approx(whole.positions_at(t), abs=1e-9)
+    assert cut.compute_positions(t) == pytest.approx(whole.compute_positions(t), abs=1e-9)
 
 
 def test_half_feed_doubles_time() -> None:

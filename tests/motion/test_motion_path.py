@@ -40,8 +40,8 @@ def test_block_at_time_is_the_moving_block() -> None:
     profile = plan_motion(build_path(polyline([(0, 0), (0, 50), (0, 50), (0, 100)], 100.0), LIMITS))
     middle = profile.duration_s / 2
     times = [-1.0, 0.0, middle - 0.01, middle + 0.01, 99.0]
-    assert profile.block_numbers_at(np.array(times)).tolist() == [1, 1, 1, 3, 3]
-    assert [profile.block_number_at(t) for t in times] == [1, 1, 1, 3, 3]
+    assert profile.find_block_numbers(np.array(times)).tolist() == [1, 1, 1, 3, 3]
+    assert [profile.find_block_number(t) for t in times] == [1, 1, 1, 3, 3]
 
 
 def test_blocks_before_start_are_complete() -> None:
@@ -93,7 +93,7 @@ def test_full_circle_between_lines_is_continuous() -> None:
         line((0, 10), (0, 20), n=3),
     ]
     path = build_path(blocks, LIMITS)
-    assert path.positions_at(path.joint_distances)[:, :2] == pytest.approx(
+    assert path.compute_positions(path.joint_distances)[:, :2] == pytest.approx(
         np.array([[0, 0], [0, 10], [0, 10], [0, 20.0]]), abs=1e-9
     )
 

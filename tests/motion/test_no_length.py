@@ -85,7 +85,7 @@ some = settings(max_examples=150, deadline=None)
 def test_plan_ends_at_end_of_last_block(blocks: list[Block], limits: MotionLimits) -> None:
     profile = plan_motion(build_path(blocks, limits))
     demand_setpoints(profile, limits)
-    assert profile.positions_at(profile.duration_s)[0] == pytest.approx(end_of(blocks), abs=1e-6)
+    assert profile.compute_positions(profile.duration_s)[0] == pytest.approx(end_of(blocks), abs=1e-6)
     numbers, start, end = profile.find_block_times()
     assert numbers.tolist() == [block.n for block in blocks]
     assert (end >= start).all()
@@ -99,7 +99,7 @@ def test_windows_contain_every_block_once(blocks: list[Block], limits: MotionLim
     planner = WindowPlanner(limits, window=window)
     chunks = [*planner.plan_blocks(blocks), *planner.finish_section()]
     assert [n for chunk in chunks for n in chunk.block_numbers.tolist()] == [block.n for block in blocks]
-    assert chunks[-1].profile.positions_at(1e9)[0] == pytest.approx(end_of(blocks), abs=1e-6)
+    assert chunks[-1].profile.compute_positions(1e9)[0] == pytest.approx(end_of(blocks), abs=1e-6)
 
 
 @pytest.mark.long
@@ -114,23 +114,23 @@ def test_motion_can_be_stopped_changed_and_continued_anywhere(
     profile = plan_motion(builder.build_path())
     for _ in range(30):
         t = chance.choice([0.0, 1.0, 1.0, chance.random()]) * profile.duration_s
-        (s,), (v,) = profile.distance_and_speed_at(t)
-        here = profile.positions_at(t)[0]
+        (s,), (v,) = profile.compute_distances_and_speeds(t)
+        here = profile.compute_positions(t)[0]
         if chance.random() < 0.5:
-            builder.drop_blocks_before(int(profile.block_numbers_at(t)[0]))
+            builder.drop_blocks_before(int(profile.find_block_numbers(t)[0]))
         if taken < len(blocks) and chance.random() < 0.6:
             more = blocks[taken : taken + chance.randint(1, 4)]
             builder.add_blocks(more, float(s + v * v / (0.4 * limits.max_plane_acceleration)))
             taken += len(more)
         profile = _changed(builder.build_path(), float(s), float(v), chance)
         demand_setpoints(profile, limits)
-        assert profile.positions_at(0.0)[0] == pytest.approx(here, abs=1e-5)
-    (s,), (v,) = profile.distance_and_speed_at(profile.duration_s)
+        assert profile.compute_positions(0.0)[0] == pytest.approx(here, abs=1e-5)
+    (s,), (v,) = profile.compute_distances_and_speeds(profile.duration_s)
     if taken < len(blocks):
         builder.add_blocks(blocks[taken:], float(s))
     builder.end_path()
     profile = plan_motion(builder.build_path(), start_distance=float(s), start_speed=float(v))
-    assert profile.positions_at(profile.duration_s)[0] == pytest.approx(end_of(blocks), abs=1e-6)
+    assert profile.compute_positions(profile.duration_s)[0] == pytest.approx(end_of(blocks), abs=1e-6)
 
 
 def _changed(path: MotionPath, s: float, v: float, chance: Random) -> MotionProfile:
@@ -165,7 +165,7 @@ def test_blocks_can_be_added_to_zero_length_path(limits: MotionLimits) -> None:
     path = builder.build_path()
     assert path.block_numbers.tolist() == [1, 2, 3, 4]
     assert path.length == pytest.approx(5.0)
-    assert plan_motion(path).positions_at(99.0)[0, :2].tolist() == [3.0, 9.0]
+    assert plan_motion(path).compute_positions(99.0)[0, :2].tolist() == [3.0, 9.0]
 
 
 def test_single_block_stops_after_zero_length_block() -> None:
@@ -185,7 +185,7 @@ def test_zero_length_path_can_be_stopped_planned_and_scaled() -> None:
         plan_motion(path, feed_scale=0.0, rapid_scale=0.0),
     ):
         assert (profile.duration_s, profile.end_speed) == (0.0, 0.0)
-        assert profile.positions_at(np.array([0.0, 1.0])).tolist() == [[1.0, 2.0, 0.0]] * 2
+        assert profile.compute_positions(np.array([0.0, 1.0])).tolist() == [[1.0, 2.0, 0.0]] * 2
         assert profile.make_segments(0.0, 1.0)[0].size == 0
 
 
@@ -197,7 +197,7 @@ def test_c_rotation_with_move_below_resolution_is_planned_as_c_rotation(way: flo
     path = build_path([far, turn], LIMITS)
     span = path.find_block_span(2)
     assert span[1] - span[0] == pytest.approx(3600.0)
-    assert path.positions_at(np.array([span[1]]))[0] == pytest.approx([way, 900.0, -3600.0], abs=1e-9)
+    assert path.compute_positions(np.array([span[1]]))[0] == pytest.approx([way, 900.0, -3600.0], abs=1e-9)
 
 
 def test_slow_c_rotation_with_real_move_is_measured_along_linear_axes() -> None:

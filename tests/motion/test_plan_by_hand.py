@@ -10,11 +10,11 @@ import pytest
 
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.motion.axis_limits import FloatArray, IntArray, MotionError, MotionLimits
-from core.motion.block_table import build_table
+from core.motion.block_table import build_batch_table
 from core.motion.motion_path import PathBuilder
-from core.motion.motion_plan import find_last_settled_joint, limit_forward, plan_motion
+from core.motion.motion_plan import find_last_settled_joint, limit_values_forward, plan_motion
 from core.motion.path_pieces import smooth_joints
-from core.motion.speed_limits import JointLimits, find_joint_limits
+from core.motion.speed_limits import PathJointLimits, find_path_joint_limits
 from core.motion.window_planner import WindowPlanner
 from tests.coded import raises_code
 from tests.motion.moves import LIMITS, A, T, arc, line, polyline
@@ -31,7 +31,7 @@ def test_reachable_speed_increases_from_lowest_limit_across_rows() -> None:
     """1 at the last place of the first row of 256, half of one more each step."""
     limit = np.full(600, 100.0)
     limit[255] = 1.0
-    reached = limit_forward(limit, np.full(599, 0.5))
+    reached = limit_values_forward(limit, np.full(599, 0.5))
     assert reached[254:257].tolist() == [100.0, 1.0, 1.5]
     assert reached[300] == pytest.approx(1.0 + 45 * 0.5)
     assert reached[500] == 100.0
@@ -143,7 +143,7 @@ def test_arc_segments_are_continuous_and_short_enough_for_jerk() -> None:
     assert np.hypot(p[:, 0], p[:, 1]) == pytest.approx(np.full(10, 3.0))
     ends = p + v * dt[:, None] + 0.5 * a * dt[:, None] ** 2
     assert ends[:-1] == pytest.approx(p[1:], abs=1e-9)
-    assert ends[-1] == pytest.approx(profile.positions_at(t[-1] + dt[-1])[0], abs=1e-9)
+    assert ends[-1] == pytest.approx(profile.compute_positions(t[-1] + dt[-1])[0], abs=1e-9)
 
 
 def test_time_at_distance_follows_acceleration_ramps() -> None:
@@ -152,11 +152,11 @@ def test_time_at_distance_follows_acceleration_ramps() -> None:
     ramp = 100.0 / A
     times = np.array([0.25, 0.5, 0.9]) * ramp
     ways = 0.5 * A * times**2
-    assert profile.times_at_distances(ways) == pytest.approx(times)
-    assert profile.times_at_distances(50.0 - ways) == pytest.approx(profile.duration_s - times)
-    assert profile.times_at_distances(np.array([25.0])) == pytest.approx([0.5 * profile.duration_s])
+    assert profile.compute_times_at_distances(ways) == pytest.approx(times)
+    assert profile.compute_times_at_distances(50.0 - ways) == pytest.approx(profile.duration_s - times)
+    assert profile.compute_times_at_distances(np.array([25.0])) == pytest.approx([0.5 * profile.duration_s])
     assert profile.duration_s == pytest.approx(0.5 + ramp)
-    assert profile.times_at_distances(np.array([-1.0, 50.0, 51.0])).tolist() == [
+    assert profile.compute_times_at_distances(np.array([-1.0, 50.0, 51.0])).tolist() == [
         0.0,
         profile.duration_s,
         math.inf,
@@ -196,8 +196,8 @@ def bent(turned: tuple[float, float] = DIRECTION) -> list[Block]:
 def test_speed_limit_of_single_bend_depends_on_its_angle() -> None:
     """v·Δu over an interval of .8 amax: (.8·3048·.001/.1)², whatever the speed."""
     pieces = build_path(bent(), LIMITS).pieces
-    alone = JointLimits(np.array([19]), np.array([1.0]), np.zeros((1, 3)))
-    asked = find_joint_limits(pieces, alone, np.array([50.0]), LIMITS, has_more_pieces=False)
+    alone = PathJointLimits(np.array([19]), np.array([1.0]), np.zeros((1, 3)))
+    asked = find_path_joint_limits(pieces, alone, np.array([50.0]), LIMITS, has_more_pieces=False)
     assert asked.squared_speeds == pytest.approx([(0.8 * A * T / BEND) ** 2], rel=1e-6)
 
 
@@ -208,9 +208,9 @@ def test_single_bend_per_interval_has_no_additional_limit() -> None:
     """
     x = [0.0, 0.05 * BEND]
     points = [(x[i % 2], 0.05 * i * DIRECTION[1]) for i in range(21)]
-    alone = JointLimits(np.array([9]), np.array([1.0]), np.zeros((1, 3)))
+    alone = PathJointLimits(np.array([9]), np.array([1.0]), np.zeros((1, 3)))
     pieces = build_path(polyline(points), LIMITS).pieces
-    asked = find_joint_limits(pieces, alone, np.array([20.0]), LIMITS, has_more_pieces=False)
+    asked = find_path_joint_limits(pieces, alone, np.array([20.0]), LIMITS, has_more_pieces=False)
     assert asked.squared_speeds.tolist() == [math.inf]
 
 
@@ -251,7 +251,7 @@ class Columns:
 def test_move_series_is_added_to_table_with_offsets() -> None:
     like = line((7.0, 7.0), (8.0, 8.0), 20.0)
     shifted = Block(**{**{f: getattr(like, f) for f in like.__slots__}, "offset_x": 10.0, "offset_z": 20.0})
-    table = build_table([Columns(shifted)], 3500.0)
+    table = build_batch_table([Columns(shifted)], 3500.0)
     assert table.n.tolist() == [4.0, 5.0]
     assert table.start[:, :2].tolist() == [[11.0, 23.0], [12.0, 24.0]]
     assert table.end[:, :2].tolist() == [[12.0, 24.0], [15.0, 28.0]]
@@ -261,20 +261,20 @@ def test_move_series_is_added_to_table_with_offsets() -> None:
 def test_move_series_has_its_own_feeds() -> None:
     row = Columns(line((7.0, 7.0), (8.0, 8.0), 20.0), feed=np.array([20.0, 30.0]))
     before, behind = line((0.0, 0.0), (1.0, 3.0), 5.0), line((5.0, 8.0), (9.0, 9.0), 6.0)
-    assert build_table([[before], row, [behind]], 3500.0).feed.tolist() == [5.0, 20.0, 30.0, 6.0]
+    assert build_batch_table([[before], row, [behind]], 3500.0).feed.tolist() == [5.0, 20.0, 30.0, 6.0]
 
 
 def test_series_of_one_move_uses_its_own_coordinates() -> None:
     row = Columns(line((7.0, 7.0), (8.0, 8.0), 20.0))
     single = Columns(row.pattern, row.n[:1], row.x0[:1], row.z0[:1], row.x[:1], row.z[:1])
-    table = build_table([single], 3500.0)
+    table = build_batch_table([single], 3500.0)
     assert (table.n.tolist(), table.start[:, :2].tolist()) == ([4.0], [[1.0, 3.0]])
     assert table.end[:, :2].tolist() == [[2.0, 4.0]]
 
 
 def test_blocks_around_series_are_in_order_in_table() -> None:
     before, behind = line((0.0, 0.0), (1.0, 3.0), 5.0, n=3), line((5.0, 8.0), (6.0, 8.0), 7.0, n=6)
-    table = build_table([[before], Columns(line((7.0, 7.0), (8.0, 8.0), 20.0)), [behind]], 3500.0)
+    table = build_batch_table([[before], Columns(line((7.0, 7.0), (8.0, 8.0), 20.0)), [behind]], 3500.0)
     assert table.n.tolist() == [3.0, 4.0, 5.0, 6.0]
     assert table.start[:, 0].tolist() == [0.0, 1.0, 2.0, 5.0]
     assert table.feed.tolist() == [5.0, 20.0, 20.0, 7.0]

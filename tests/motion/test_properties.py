@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.motion.axis_limits import FloatArray
 from core.motion.motion_path import MotionPath
-from core.motion.motion_plan import limit_backward, limit_forward, plan_motion
+from core.motion.motion_plan import limit_values_backward, limit_values_forward, plan_motion
 from core.motion.motion_profile import MotionProfile
 from tests.motion.moves import LIMITS, A, T, V, backwards, programs
 from tests.motion.paths import build_path
@@ -27,7 +27,7 @@ few = settings(max_examples=60, deadline=None)
 def velocities(profile: MotionProfile, path: MotionPath, piece: int, where: float) -> FloatArray:
     """Axis velocities at the start (0) or end (1) of a piece."""
     s = path.joint_distances[piece + int(where)]
-    speed = profile.distance_and_speed_at(profile.times_at_distances(np.array([s])))[1][0]
+    speed = profile.compute_distances_and_speeds(profile.compute_times_at_distances(np.array([s])))[1][0]
     one = path.pieces[piece : piece + 1]
     velocity: FloatArray = one.tangent(one.length * where)[0] * speed
     return velocity
@@ -38,12 +38,14 @@ def velocities(profile: MotionProfile, path: MotionPath, piece: int, where: floa
 def test_no_speed_is_above_a_limit(blocks: list[Block]) -> None:
     profile = plan_motion(build_path(blocks, LIMITS))
     t = np.linspace(0.0, profile.duration_s, 400)
-    speed = profile.distance_and_speed_at(t)[1]
+    speed = profile.compute_distances_and_speeds(t)[1]
     path, piece = profile.path, profile.phases.piece_indices
     tangent = path.pieces[piece].tangent(path.pieces.length[piece] / 2)
     assert (np.abs(tangent[:, :2] * profile.phases.start_speeds[:, None]) <= V * SLACK).all()
     feeds = {b.n: b.feed for b in blocks}
-    assert (speed <= np.array([feeds[n] for n in profile.block_numbers_at(t).tolist()]) * SLACK + 1e-9).all()
+    assert (
+        speed <= np.array([feeds[n] for n in profile.find_block_numbers(t).tolist()]) * SLACK + 1e-9
+    ).all()
     radius = path.pieces.radius[piece]
     arc = radius > 0.0
     assert (profile.phases.start_speeds[arc] ** 2 <= 0.8 * A * radius[arc] * SLACK).all()
@@ -84,7 +86,9 @@ def test_setpoints_need_little_more_than_maximum_acceleration(blocks: list[Block
         near[::61] = True  # within a phase one sample is as good as another
         here = grid[near]
         bend = (
-            profile.positions_at(here - T) - 2 * profile.positions_at(here) + profile.positions_at(here + T)
+            profile.compute_positions(here - T)
+            - 2 * profile.compute_positions(here)
+            + profile.compute_positions(here + T)
         )
         assert np.abs(bend).max(initial=0.0) / T**2 <= 1.7 * A
 
@@ -96,9 +100,9 @@ def test_motion_meets_every_corner_exactly_and_ends_at_rest(blocks: list[Block])
     numbers, start, end = profile.find_block_times()
     assert numbers.tolist() == [b.n for b in blocks]
     assert start[1:] == pytest.approx(end[:-1], abs=0)
-    corners = profile.positions_at(end)
+    corners = profile.compute_positions(end)
     assert corners[:, :2] == pytest.approx(np.array([[b.x, b.z] for b in blocks]), abs=1e-9)
-    assert profile.distance_and_speed_at(profile.duration_s)[1][0] == 0.0
+    assert profile.compute_distances_and_speeds(profile.duration_s)[1][0] == 0.0
     assert profile.end_speed == pytest.approx(0.0, abs=1e-9)
 
 
@@ -118,7 +122,7 @@ def test_every_point_is_on_programmed_path(blocks: list[Block]) -> None:
     t = np.linspace(0.0, profile.duration_s, 200)
     by_number = {b.n: b for b in blocks}
     for (x, z, _), n in zip(
-        profile.positions_at(t).tolist(), profile.block_numbers_at(t).tolist(), strict=True
+        profile.compute_positions(t).tolist(), profile.find_block_numbers(t).tolist(), strict=True
     ):
         b = by_number[n]
         if b.kind is BlockKind.ARC:
@@ -162,8 +166,8 @@ def test_running_minima_equal_the_plain_loop(nodes: list[tuple[float, float]]) -
     plain = limit.copy()
     for i, step in enumerate(gain):
         plain[i + 1] = min(plain[i + 1], plain[i] + step)
-    assert limit_forward(limit, gain) == pytest.approx(plain, rel=1e-9, abs=1e-7)
-    mirrored = limit_backward(limit[::-1].copy(), gain[::-1].copy())
+    assert limit_values_forward(limit, gain) == pytest.approx(plain, rel=1e-9, abs=1e-7)
+    mirrored = limit_values_backward(limit[::-1].copy(), gain[::-1].copy())
     assert mirrored[::-1] == pytest.approx(plain, rel=1e-9, abs=1e-7)
 
 
@@ -171,4 +175,4 @@ def test_running_minima_are_correct_over_many_rows() -> None:
     """A stop far away is felt from row to row: 5000 pieces of gain 1 from 0 up to 3000."""
     limit = np.full(5001, 3000.0)
     limit[0] = 0.0
-    assert limit_forward(limit, np.ones(5000)) == pytest.approx(np.minimum(np.arange(5001), 3000.0))
+    assert limit_values_forward(limit, np.ones(5000)) == pytest.approx(np.minimum(np.arange(5001), 3000.0))

@@ -29,12 +29,12 @@ def test_replanning_without_change_gives_same_motion(blocks: list[Block], when: 
     path = build_path(blocks, LIMITS)
     before = plan_motion(path)
     t0 = when * before.duration_s
-    (s,), (v,) = before.distance_and_speed_at(t0)
+    (s,), (v,) = before.compute_distances_and_speeds(t0)
     after = plan_motion(path, start_distance=s, start_speed=v)
     assert after.duration_s == pytest.approx(before.duration_s - t0, abs=1e-6)
     t = np.linspace(0.0, after.duration_s, 40)
-    assert after.distance_and_speed_at(t)[0] == pytest.approx(
-        before.distance_and_speed_at(t0 + t)[0], abs=1e-5
+    assert after.compute_distances_and_speeds(t)[0] == pytest.approx(
+        before.compute_distances_and_speeds(t0 + t)[0], abs=1e-5
     )
 
 
@@ -44,13 +44,14 @@ def test_replanning_without_change_gives_same_motion(blocks: list[Block], when: 
 def test_hold_stops_within_braking_distance(blocks: list[Block], when: float, scale: float) -> None:
     path = build_path(blocks, LIMITS)
     before = plan_motion(path, feed_scale=scale)
-    (s,), (v,) = before.distance_and_speed_at(when * before.duration_s)
+    (s,), (v,) = before.compute_distances_and_speeds(when * before.duration_s)
     hold = plan_motion(path, start_distance=s, start_speed=v, stop_early=True)
     weakest = path.accelerations[
-        path.piece_at(np.array([s]))[0] : path.piece_at(np.array([hold.end_distance]))[0] + 1
+        path.find_piece_indices(np.array([s]))[0] : path.find_piece_indices(np.array([hold.end_distance]))[0]
+        + 1
     ].min()
     assert hold.end_distance - s <= v * v / (2.0 * weakest) * (1.0 + 1e-6) + 1e-8
-    assert hold.distance_and_speed_at(hold.duration_s)[1][0] == 0.0
+    assert hold.compute_distances_and_speeds(hold.duration_s)[1][0] == 0.0
     assert hold.phases.start_speeds.max(initial=0.0) <= v + 1e-9
     resumed = plan_motion(path, start_distance=hold.end_distance)
     assert resumed.end_distance == pytest.approx(path.joint_distances[-1], rel=1e-12)
@@ -64,7 +65,7 @@ def test_override_change_is_continuous_and_respects_corner_limits(
 ) -> None:
     path = build_path(blocks, LIMITS)
     before = plan_motion(path)
-    (s,), (v,) = before.distance_and_speed_at(when * before.duration_s)
+    (s,), (v,) = before.compute_distances_and_speeds(when * before.duration_s)
     after = plan_motion(path, start_distance=s, start_speed=v, feed_scale=feed, rapid_scale=rapid)
     if not len(after):
         return
@@ -73,10 +74,10 @@ def test_override_change_is_continuous_and_respects_corner_limits(
     assert (v0 + a * dt)[:-1] == pytest.approx(v0[1:], rel=1e-9, abs=1e-9)
     assert (np.abs(a) <= path.accelerations[piece] * (1.0 + 1e-5)).all()
     joints = np.flatnonzero(path.joint_distances > s)
-    reached = after.distance_and_speed_at(
-        after.times_at_distances(path.joint_distances[joints]).clip(max=after.duration_s)
+    reached = after.compute_distances_and_speeds(
+        after.compute_times_at_distances(path.joint_distances[joints]).clip(max=after.duration_s)
     )[1]
-    assert (reached**2 <= path.joint_limits[joints] * (1.0 + 1e-6) + 1e-5).all()
+    assert (reached**2 <= path.squared_speed_limits[joints] * (1.0 + 1e-6) + 1e-5).all()
 
 
 def test_a_lower_feed_brakes_at_full_acceleration_and_then_cruises() -> None:
@@ -92,8 +93,8 @@ def test_braking_spans_short_pieces_into_slower_ones() -> None:
     path = build_path(polyline([(0, 0), (0, 1), (0, 1.1), (0, 1.2), (0, 100)], 100.0), LIMITS)
     after = plan_motion(path, start_distance=0.5, start_speed=100.0, feed_scale=0.1)
     whole = (100.0**2 - 10.0**2) / (2 * A)
-    assert after.distance_and_speed_at((100.0 - 10.0) / A)[0][0] == pytest.approx(0.5 + whole)
-    assert after.distance_and_speed_at((100.0 - 10.0) / A + 1.0)[1][0] == pytest.approx(10.0)
+    assert after.compute_distances_and_speeds((100.0 - 10.0) / A)[0][0] == pytest.approx(0.5 + whole)
+    assert after.compute_distances_and_speeds((100.0 - 10.0) / A + 1.0)[1][0] == pytest.approx(10.0)
 
 
 def test_zero_override_is_a_hold_in_a_feed() -> None:
@@ -126,7 +127,7 @@ def test_stop_at_rest_does_not_move() -> None:
     path = build_path([line((0, 0), (0, 1))], LIMITS)
     hold = plan_motion(path, start_distance=0.4, stop_early=True)
     assert (hold.duration_s, hold.end_distance) == (0.0, 0.4)
-    assert hold.positions_at(1.0)[0] == pytest.approx([0.0, 0.4, 0.0])
+    assert hold.compute_positions(1.0)[0] == pytest.approx([0.0, 0.4, 0.0])
 
 
 def test_start_speed_at_end_of_path_is_rejected() -> None:
@@ -172,13 +173,13 @@ def test_added_blocks_continue_without_stop() -> None:
     blocks = polyline([(0.0, 10.0 * i) for i in range(11)], 100.0)
     whole = plan_motion(build_path(blocks, LIMITS))
     builder.add_blocks(blocks[:5])
-    (s,), (v,) = plan_motion(builder.build_path()).distance_and_speed_at(0.3)
+    (s,), (v,) = plan_motion(builder.build_path()).compute_distances_and_speeds(0.3)
     builder.add_blocks(blocks[5:])
     builder.drop_blocks_before(3)
     assert builder.build_path().find_block_span(3) == pytest.approx((20.0, 30.0))
     after = plan_motion(builder.build_path(), start_distance=s, start_speed=v)
     assert after.duration_s == pytest.approx(whole.duration_s - 0.3, rel=1e-9)
-    assert after.positions_at(after.duration_s)[0] == pytest.approx([0.0, 100.0, 0.0])
+    assert after.compute_positions(after.duration_s)[0] == pytest.approx([0.0, 100.0, 0.0])
 
 
 @pytest.mark.long
@@ -190,11 +191,11 @@ def test_growing_path_can_always_be_replanned(blocks: list[Block], moments: list
     builder.add_blocks(blocks[:1])
     profile = plan_motion(builder.build_path())
     for block, when in zip(blocks[1:], moments, strict=False):
-        (s,), (v,) = profile.distance_and_speed_at(when * profile.duration_s)
+        (s,), (v,) = profile.compute_distances_and_speeds(when * profile.duration_s)
         builder.add_blocks([block])
         profile = plan_motion(builder.build_path(), start_distance=s, start_speed=v)
     builder.end_path()
-    (s,), (v,) = profile.distance_and_speed_at(moments[-1] * profile.duration_s)
+    (s,), (v,) = profile.compute_distances_and_speeds(moments[-1] * profile.duration_s)
     assert plan_motion(builder.build_path(), start_distance=s, start_speed=v).end_distance == pytest.approx(
         profile.end_distance, abs=1e-9
     )
@@ -210,15 +211,17 @@ def test_rounded_chords_can_be_added_and_dropped_at_any_time(grid: float, seed: 
     builder.add_blocks(blocks[:at])
     profile = plan_motion(builder.build_path())
     while at < len(blocks):
-        (s,), (v,) = profile.distance_and_speed_at(float(chance.random()) * min(profile.duration_s, 0.004))
+        (s,), (v,) = profile.compute_distances_and_speeds(
+            float(chance.random()) * min(profile.duration_s, 0.004)
+        )
         builder.drop_blocks_before(
-            int(builder.build_path().block_numbers[profile.path.piece_at(np.array([s]))[0]])
+            int(builder.build_path().block_numbers[profile.path.find_piece_indices(np.array([s]))[0]])
         )
         count = int(chance.integers(1, 40))
         builder.add_blocks(blocks[at : at + count])
         at += count
         profile = plan_motion(builder.build_path(), start_distance=s, start_speed=v)
-    assert profile.positions_at(profile.duration_s)[0][0] == pytest.approx(blocks[-1].x, abs=1e-9)
+    assert profile.compute_positions(profile.duration_s)[0][0] == pytest.approx(blocks[-1].x, abs=1e-9)
 
 
 def test_corner_added_late_does_not_affect_current_braking() -> None:
@@ -227,8 +230,8 @@ def test_corner_added_late_does_not_affect_current_braking() -> None:
     blocks = polyline([(0, 0), (0, 10), (0, 10.05), (0.05, 10.05)], 100.0)
     builder.add_blocks(blocks[:2])
     path = builder.build_path()
-    (v,) = plan_motion(path).distance_and_speed_at(
-        plan_motion(path).times_at_distances(path.joint_distances[1:2])
+    (v,) = plan_motion(path).compute_distances_and_speeds(
+        plan_motion(path).compute_times_at_distances(path.joint_distances[1:2])
     )[1]
     builder.add_blocks(blocks[2:])
     assert plan_motion(
@@ -241,7 +244,7 @@ def test_start_speed_above_reduced_feed_is_braked_to_the_feed() -> None:
     block = replace(line((0, 0), (0, 100), 1.0), per_rev=True, rpm=3000.0)
     slow = build_path([block], LIMITS, rpm_max=300.0)
     after = plan_motion(slow, start_distance=20.0, start_speed=50.0)
-    assert after.distance_and_speed_at(45.0 / A)[1][0] == pytest.approx(5.0)
+    assert after.compute_distances_and_speeds(45.0 / A)[1][0] == pytest.approx(5.0)
     assert after.duration_s > 79.0 / 5.0
 
 

@@ -36,7 +36,7 @@ def list_values(profile: MotionProfile) -> list[list[float]]:
     """Return all numbers of a profile and of its path."""
     path = profile.path
     arrays = [*profile.phases, *(getattr(path.pieces, name) for name in path.pieces.__dataclass_fields__)]
-    arrays += [path.joint_distances, path.speed_caps, path.accelerations, path.joint_limits]
+    arrays += [path.joint_distances, path.speed_caps, path.accelerations, path.squared_speed_limits]
     arrays += [path.block_numbers, path.first_pieces, path.start_position]
     ends = [profile.start_distance, profile.end_distance, profile.duration_s]
     return [np.ravel(each).tolist() for each in (*arrays, ends)]

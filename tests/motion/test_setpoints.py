@@ -69,7 +69,7 @@ def test_segments_follow_exact_motion_within_half_a_micrometer(blocks: list[Bloc
     profile = plan_motion(build_path(blocks, LIMITS))
     t = np.linspace(0.0, profile.duration_s, 3000, endpoint=False)
     played = evaluate(profile.make_segments(0.0, profile.duration_s), t)
-    assert np.linalg.norm(played - profile.positions_at(t), axis=1).max() < 5e-4
+    assert np.linalg.norm(played - profile.compute_positions(t), axis=1).max() < 5e-4
 
 
 @pytest.mark.parametrize("radius", [0.002, 0.05, 0.16, 1.0, 6.6, 300.0])
@@ -91,7 +91,7 @@ def test_faster_machine_gets_shorter_segments() -> None:
     x, z, _ = evaluate(profile.make_segments(0.0, profile.duration_s), t).T
     assert np.abs(np.hypot(x, z) - 1.0).max() < 2.5e-4
     played = evaluate(profile.make_segments(0.0, profile.duration_s), t)
-    assert np.linalg.norm(played - profile.positions_at(t), axis=1).max() < 2.5e-4
+    assert np.linalg.norm(played - profile.compute_positions(t), axis=1).max() < 2.5e-4
 
 
 @pytest.mark.long
@@ -105,7 +105,7 @@ def test_joined_windows_equal_whole_motion(blocks: list[Block], cuts: list[float
     assert together[1].sum() == pytest.approx(profile.duration_s, rel=1e-9)
     t = np.linspace(0.0, profile.duration_s, 500, endpoint=False)
     played = evaluate((together[0], together[1], together[2], together[3], together[4]), t)
-    assert np.linalg.norm(played - profile.positions_at(t), axis=1).max() < 5e-4
+    assert np.linalg.norm(played - profile.compute_positions(t), axis=1).max() < 5e-4
 
 
 def test_window_of_long_plan_converts_only_its_own_part() -> None:
@@ -131,5 +131,5 @@ def test_a_window_outside_the_motion_is_empty(t_from: float, t_to: float) -> Non
 def test_zero_length_motion_has_no_segments() -> None:
     profile = plan_motion(build_path([line((3, 4), (3, 4))], LIMITS))
     assert len(profile.make_segments(0.0, 1.0)[0]) == 0
-    assert profile.positions_at(0.0)[0] == pytest.approx([3.0, 4.0, 0.0])
-    assert profile.block_numbers_at(0.0).tolist() == [0]
+    assert profile.compute_positions(0.0)[0] == pytest.approx([3.0, 4.0, 0.0])
+    assert profile.find_block_numbers(0.0).tolist() == [0]

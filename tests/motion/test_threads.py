@@ -29,7 +29,7 @@ def test_tapered_thread_has_its_lead_along_z() -> None:
     path = build_path([thread((30, -40))], LIMITS)
     assert path.pieces.rate.tolist() == pytest.approx([20.0 * 50 / 40])
     profile = plan_motion(path)
-    middle = profile.positions_at(0.5 * profile.duration_s + np.array([0.0, 0.1]))
+    middle = profile.compute_positions(0.5 * profile.duration_s + np.array([0.0, 0.1]))
     assert middle[0][1] - middle[1][1] == pytest.approx(2.0)
 
 

@@ -140,7 +140,7 @@ def test_samples_of_chunks_are_on_one_time_grid() -> None:
         ]
     table = np.array(rows)
     assert table[:, 0] == pytest.approx(0.001 * np.arange(len(table)), abs=1e-9)
-    assert table[:, 1:4] == pytest.approx(whole.positions_at(table[:, 0]), abs=1e-6)
+    assert table[:, 1:4] == pytest.approx(whole.compute_positions(table[:, 0]), abs=1e-6)
     assert len(table) == math.ceil(whole.duration_s / 0.001)
 
 

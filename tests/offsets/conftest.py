@@ -22,7 +22,7 @@ from app.path.path_picture import PictureBuilder
 from core.executor.commands import Command
 from core.executor.job import Proof, make_job
 from core.executor.snapshot import MachineState, Snapshot
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.language.source import ProgramSource
 from core.store.store import Store
 from tests.screen.yes import read
@@ -65,7 +65,7 @@ class Room:
             for key in answer:
                 assert page.handle_key(key)
             assert page.handle_key("Enter")
-        assert bool(self.desk.confirm_key) == asked, self.desk.prompt_notice
+        assert bool(self.desk.confirmation_key) == asked, self.desk.prompt_notice
         if asked:
             self.confirm()
         self.settle(page)
@@ -96,7 +96,7 @@ def room_on(
 
     workshop = LoadingSteps(
         read,
-        lambda source, block_delete: make_job(source, Setup(block_delete=block_delete)),
+        lambda source, block_delete: make_job(source, InterpreterSetup(block_delete=block_delete)),
         lambda job, _watch: ProvedJob(Proof(job.digest, ())),
         lambda _job, _watch: PictureBuilder().build_picture(),
     )

@@ -9,9 +9,9 @@ import pytest
 
 from app.compose.machine.kinematics_chain import build_kinematics
 from app.compose.machine.machine_files import load_named_machine
-from app.compose.machine.machine_setup import create_setup
-from app.compose.stored_offsets import create_offset_book, create_setup_with_offsets, read_offsets
-from app.desk.status.machine_status import Tone
+from app.compose.machine.machine_setup import create_power_up_setup
+from app.compose.stored_offsets import create_offset_book, create_setup_with_offsets, read_offsets_file
+from app.desk.status.machine_status import StatusTone
 from app.offsets.active_offsets import MillOffsets, add_mill_offsets
 from app.offsets.cell_table import CellTable
 from app.offsets.mill_tools import MillToolTable
@@ -20,7 +20,7 @@ from app.offsets.zero_offsets import PresetTable
 from core.executor.snapshot import MachineState
 from core.interpreter.shared.job_setup import ToolOffset
 from core.production.tool_life import ToolLife
-from core.store.store_rows import MillRow, OffsetKind, PresetRow
+from core.store.store_rows import MillToolRow, OffsetKind, PresetRow
 from tests.offsets.conftest import LIMIT, Room
 from tests.texts import text
 
@@ -52,7 +52,7 @@ def settle(room: Room, page: CellTable) -> None:
     page.update(room.now[0])
 
 
-def kept(room: Room, tool: int = 1) -> MillRow:
+def kept(room: Room, tool: int = 1) -> MillToolRow:
     return room.store.offsets.mill_tools.read_rows()[tool]
 
 
@@ -66,7 +66,7 @@ def test_lengths_radii_and_teeth_are_entered_in_millimeters(room: Room) -> None:
     for name, value in typed.items():
         types(room, page, value, name=name, row=19)
     row = kept(room, 20)
-    assert row == MillRow(length=80.5, radius=6.0, dl=-0.02, teeth=4, life=90.0)
+    assert row == MillToolRow(length=80.5, radius=6.0, dl=-0.02, teeth=4, life=90.0)
     page.handle_undo()
     room.confirm()
     settle(room, page)
@@ -106,7 +106,7 @@ def test_tool_length_is_set_from_tip_on_part(room: Room) -> None:
     page.update(room.now[0])
     for key in "5":
         page.handle_key(key)
-    page.set_from_position()
+    page.set_value_from_position()
     settle(room, page)
     assert kept(room).length == pytest.approx(80.0)
 
@@ -123,7 +123,7 @@ def test_workpiece_datum_is_set_from_touching_tip(room: Room) -> None:
         page.update(room.now[0])
         for key in reads:
             page.handle_key(key)
-        page.set_from_position()
+        page.set_value_from_position()
         settle(room, page)
     # The tip is 60 below the nose; its centre stands 5 before the left side.
     assert room.store.offsets.presets.read_rows()[1] == PresetRow(x=105.0, y=50.0, z=-262.0)
@@ -135,7 +135,7 @@ def test_rotated_table_position_is_converted_to_zero_rotation(room: Room) -> Non
     room.desk.offset_book.read_store()
     mill(room, 340.0, 252.0, -200.0, 0.0, 180.0, tool=7)
     page = PresetTable(room.desk)
-    page.set_from_position()
+    page.set_value_from_position()
     settle(room, page)
     assert room.store.offsets.presets.read_rows()[1].x == pytest.approx(260.0)
 
@@ -145,7 +145,7 @@ def touches(room: Room, page: MillToolTable | PresetTable, name: str, reads: str
     page.update(room.now[0])
     for key in reads:
         page.handle_key(key)
-    page.set_from_position()
+    page.set_value_from_position()
     settle(room, page)
 
 
@@ -181,12 +181,12 @@ def test_basic_rotation_is_set_from_two_points_of_edge(room: Room) -> None:
         ((100.0, 50.0), (90.0, 150.0), "90", 5.7105931),
     ):
         at(room, *first)
-        page.set_from_position()
+        page.set_value_from_position()
         assert text("offsets.first-point") in room.desk.prompt_notice
         at(room, *last)
         for key in reads:
             page.handle_key(key)
-        page.set_from_position()
+        page.set_value_from_position()
         settle(room, page)
         assert room.store.offsets.presets.read_rows()[1].rotation == pytest.approx(wanted, abs=1e-6)
 
@@ -197,13 +197,13 @@ def test_coincident_edge_points_are_rejected_and_cell_change_clears_first(room: 
     mill(room, 100.0, 50.0, -200.0, tool=7)
     page = PresetTable(room.desk)
     page.choose(0, page.columns.index("rotation"))
-    page.set_from_position()
+    page.set_value_from_position()
     at(room, 100.5, 50.5)
-    page.set_from_position()
+    page.set_value_from_position()
     assert "LESS THAN 1 MM APART" in room.desk.prompt_notice
     assert room.store.offsets.presets.read_rows() == {}
     page.choose(0, page.columns.index("rotation"))
-    page.set_from_position()
+    page.set_value_from_position()
     assert text("offsets.first-point") in room.desk.prompt_notice
 
 
@@ -222,7 +222,7 @@ def test_cur_time_shows_cutting_time_and_edit_goes_to_counter(room: Room) -> Non
     page = MillToolTable(room.desk)
     page.choose(0, page.columns.index("used"))
     assert page.value_at(1, "used") == 28.0
-    assert page.tone_at(1, "used") is Tone.PAUSE
+    assert page.tone_at(1, "used") is StatusTone.PAUSE
     types(room, page, "0", name="used")
     assert told == [(1, 0.0)]
     types(room, page, "5", name="used", row=8)
@@ -271,7 +271,7 @@ def test_tool_length_is_not_set_with_tilted_tool(room: Room) -> None:
     mill(room, 250.0, 220.0, -265.0, 30.0)
     page = MillToolTable(room.desk)
     page.choose(0, page.columns.index("length"))
-    page.set_from_position()
+    page.set_value_from_position()
     assert "TILTED" in room.desk.prompt_notice
     assert room.store.offsets.mill_tools.read_rows() == {}
 
@@ -279,7 +279,7 @@ def test_tool_length_is_not_set_with_tilted_tool(room: Room) -> None:
 def test_workpiece_is_not_set_with_tool_of_unknown_length(room: Room) -> None:
     mill(room, 1.0, 2.0, 3.0, tool=9)
     page = PresetTable(room.desk)
-    page.set_from_position()
+    page.set_value_from_position()
     assert "TOOL CALL" in room.desk.prompt_notice
     assert room.store.offsets.presets.read_rows() == {}
 
@@ -287,10 +287,10 @@ def test_workpiece_is_not_set_with_tool_of_unknown_length(room: Room) -> None:
 def test_position_is_not_set_from_unhomed_axis(room: Room) -> None:
     mill(room)
     room.now[0] = replace(room.now[0], homed=(True, True, False, True, True))
-    MillToolTable(room.desk).set_from_position()
+    MillToolTable(room.desk).set_value_from_position()
     page = MillToolTable(room.desk)
     page.choose(0, page.columns.index("length"))
-    page.set_from_position()
+    page.set_value_from_position()
     assert text("offsets.not-homed", axes="Z") in room.desk.prompt_notice
 
 
@@ -306,8 +306,8 @@ def test_unset_preset_cannot_be_activated(room: Room) -> None:
 
 
 def test_setup_has_lengths_names_and_active_preset_of_tables() -> None:
-    plain = create_setup(load_named_machine("ac-table-mill"), tool_offsets={}, secondary_offsets={})
-    tools = {5: MillRow("Mill 12", length=80.0, radius=6.0, dl=-0.1, dr=0.02, point=118.0)}
+    plain = create_power_up_setup(load_named_machine("ac-table-mill"), tool_offsets={}, secondary_offsets={})
+    tools = {5: MillToolRow("Mill 12", length=80.0, radius=6.0, dl=-0.1, dr=0.02, point=118.0)}
     made = add_mill_offsets(plain, MillOffsets(tools, {3: PresetRow(1.0, 2.0, 3.0, 15.0)}, 3))
     assert (made.tools[5].z, made.tools[5].nose_radius) == pytest.approx((79.9, 6.02))
     assert (made.tool_names, made.mill_tools[5].point_angle_deg, made.preset) == ({"MILL 12": 5}, 118.0, 3)
@@ -318,17 +318,17 @@ def test_setup_has_lengths_names_and_active_preset_of_tables() -> None:
 
 def test_setup_has_only_tools_of_mill_tool_table() -> None:
     """A store may have rows of a lathe: their Z counted as lengths while the tool table showed 0."""
-    plain = create_setup(
+    plain = create_power_up_setup(
         load_named_machine("ac-table-mill"), tool_offsets={20: ToolOffset(z=76.2)}, secondary_offsets={}
     )
-    made = add_mill_offsets(plain, MillOffsets({5: MillRow(length=80.0)}))
+    made = add_mill_offsets(plain, MillOffsets({5: MillToolRow(length=80.0)}))
     assert {number: tool.z for number, tool in made.tools.items()} == {5: 80.0}
 
 
 def test_tools_of_offsets_file_are_read_only_in_tool_table(tmp_path: Path) -> None:
     file = tmp_path / "tools.toml"
     file.write_text('[tool.20]\nz = 3.0\nnose_radius = 0.25\nwear_z = -0.01\nremark = "Mill"\n')
-    offsets = read_offsets(file)
+    offsets = read_offsets_file(file)
     book = create_offset_book(lambda: offsets, None)
     shown, counts = (
         book.mill_tools[20],
@@ -340,9 +340,9 @@ def test_tools_of_offsets_file_are_read_only_in_tool_table(tmp_path: Path) -> No
 
 
 def test_mill_offsets_do_not_change_lathe_setup_or_use_missing_preset() -> None:
-    lathe = create_setup(load_named_machine("gt75"), tool_offsets={}, secondary_offsets={})
-    assert add_mill_offsets(lathe, MillOffsets({5: MillRow(length=1.0)})) is lathe
-    plain = create_setup(load_named_machine("ac-table-mill"), tool_offsets={}, secondary_offsets={})
+    lathe = create_power_up_setup(load_named_machine("gt75"), tool_offsets={}, secondary_offsets={})
+    assert add_mill_offsets(lathe, MillOffsets({5: MillToolRow(length=1.0)})) is lathe
+    plain = create_power_up_setup(load_named_machine("ac-table-mill"), tool_offsets={}, secondary_offsets={})
     made = add_mill_offsets(plain, MillOffsets({}, {}, 7))
     assert made.preset == 0
     assert made.kinematics == plain.kinematics

@@ -10,7 +10,7 @@ import pytest
 
 from app.desk.state.desk_machine import DeskMachine
 from app.desk.status.prompt_line import RELOAD_IN_PROGRESS, START_ON_AUTOMATIC
-from core.executor.commands import Command, CycleStart, UseOffsets
+from core.executor.commands import Command, CycleStart, UseOffsetTables
 from core.executor.snapshot import MachineState
 from core.interpreter.shared.job_setup import SecondaryOffset
 from core.store.store_rows import OffsetKind
@@ -21,7 +21,7 @@ from tests.texts import pattern
 @pytest.fixture
 def room(tmp_path: Path) -> Iterator[Room]:
     """At a machine with one start button."""
-    with room_on(tmp_path, DeskMachine(is_two_hand=False)) as made:
+    with room_on(tmp_path, DeskMachine(has_two_hand_start=False)) as made:
         yield made
 
 
@@ -47,7 +47,7 @@ def test_start_waits_for_saved_change_and_reloaded_program(room: Room, posted: l
     room.desk.program_loader.wait_until_loaded(LIMIT)
     room.desk.station_keys.press_start()
     in_force, start = posted
-    assert in_force == UseOffsets({}, {1: SecondaryOffset(0.1)})
+    assert in_force == UseOffsetTables({}, {1: SecondaryOffset(0.1)})
     assert start == CycleStart()
 
 
@@ -73,6 +73,6 @@ def test_start_is_rejected_when_program_cannot_be_reloaded(room: Room, posted: l
 
 
 def test_start_is_rejected_outside_automatic_page(room: Room, posted: list[Command]) -> None:
-    room.desk.window_state.set_page(can_start=False)
+    room.desk.window_state.set_page_properties(can_start=False)
     room.desk.station_keys.press_start()
     assert (posted, room.desk.prompt_notice) == ([], START_ON_AUTOMATIC)

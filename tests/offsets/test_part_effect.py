@@ -7,11 +7,11 @@ from dataclasses import replace
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.program_proving import create_drawer, create_loading_steps, create_part_comparer
+from app.compose.program_proving import create_loading_steps, create_part_comparer, create_path_drawer
 from app.compose.stored_offsets import Offsets
 from app.desk.desk import Desk
-from app.offsets.offset_effect import EffectDisplay, OffsetEffect
-from app.offsets.offset_values import ValueMode
+from app.offsets.offset_effect import EffectDisplay, OffsetEffectWorker
+from app.offsets.offset_values import UnitMode
 from app.offsets.part_effect import make_part_table
 from core.language.source import ProgramSource
 from core.store.store_rows import OffsetKind
@@ -19,14 +19,16 @@ from tests.desk.test_part_found import LIMIT, SHAFT, TOOLS
 from tests.offsets.conftest import Room
 from tests.texts import text
 
-INCH = ValueMode()
+INCH = UnitMode()
 
 
 @pytest.fixture
 def shown(room: Room) -> EffectDisplay:
     """F8 with the shaft on the desk: .8 in diameter .5 in long, a cone, then the bar."""
     machine = load_machine(None)
-    room.desk.page_registry.attach_model(OffsetEffect(create_drawer(machine), create_part_comparer(machine)))
+    room.desk.page_registry.attach_model(
+        OffsetEffectWorker(create_path_drawer(machine), create_part_comparer(machine))
+    )
     for number, tool in TOOLS.items():
         room.desk.offset_book.change_fields(OffsetKind.TOOL, number, {"x": tool.x, "z": tool.z}, "before")
     page = room.grid()
@@ -40,7 +42,9 @@ def put(desk: Desk, text: str) -> None:
     job = steps.make_job(ProgramSource("part.nc", text), False)
     steps.prove_job(job, lambda _count: None)
     picture = steps.draw_path(job, lambda _count: None)
-    desk.program_loader.replace_loaded(replace(desk.program_loader.loaded_program, job=job, picture=picture))
+    desk.program_loader.replace_loaded_program(
+        replace(desk.program_loader.loaded_program, job=job, picture=picture)
+    )
 
 
 def turned_to_part(shown: EffectDisplay) -> None:
@@ -69,9 +73,9 @@ def test_diameter_changes_by_twice_x_correction_and_shoulder_is_unchanged(
     assert part is not None
     rows = {row.cells[0].split("  ")[0] + row.cells[1]: row for row in make_part_table(part, INCH).rows}
     turned = rows["DIAMETER0.80000"]
-    assert (turned.cells[2], turned.cells[3], turned.is_lit) == ("0.79800", "−0.00200", True)
+    assert (turned.cells[2], turned.cells[3], turned.is_lamp_lit) == ("0.79800", "−0.00200", True)
     face = rows["SHOULDER0.00000"]
-    assert (face.cells[2], face.cells[3], face.is_lit) == ("0.00000", "–", False)
+    assert (face.cells[2], face.cells[3], face.is_lamp_lit) == ("0.00000", "–", False)
     assert shown.words == text("offsets.one-feature")
 
 
@@ -80,7 +84,7 @@ def test_part_effect_is_shown_in_millimeters(room: Room, shown: EffectDisplay) -
     turned_to_part(shown)
     part = shown.compared_part
     assert part is not None
-    cells = [row.cells for row in make_part_table(part, ValueMode(is_metric=True)).rows]
+    cells = [row.cells for row in make_part_table(part, UnitMode(is_metric=True)).rows]
     assert [each[3] for each in cells if each[1] == "20.3200"] == ["−0.0508"]
 
 
@@ -108,7 +112,7 @@ def test_part_of_too_long_program_is_not_compared(room: Room, shown: EffectDispl
     now = room.desk.program_loader.loaded_program
     assert now.picture is not None
     long = replace(now.picture, part=None, no_part="70000 blocks: too many")
-    room.desk.program_loader.replace_loaded(replace(now, picture=long))
+    room.desk.program_loader.replace_loaded_program(replace(now, picture=long))
     types(room, shown, "1", "0-.501")
     for _ in range(3):
         shown.show_next_view()

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from app.offsets.offset_book import OffsetBook
-from app.offsets.offset_values import ValueMode, format_offset
+from app.offsets.offset_values import UnitMode, format_offset
 from app.offsets.secondary_offsets import SecondaryOffsetStep
 from core.executor.snapshot import MachineState
-from core.store.store_rows import OffsetKind, SecondaryRow
+from core.store.store_rows import OffsetKind, SecondaryOffsetRow
 from tests.offsets.conftest import LIMIT, Room, room_on
 from tests.texts import text
 
@@ -34,15 +34,15 @@ def test_x_is_halved_and_added_z_added_r_replaced(room: Room) -> None:
     x, z, r = (value / 25.4 for value in room.store.offsets.secondary_offsets.read_rows()[3])
     assert (x, z, r) == pytest.approx((-0.001, 0.004, 0.0312), abs=1e-12)
     assert (
-        format_offset(room.store.offsets.secondary_offsets.read_rows()[3], ValueMode())
+        format_offset(room.store.offsets.secondary_offsets.read_rows()[3], UnitMode())
         == "X −0.00100  Z +0.00400  R 0.03120"
     )
 
 
 def test_empty_offset_row_is_formatted_as_on_original_control() -> None:
-    assert format_offset(SecondaryRow(), ValueMode()) == "X +0.00000  Z +0.00000  R 0.00000"
+    assert format_offset(SecondaryOffsetRow(), UnitMode()) == "X +0.00000  Z +0.00000  R 0.00000"
     assert (
-        format_offset(SecondaryRow(0.0, -0.01, 0.4), ValueMode(is_metric=True))
+        format_offset(SecondaryOffsetRow(0.0, -0.01, 0.4), UnitMode(is_metric=True))
         == "X +0.0000  Z −0.0100  R 0.4000"
     )
 
@@ -71,14 +71,14 @@ def test_entry_evaluates_arithmetic_and_shows_old_and_new_values(room: Room) -> 
     room.enter(page, "1")
     for key in ".5-.002":
         page.handle_key(key)
-    assert page.change_text.endswith("→  X +0.24900  Z +0.00000  R 0.00000")
+    assert page.change_description.endswith("→  X +0.24900  Z +0.00000  R 0.00000")
     page.handle_key("+")  # half a sum: the last figure that was one
     assert page.preview_row == (0.0, 0.0, 0.0)
     page.handle_key("Back")
     room.enter(page, "", "", "", asked=True)
     assert room.store.offsets.secondary_offsets.read_rows()[1].x == pytest.approx(0.249 * 25.4)
     assert room.desk.prompt_notice == "D1 SAVED"
-    assert page.change_text == "D1   not set  →  X +0.24900  Z +0.00000  R 0.00000"
+    assert page.change_description == "D1   not set  →  X +0.24900  Z +0.00000  R 0.00000"
 
 
 def would_become(name: str, value: str, low: str, high: str) -> str:
@@ -153,11 +153,11 @@ def test_clear_asks_for_confirmation(room: Room) -> None:
     page.handle_key("C")
     room.settle(page)
     assert len(room.store.offsets.secondary_offsets.read_rows()) == 2
-    room.desk.prompt_answers._since = float("-inf")
-    room.desk.confirm_if_unchanged()
+    room.desk.prompt_line._since = float("-inf")
+    room.desk.confirm_question_if_unchanged()
     room.settle(page)
     assert room.store.offsets.secondary_offsets.read_rows() == {}
-    assert page.change_text == text("offsets.count-changed", count=2, keys="F5")
+    assert page.change_description == text("offsets.count-changed", count=2, keys="F5")
     page.handle_undo()
     room.confirm()
     room.settle(page)
@@ -186,7 +186,7 @@ def test_undo_affects_only_secondary_offsets(room: Room) -> None:
     assert room.store.offsets.tool_offsets.read_rows()[1].x == 5.0
     assert room.desk.prompt_notice == "D1 UNDONE"
     page.handle_undo()
-    assert not room.desk.confirm_key
+    assert not room.desk.confirmation_key
     assert room.desk.prompt_notice == text("offsets.no-change-to-undo", row=text("offsets.this-table"))
 
 
@@ -196,7 +196,7 @@ def test_undo_after_number_is_for_that_offset_and_cancels_typed_value(room: Room
     room.enter(page, "2", ".2", "", "", asked=True)
     room.enter(page, "1", ".3")
     page.handle_undo()
-    assert not room.desk.confirm_key
+    assert not room.desk.confirmation_key
     assert room.desk.prompt_notice == text("offsets.as-it-was", number=1)
     room.enter(page, "1")
     page.handle_undo()
@@ -210,7 +210,7 @@ def test_undo_after_number_is_for_that_offset_and_cancels_typed_value(room: Room
 def test_history_lists_time_old_and_new_values_and_reason(room: Room) -> None:
     page = room.page()
     room.enter(page, "1", ".5-.002", "", "", asked=True)
-    page.offset_history.toggle_list()
+    page.offset_history.toggle_change_list()
     assert page.offset_history.listed_changes is not None
     at, which, change, why = page.offset_history.format_change(page.offset_history.listed_changes[0])
     assert at.startswith("20")
@@ -227,7 +227,7 @@ def test_offset_change_reloads_program(room: Room) -> None:
     room.enter(page, "1", ".1", "", "", asked=True)
     room.desk.program_loader.wait_until_loaded(LIMIT)
     assert room.loads == ["part.nc", "part.nc"]
-    assert room.desk.program_loader.loaded_program.has_block_delete
+    assert room.desk.program_loader.loaded_program.is_block_delete_on
 
 
 UNDER_WAY = [
@@ -317,7 +317,7 @@ def test_correction_at_program_stop_applies_after_job_ends(room: Room) -> None:
 
 @pytest.fixture
 def read_only(tmp_path: Path) -> Iterator[Room]:
-    book = OffsetBook(lock_reason="READ ONLY", secondary_offsets={1: SecondaryRow(0.0, 0.1, 0.0)})
+    book = OffsetBook(lock_reason="READ ONLY", secondary_offsets={1: SecondaryOffsetRow(0.0, 0.1, 0.0)})
     with room_on(tmp_path, book=book) as made:
         yield made
 
@@ -329,9 +329,9 @@ def test_offsets_of_a_file_are_read_only(read_only: Room) -> None:
     assert room.desk.prompt_notice == "READ ONLY"
     page.handle_key("C")
     page.handle_undo()
-    assert not room.desk.confirm_key
+    assert not room.desk.confirmation_key
     assert room.desk.prompt_notice == "READ ONLY"
-    assert page.present_row is None
+    assert page.stored_row is None
     assert page.offset_book.secondary_offsets.get(1) == (0.0, 0.1, 0.0)
 
 

@@ -4,81 +4,106 @@ from __future__ import annotations
 
 import pytest
 
-from app.offsets.change_rules import SuspicionKind, find_suspicions, find_table_suspicions
-from core.store.store_rows import MillRow, OffsetKind, OffsetRow, PresetRow, SecondaryRow, ToolRow, ZeroRow
+from app.offsets.change_rules import SuspicionReason, find_suspicious_changes, find_suspicious_table_changes
+from core.store.store_rows import (
+    MillToolRow,
+    OffsetKind,
+    OffsetRow,
+    PresetRow,
+    SecondaryOffsetRow,
+    ToolOffsetRow,
+    ZeroOffsetRow,
+)
 from tests.offsets.conftest import Room
 from tests.texts import text
 
 TRAVEL = {"x": (-100.0, 100.0), "z": (-150.0, 150.0)}
-TOOL = ToolRow(10.0, -50.0, wear_x=0.05)
+TOOL = ToolOffsetRow(10.0, -50.0, wear_x=0.05)
 
 
 @pytest.mark.parametrize(
     ("old", "new", "doubts"),
     [
         (TOOL, TOOL._replace(x=10.5), []),
-        (TOOL, TOOL._replace(x=10.51), [("x", SuspicionKind.LARGE_CHANGE)]),
+        (TOOL, TOOL._replace(x=10.51), [("x", SuspicionReason.LARGE_CHANGE)]),
         (TOOL, TOOL._replace(x=10.54, wear_x=0.0), []),  # a touch-off: the tip moves .49 mm
-        (TOOL, TOOL._replace(x=-10.0), [("x", SuspicionKind.WRONG_SIDE), ("x", SuspicionKind.LARGE_CHANGE)]),
+        (
+            TOOL,
+            TOOL._replace(x=-10.0),
+            [("x", SuspicionReason.WRONG_SIDE), ("x", SuspicionReason.LARGE_CHANGE)],
+        ),
         (
             TOOL,
             TOOL._replace(x=381.0),
-            [("x", SuspicionKind.OUTSIDE_TRAVEL), ("x", SuspicionKind.LARGE_CHANGE)],
+            [("x", SuspicionReason.OUTSIDE_TRAVEL), ("x", SuspicionReason.LARGE_CHANGE)],
         ),
         (
             TOOL,
             TOOL._replace(z=-151.0),
-            [("z", SuspicionKind.OUTSIDE_TRAVEL), ("z", SuspicionKind.LARGE_CHANGE)],
+            [("z", SuspicionReason.OUTSIDE_TRAVEL), ("z", SuspicionReason.LARGE_CHANGE)],
         ),
-        (None, ToolRow(10.0, -151.0), [("z", SuspicionKind.OUTSIDE_TRAVEL)]),
-        (None, ToolRow(10.0, -50.0), []),
+        (None, ToolOffsetRow(10.0, -151.0), [("z", SuspicionReason.OUTSIDE_TRAVEL)]),
+        (None, ToolOffsetRow(10.0, -50.0), []),
         (TOOL, TOOL._replace(wear_x=0.177), []),  # .254 on the diameter
-        (TOOL, TOOL._replace(wear_x=0.18), [("wear_x", SuspicionKind.LARGE_CHANGE)]),
+        (TOOL, TOOL._replace(wear_x=0.18), [("wear_x", SuspicionReason.LARGE_CHANGE)]),
         (TOOL, TOOL._replace(wear_z=0.254), []),
-        (TOOL, TOOL._replace(wear_z=-0.26), [("wear_z", SuspicionKind.LARGE_CHANGE)]),
+        (TOOL, TOOL._replace(wear_z=-0.26), [("wear_z", SuspicionReason.LARGE_CHANGE)]),
         (TOOL, TOOL._replace(remark="new", quadrant=3, nose_radius=0.8), []),
-        (SecondaryRow(), SecondaryRow(0.13, 0.0, 0.4), [("x", SuspicionKind.LARGE_CHANGE)]),
-        (None, SecondaryRow(0.0, 0.3), [("z", SuspicionKind.LARGE_CHANGE)]),
-        (SecondaryRow(0.1, 0.1), SecondaryRow(0.2, 0.2), []),
-        (MillRow("A", 80.0), MillRow("A", 80.6), [("length", SuspicionKind.LARGE_CHANGE)]),
-        (MillRow("A", 80.0), MillRow("A", 80.0, 6.0), []),
-        (MillRow("A", 80.0, 6.0), MillRow("A", -80.0, 6.0), [("length", SuspicionKind.LARGE_CHANGE)]),
+        (SecondaryOffsetRow(), SecondaryOffsetRow(0.13, 0.0, 0.4), [("x", SuspicionReason.LARGE_CHANGE)]),
+        (None, SecondaryOffsetRow(0.0, 0.3), [("z", SuspicionReason.LARGE_CHANGE)]),
+        (SecondaryOffsetRow(0.1, 0.1), SecondaryOffsetRow(0.2, 0.2), []),
+        (MillToolRow("A", 80.0), MillToolRow("A", 80.6), [("length", SuspicionReason.LARGE_CHANGE)]),
+        (MillToolRow("A", 80.0), MillToolRow("A", 80.0, 6.0), []),
         (
-            MillRow("A", 80.0, 6.0, 1.0),
-            MillRow("A", 80.0, 5.0, 2.0),
-            [("radius", SuspicionKind.LARGE_CHANGE), ("corner", SuspicionKind.LARGE_CHANGE)],
+            MillToolRow("A", 80.0, 6.0),
+            MillToolRow("A", -80.0, 6.0),
+            [("length", SuspicionReason.LARGE_CHANGE)],
         ),
-        (None, MillRow("A", 80.0, 6.0, dr=0.2), []),
-        (None, MillRow("A", 80.0, 6.0, dr2=0.3), [("dr2", SuspicionKind.LARGE_CHANGE)]),
-        (None, ToolRow(10.0, -50.0, wear_x=0.2), [("wear_x", SuspicionKind.LARGE_CHANGE)]),
-        (MillRow("A", 80.0), MillRow("A", 80.0, dl=0.3), [("dl", SuspicionKind.LARGE_CHANGE)]),
+        (
+            MillToolRow("A", 80.0, 6.0, 1.0),
+            MillToolRow("A", 80.0, 5.0, 2.0),
+            [("radius", SuspicionReason.LARGE_CHANGE), ("corner", SuspicionReason.LARGE_CHANGE)],
+        ),
+        (None, MillToolRow("A", 80.0, 6.0, dr=0.2), []),
+        (None, MillToolRow("A", 80.0, 6.0, dr2=0.3), [("dr2", SuspicionReason.LARGE_CHANGE)]),
+        (None, ToolOffsetRow(10.0, -50.0, wear_x=0.2), [("wear_x", SuspicionReason.LARGE_CHANGE)]),
+        (MillToolRow("A", 80.0), MillToolRow("A", 80.0, dl=0.3), [("dl", SuspicionReason.LARGE_CHANGE)]),
     ],
 )
 def test_suspicious_offset_changes_are_found(
-    old: OffsetRow | None, new: OffsetRow, doubts: list[tuple[str, SuspicionKind]]
+    old: OffsetRow | None, new: OffsetRow, doubts: list[tuple[str, SuspicionReason]]
 ) -> None:
-    assert [(each.name, each.kind) for each in find_suspicions(1, old, new, TRAVEL)] == doubts
+    assert [(each.name, each.kind) for each in find_suspicious_changes(1, old, new, TRAVEL)] == doubts
 
 
 def test_new_master_tool_is_suspicious_only_with_set_tools() -> None:
     master = {1: {"x": 1.0, "z": 1.0, "master": True}}
-    assert find_table_suspicions(OffsetKind.TOOL, {}, {**master, 2: {"x": 1.0, "z": 1.0}}, TRAVEL) == ()
-    found = find_table_suspicions(OffsetKind.TOOL, {2: TOOL}, master, TRAVEL)
-    assert [(each.row_number, each.kind) for each in found] == [(1, SuspicionKind.NEW_MASTER)]
     assert (
-        find_table_suspicions(OffsetKind.TOOL, {1: ToolRow(1.0, 1.0, master=True), 2: TOOL}, master, TRAVEL)
+        find_suspicious_table_changes(OffsetKind.TOOL, {}, {**master, 2: {"x": 1.0, "z": 1.0}}, TRAVEL) == ()
+    )
+    found = find_suspicious_table_changes(OffsetKind.TOOL, {2: TOOL}, master, TRAVEL)
+    assert [(each.row_number, each.kind) for each in found] == [(1, SuspicionReason.NEW_MASTER)]
+    assert (
+        find_suspicious_table_changes(
+            OffsetKind.TOOL, {1: ToolOffsetRow(1.0, 1.0, master=True), 2: TOOL}, master, TRAVEL
+        )
         == ()
     )
 
 
 def test_value_rejected_by_store_is_not_suspicious() -> None:
-    assert find_table_suspicions(OffsetKind.TOOL, {1: TOOL}, {1: {"x": 5000.0}}, TRAVEL) == ()
-    assert find_table_suspicions(OffsetKind.TOOL, {1: TOOL}, {1: {"colour": 1.0}}, TRAVEL) == ()
+    assert find_suspicious_table_changes(OffsetKind.TOOL, {1: TOOL}, {1: {"x": 5000.0}}, TRAVEL) == ()
+    assert find_suspicious_table_changes(OffsetKind.TOOL, {1: TOOL}, {1: {"colour": 1.0}}, TRAVEL) == ()
 
 
 def test_datum_changes_are_not_suspicious() -> None:
-    assert find_table_suspicions(OffsetKind.ZERO, {54: ZeroRow(1.0)}, {54: {"x": 900.0}}, TRAVEL) == ()
-    assert find_table_suspicions(OffsetKind.PRESET, {1: PresetRow(1.0)}, {1: {"x": 900.0}}, TRAVEL) == ()
+    assert (
+        find_suspicious_table_changes(OffsetKind.ZERO, {54: ZeroOffsetRow(1.0)}, {54: {"x": 900.0}}, TRAVEL)
+        == ()
+    )
+    assert (
+        find_suspicious_table_changes(OffsetKind.PRESET, {1: PresetRow(1.0)}, {1: {"x": 900.0}}, TRAVEL) == ()
+    )
 
 
 def test_tool_x_with_changed_sign_needs_confirmation_and_escape_cancels_it(room: Room) -> None:
@@ -109,7 +134,7 @@ def test_undo_affects_only_selected_row(room: Room) -> None:
     grid.handle_undo()
     room.settle(grid)
     assert room.store.offsets.tool_offsets.read_rows()[1].x == 12.8
-    assert room.desk.confirm_key
+    assert room.desk.confirmation_key
     room.confirm()
     room.settle(grid)
     assert (
@@ -127,4 +152,4 @@ def test_undo_of_a_row_without_a_change_asks_nothing(room: Room) -> None:
     grid.select_cell(9, 0)
     grid.handle_undo()
     assert room.desk.prompt_notice == text("offsets.no-change-to-undo", row="T9")
-    assert not room.desk.confirm_key
+    assert not room.desk.confirmation_key

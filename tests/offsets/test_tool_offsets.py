@@ -11,7 +11,7 @@ from app.compose.machine.machine_files import load_shipped_machine
 from app.desk.state.desk_machine import DeskMachine
 from app.offsets.tool_offsets import ToolOffsetTable
 from core.executor.snapshot import MachineState
-from core.store.store_rows import ToolRow
+from core.store.store_rows import ToolOffsetRow
 from tests.offsets.conftest import LIMIT, Room, room_on
 from tests.texts import text
 
@@ -89,7 +89,7 @@ def test_quadrant_remark_and_total_offset_are_stored(room: Room) -> None:
     grid.select_cell(1, 5)
     room.enter(grid, "-.002")
     row = room.store.offsets.tool_offsets.read_rows()[1]
-    assert row == pytest.approx(ToolRow(-12.7, -76.2, 0.381, 0.0, -0.0508, 3)[:6] + row[6:])
+    assert row == pytest.approx(ToolOffsetRow(-12.7, -76.2, 0.381, 0.0, -0.0508, 3)[:6] + row[6:])
     assert row.remark == "Hard END, .4 R"
     assert row.offset == pytest.approx((-12.7, -76.2508))
 
@@ -114,7 +114,7 @@ def test_a_tool_that_was_never_set_needs_x_and_z_together(room: Room) -> None:
     assert room.desk.prompt_notice == text("offsets.half-set", axis="Z", number=7)
     assert grid.name == "z"
     room.enter(grid, "-2")
-    assert room.store.offsets.tool_offsets.read_rows() == {7: ToolRow(INCH, -2 * INCH)}
+    assert room.store.offsets.tool_offsets.read_rows() == {7: ToolOffsetRow(INCH, -2 * INCH)}
 
 
 def test_incomplete_tool_is_discarded_when_left(room: Room) -> None:
@@ -141,14 +141,14 @@ def test_tools_are_shown_relative_to_selected_master(room: Room) -> None:
     assert room.desk.prompt_notice == text("offsets.no-master")
     before = {n: row.offset for n, row in room.store.offsets.tool_offsets.read_rows().items()}
     room.enter(grid, "", asked=True)
-    assert room.desk.offset_book.master_number == 2
+    assert room.desk.offset_book.master_tool_number == 2
     assert {n: row.offset for n, row in room.store.offsets.tool_offsets.read_rows().items()} == before
     grid.toggle_relative_display()
     # T1 - T2: X (-.5 - 1) in, Z (-3 - -2) in
     assert (grid.format_cell(1, "x"), grid.format_cell(1, "z")) == ("−1.50000", "−1.00000")
     assert grid.format_cell(2, "x") == "+1.00000"
     room.enter(grid, "", asked=True)
-    assert room.desk.offset_book.master_number == 0
+    assert room.desk.offset_book.master_tool_number == 0
     grid.select_cell(1, 0)
     room.enter(grid, "1")
     assert room.desk.prompt_notice == text("offsets.shown-from-master")  # from the master they are only shown
@@ -162,7 +162,7 @@ def test_cursor_does_not_leave_unfinished_entry(room: Room) -> None:
     grid.handle_key("Down")
     assert (grid.tool_number, grid.text) == (1, "1")
     assert room.desk.prompt_notice == text("offsets.set-it")
-    assert grid.change_text == "−0.50000  →  +1.00000"
+    assert grid.change_description == "−0.50000  →  +1.00000"
     assert grid.handle_escape()
     grid.handle_key("Page down")
     assert grid.tool_number == 6
@@ -193,7 +193,7 @@ def test_geometry_change_is_rejected_during_cycle(room: Room, state: MachineStat
     assert "PROGRAM RUNNING" in grid.prompt_text(room.now[0])
     grid.handle_escape()
     grid.handle_undo()
-    assert not room.desk.confirm_key
+    assert not room.desk.confirmation_key
     assert "PROGRAM RUNNING" in room.desk.prompt_notice
     room.settle(grid)
     assert room.store.offsets.tool_offsets.read_rows() == before
@@ -293,7 +293,7 @@ def test_undo_restores_values_and_history_lists_changes(room: Room) -> None:
     room.settle(grid)
     assert room.store.offsets.tool_offsets.read_rows()[1].wear_x == 0.0
     assert room.desk.prompt_notice == "T1 UNDONE"
-    grid.offset_history.toggle_list()
+    grid.offset_history.toggle_change_list()
     assert grid.offset_history.listed_changes is not None
     at_, which, change, why = grid.offset_history.format_change(grid.offset_history.listed_changes[1])
     assert (which, why) == ("T1", "WEAR X -.001")
@@ -309,7 +309,7 @@ def test_undo_of_incomplete_tool_does_not_undo_older_change(room: Room) -> None:
     room.enter(grid, "1")
     assert grid.tool_fields.incomplete_tool.tool_number == 5
     grid.handle_undo()
-    assert not room.desk.confirm_key
+    assert not room.desk.confirmation_key
     room.settle(grid)
     assert (grid.tool_fields.incomplete_tool.tool_number, room.store.offsets.tool_offsets.read_rows()) == (
         0,
@@ -328,7 +328,7 @@ def test_d_key_is_ignored_in_language_without_edges(room: Room) -> None:
     set_tools(room)
     grid = at(room, 1, "z")
     assert not grid.handle_key("D")
-    assert grid.tool_numbers[:2] == (1, 2)
+    assert grid.row_numbers[:2] == (1, 2)
     assert "edge" not in grid.footer_text
 
 
@@ -344,11 +344,11 @@ def test_d_opens_another_cutting_edge(with_edges: Room) -> None:
     set_tools(room)
     grid = at(room, 1, "z")
     assert grid.handle_key("d")
-    assert (grid.tool_number, grid.name, grid.tool_numbers[:3]) == (200_001, "x", (1, 200_001, 2))
+    assert (grid.tool_number, grid.name, grid.row_numbers[:3]) == (200_001, "x", (1, 200_001, 2))
     room.enter(grid, ".5")
     room.enter(grid, "-3.2")
     assert room.store.offsets.tool_offsets.read_rows()[200_001] == pytest.approx(
-        ToolRow(0.5 * INCH, -3.2 * INCH)
+        ToolOffsetRow(0.5 * INCH, -3.2 * INCH)
     )
     assert room.desk.prompt_notice == "T1 D2 SAVED"
     assert grid.handle_key("Down")
@@ -363,7 +363,7 @@ def test_unedited_cutting_edge_is_discarded(with_edges: Room) -> None:
     grid = at(room, 1, "x")
     grid.handle_key("D")
     grid.handle_key("Down")
-    assert (grid.tool_number, grid.tool_numbers[:2]) == (2, (1, 2))
+    assert (grid.tool_number, grid.row_numbers[:2]) == (2, (1, 2))
 
 
 def test_unset_tool_has_no_other_edge(with_edges: Room) -> None:

@@ -7,7 +7,7 @@ import pytest
 from app.offsets.tool_shapes import ToolShapeTable
 from core.executor.snapshot import MachineState
 from core.part.tool_shape import ToolKind
-from core.store.store_rows import TOOL_KINDS, ShapeRow
+from core.store.store_rows import TOOL_KINDS, ToolShapeRow
 from tests.offsets.conftest import LIMIT, Room
 from tests.screen.yes import read
 from tests.texts import shows, text
@@ -76,7 +76,7 @@ def test_fields_depend_on_tool_kind(room: Room) -> None:
 @pytest.mark.parametrize("kind", TOOL_KINDS)
 def test_every_kind_has_its_fields_on_the_page(room: Room, kind: str) -> None:
     set_tools(room)
-    room.desk.offset_book.tool_shapes[5] = ShapeRow(kind)
+    room.desk.offset_book.tool_shapes[5] = ToolShapeRow(kind)
     page = ToolShapeTable(room.desk)
     page.update(room.now[0])
     page.select_tool(5)
@@ -97,7 +97,7 @@ def test_tool_kind_is_selected_and_saved(room: Room) -> None:
     assert page.entered_text == "FORM TOOL", "it goes round"
     write(page, "Right", "Enter")
     save(room, page)
-    assert room.store.offsets.tool_shapes.read_rows()[2] == ShapeRow("turning")
+    assert room.store.offsets.tool_shapes.read_rows()[2] == ToolShapeRow("turning")
     assert room.desk.prompt_notice == "T2 SAVED"
     assert page.offset_history.last_change_text == "T2   not set  →  TURNING  RIGHT HAND"
 
@@ -265,7 +265,7 @@ def test_changes_are_rejected_while_program_runs(room: Room) -> None:
     assert page.text == ""
     page.delete_shape()
     page.handle_undo()
-    assert not room.desk.confirm_key
+    assert not room.desk.confirmation_key
     assert len(room.store.offsets.tool_shapes.read_history()) == 2
 
 
@@ -273,4 +273,4 @@ def test_missing_shape_cannot_be_deleted(room: Room) -> None:
     page = shape_of(room, 2)
     page.delete_shape()
     assert room.desk.prompt_notice == text("offsets.no-shape", number=2)
-    assert not room.desk.confirm_key
+    assert not room.desk.confirmation_key

@@ -10,20 +10,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.part.cutter import CutSide, Cutter
-from core.part.stock import Stock, make_bar, make_tube
-from core.part.swept_edge import Columns, FloatArray, Point, find_axis_facing_edge, sweep_edge
-from core.part.tool_outline import make_outline
+from core.part.stock import Stock, make_bar_stock, make_tube_stock
+from core.part.swept_edge import ColumnGrid, FloatArray, Point, find_axis_facing_edge, sweep_edge
+from core.part.tool_outline import make_tool_outline
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import NO_CUT, Cut, TurnedPart
 
 KNIFE = np.array([[0.0, 0.0], [12.0, 4.0], [12.0, 12.0], [0.0, 12.0]])
 BUTTON = np.array([[4.0 * math.cos(a), 4.0 * math.sin(a)] for a in np.linspace(0.0, math.tau, 91)[:-1]])
-INSERT = make_outline(ToolShape(ToolKind.TURNING, tip=3, insert="CNMG120408")).cutting_outlines[0]
+INSERT = make_tool_outline(ToolShape(ToolKind.TURNING, tip=3, insert="CNMG120408")).cutting_outlines[0]
 BLADE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 30.0], [0.0, 30.0]])
 RING = np.array([[0.0, 6.0], [1.5, 6.0], [1.5, 8.0], [0.0, 8.0]])
 STOCKS = [
-    make_bar(30.0, 0.0, -40.0),
-    make_tube(28.0, 9.0, 0.0, -40.0),
+    make_bar_stock(30.0, 0.0, -40.0),
+    make_tube_stock(28.0, 9.0, 0.0, -40.0),
     Stock("", ((-40.0, 16.0), (0.0, 4.0))),
 ]
 SAME_MM = 1e-9  # mm, mm² and mm³ by which the measures of two sums may differ
@@ -125,14 +125,14 @@ def test_nose_in_a_groove_does_not_touch() -> None:
 
 def test_total_with_a_cut_of_nothing_is_the_other_cut() -> None:
     cut = Cut(1.0, 2.0, 0.5, 3.0, -3.0, 0.0)
-    assert cut.combine_sequence(NO_CUT) == cut
-    assert NO_CUT.combine_sequence(cut) == cut
-    assert cut.combine_sequence(cut._replace(depth_mm=0.75)).depth_mm == 0.75
+    assert cut.combine_with_later(NO_CUT) == cut
+    assert NO_CUT.combine_with_later(cut) == cut
+    assert cut.combine_with_later(cut._replace(depth_mm=0.75)).depth_mm == 0.75
 
 
 def test_column_centers_cannot_be_changed() -> None:
     """Parts share the array, so a change would move the columns of other parts."""
-    centers = Columns(0.5, 1.0, 3).column_centers
+    centers = ColumnGrid(0.5, 1.0, 3).column_centers
     assert centers.tolist() == [0.5, 1.5, 2.5]
     with pytest.raises(ValueError, match="read-only"):
         centers[0] = 0.0

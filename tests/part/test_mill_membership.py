@@ -73,7 +73,7 @@ def test_axial_mill_removes_points_within_its_path(seed: int) -> None:
     path = np.column_stack([random.uniform(-12.0, 12.0, (4, 2)), random.uniform(-15.0, 1.0, 4)])
     radius, length = random.uniform(0.5, 4.0), random.choice([6.0, 100.0])
     before = part.field.volume_mm3
-    told = part.mill_axial(path, radius, cutting_length=length)
+    told = part.mill_axial_path(path, radius, cutting_length=length)
     assert part.field.volume_mm3 == pytest.approx(before - told.volume_mm3, rel=1e-9)
     points, metal = somewhere(part, random, 1500)
     check(metal, depth_axial(points, path, radius, length))
@@ -94,7 +94,7 @@ def test_radial_mill_removes_points_within_its_path(seed: int, height: float) ->
     path[1, [0, 2]] = path[0, [0, 2]]  # and in Z alone
     radius = random.uniform(0.8, 3.0)
     before = part.field.volume_mm3
-    told = part.mill_radial(path, radius, axis_offset=height)
+    told = part.mill_radial_path(path, radius, axis_offset=height)
     assert part.field.volume_mm3 == pytest.approx(before - told.volume_mm3, rel=1e-9)
     points, metal = somewhere(part, random, 1500)
     check(metal, depth_radial(points, path, radius, height))
@@ -108,10 +108,10 @@ def test_collision_check_agrees_with_material_removal(seed: int) -> None:
         axial = np.column_stack([place, place + random.uniform(-4.0, 4.0, 2)]).T
         path = np.column_stack([axial, random.uniform(-6.0, 3.0, 2)])
         meets = part.has_axial_collision(path, 1.5)
-        assert bool(part.mill_axial(path, 1.5).depth_mm > 0.01) <= meets
+        assert bool(part.mill_axial_path(path, 1.5).depth_mm > 0.01) <= meets
         path = np.column_stack(
             [random.uniform(6.0, 13.0, 2), random.uniform(-25.0, 4.0, 2), random.uniform(0.0, 360.0, 2)]
         )
         meets = part.has_radial_collision(path, 1.5)
-        assert bool(part.mill_radial(path, 1.5).depth_mm > 0.03) <= meets
+        assert bool(part.mill_radial_path(path, 1.5).depth_mm > 0.03) <= meets
         assert not part.has_radial_collision(path, 1.5)

@@ -14,7 +14,7 @@ from core.part.polar_field import make_field_from_section
 from core.part.ray_cuts import (
     MAX_CHORD_ERROR_MM,
     make_axial_path,
-    make_locked_path,
+    make_c_axis_path,
     make_plane_path,
     make_radial_path,
 )
@@ -93,17 +93,17 @@ def test_side_is_unrolled_at_its_diameter() -> None:
 
 def test_full_revolution_off_center_cuts_a_ring() -> None:
     part = bar()
-    way = make_locked_path(np.array([-6.0, -2.0, 0.0]), np.array([-6.0, -2.0, 360.0]))
-    told = part.mill_axial(make_axial_path(way), 1.0)
+    way = make_c_axis_path(np.array([-6.0, -2.0, 0.0]), np.array([-6.0, -2.0, 360.0]))
+    told = part.mill_axial_path(make_axial_path(way), 1.0)
     assert told.volume_mm3 == pytest.approx(math.pi * (49.0 - 25.0) * 2.0, rel=1e-3)
     assert part.field.volume_mm3 == pytest.approx(math.pi * (2000.0 - 48.0), rel=1e-3)
 
 
 def test_chords_of_move_with_c_are_within_chord_error() -> None:
-    way = make_axial_path(make_locked_path(np.array([-10.0, 0.0, 0.0]), np.array([-10.0, 0.0, 200.0])))
+    way = make_axial_path(make_c_axis_path(np.array([-10.0, 0.0, 0.0]), np.array([-10.0, 0.0, 200.0])))
     middle = 0.5 * (way[1:] + way[:-1])
     assert 10.0 - np.hypot(middle[:, 0], middle[:, 1]).min() <= MAX_CHORD_ERROR_MM
-    assert len(make_locked_path(np.array([-10.0, 0.0, 5.0]), np.array([-3.0, 0.0, 5.0]))) == 2
+    assert len(make_c_axis_path(np.array([-10.0, 0.0, 5.0]), np.array([-3.0, 0.0, 5.0]))) == 2
 
 
 def test_hexagon_in_face_plane_has_programmed_orientation() -> None:
@@ -115,7 +115,7 @@ def test_hexagon_in_face_plane_has_programmed_orientation() -> None:
     ]
     for start, end in itertools.pairwise(spots):
         move = PlaneMove(FacePlane(90.0), start, end, start_angle_rad=math.atan2(start[1], start[0]))
-        part.mill_axial(make_plane_path(move), 3.0)
+        part.mill_axial_path(make_plane_path(move), 3.0)
     left = math.pi * 100.0 * 15.0 + 2.0 * math.sqrt(3.0) * 64.0 * 5.0
     assert part.field.volume_mm3 == pytest.approx(left, rel=1e-3)
     assert part.field.outer_radii[0, -1, 540] == pytest.approx(8.0)

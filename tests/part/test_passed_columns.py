@@ -8,7 +8,7 @@ import pytest
 from core.part import cutter as module
 from core.part import swept_edge
 from core.part.cutter import CutSide, Cutter
-from core.part.stock import make_bar
+from core.part.stock import make_bar_stock
 from core.part.swept_edge import Point
 from core.part.turned_part import TurnedPart
 
@@ -18,7 +18,7 @@ HOLDER = EDGE + np.array([3.0, 1.0])
 
 def part() -> TurnedPart:
     """A bar of radius 10, 40 long, turned to radius 5 from Z-20 on."""
-    made = TurnedPart(make_bar(20.0, 0.0, -40.0))
+    made = TurnedPart(make_bar_stock(20.0, 0.0, -40.0))
     turned = made.columns.find_column(-20.0)
     made.outer_radii[:, turned:] = 5.0
     return made

@@ -8,7 +8,7 @@ import pytest
 
 from core.part.cutter import CutSide, Cutter
 from core.part.stock import Stock
-from core.part.tool_outline import make_outline
+from core.part.tool_outline import make_tool_outline
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import Cut, TurnedPart
 from core.proving.checks.part_findings import RAPID_TOLERANCE_MM
@@ -28,7 +28,7 @@ def scraped(slope: float, deep: float) -> Cut:
         off = NOSE - deep
         return z + across * off - NOSE, 5.0 + (-10.0 - z) * rise + up * off - NOSE
 
-    cutter = Cutter(make_outline(TOOL).cutting_outlines, (), CutSide.OUTSIDE)
+    cutter = Cutter(make_tool_outline(TOOL).cutting_outlines, (), CutSide.OUTSIDE)
     return cutter.find_cut(TurnedPart(cone), tip(-13.0), tip(-16.0))
 
 
@@ -44,7 +44,7 @@ def test_a_rapid_along_a_cone_is_found(slope: float) -> None:
 def test_rapid_along_shoulder_is_found_at_any_column_position(place: float) -> None:
     wall = -10.0 - place
     step = Stock("", ((-40.0, 10.0), (wall, 10.0), (wall, 5.0), (0.0, 5.0)))
-    cutter = Cutter(make_outline(TOOL).cutting_outlines, (), CutSide.OUTSIDE)
+    cutter = Cutter(make_tool_outline(TOOL).cutting_outlines, (), CutSide.OUTSIDE)
     met = cutter.find_cut(TurnedPart(step), (wall - BOUND, 6.0), (wall - BOUND, 9.0))
     assert met.depth_mm > RAPID_TOLERANCE_MM
     assert met.width_mm > RAPID_TOLERANCE_MM

@@ -6,7 +6,7 @@ import pytest
 
 from core.part.insert_codes import ToolHolder, parse_holder
 from core.part.shape_rules import FIELDS_BY_KIND, find_shape_mistakes
-from core.part.tool_shape import Hand, ToolKind, ToolShape
+from core.part.tool_shape import ToolHand, ToolKind, ToolShape
 
 STAR = ((0.0, 2.0), (2.0, 2.0), (0.5, 0.0), (1.0, 3.0), (1.5, 0.0))
 SOUND = {
@@ -91,17 +91,17 @@ def test_every_tool_kind_has_valid_fields() -> None:
 @pytest.mark.parametrize(
     ("kind", "hand", "rear", "points"),
     [
-        (ToolKind.TURNING, Hand.RIGHT, False, (-1, -1)),
-        (ToolKind.TURNING, Hand.LEFT, False, (1, -1)),
-        (ToolKind.TURNING, Hand.RIGHT, True, (-1, 1)),
-        (ToolKind.BORING, Hand.RIGHT, False, (-1, 1)),
-        (ToolKind.BORING, Hand.RIGHT, True, (-1, -1)),
-        (ToolKind.THREADING, Hand.NEUTRAL, False, (0, -1)),
-        (ToolKind.DRILL, Hand.RIGHT, False, (-1, 0)),
+        (ToolKind.TURNING, ToolHand.RIGHT, False, (-1, -1)),
+        (ToolKind.TURNING, ToolHand.LEFT, False, (1, -1)),
+        (ToolKind.TURNING, ToolHand.RIGHT, True, (-1, 1)),
+        (ToolKind.BORING, ToolHand.RIGHT, False, (-1, 1)),
+        (ToolKind.BORING, ToolHand.RIGHT, True, (-1, -1)),
+        (ToolKind.THREADING, ToolHand.NEUTRAL, False, (0, -1)),
+        (ToolKind.DRILL, ToolHand.RIGHT, False, (-1, 0)),
     ],
 )
 def test_kind_and_hand_set_tip_direction_without_quadrant(
-    kind: ToolKind, hand: Hand, rear: bool, points: tuple[int, int]
+    kind: ToolKind, hand: ToolHand, rear: bool, points: tuple[int, int]
 ) -> None:
     assert ToolShape(kind, hand, rear=rear).direction == points
 

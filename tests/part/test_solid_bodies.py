@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from core.part.part_scene import ImageArray, PartColors, PartScene
-from core.part.solid_bodies import RoundAxis, ToolBody, make_chuck_solid
+from core.part.solid_bodies import SymmetryAxis, ToolBody, make_chuck_solid
 from core.part.solid_picture import SolidPicture
 from core.part.solid_view import SolidView
-from core.part.stock import Clamping, make_bar
+from core.part.stock import Clamping, make_bar_stock
 from core.part.surface_points import Solid, make_turned_solid
 
 WIDTH, HEIGHT = 400, 300
@@ -34,7 +34,7 @@ def at(z: float, x: float) -> np.ndarray:
 
 
 def drawn(view: SolidView, tool: ToolBody | None = None, chuck: Solid | None = None) -> ImageArray:
-    return SolidPicture().draw(shaft(), view, WIDTH, HEIGHT, scene=PartScene(chuck, tool))
+    return SolidPicture().draw_picture(shaft(), view, WIDTH, HEIGHT, scene=PartScene(chuck, tool))
 
 
 def like(image: ImageArray, colour: int) -> np.ndarray:
@@ -66,13 +66,15 @@ def test_a_drill_is_round() -> None:
     """Seen from the side it is as high as it is wide; 6 mm thick, it stands 10 mm out of the face."""
     outline = np.array([[-5.0, -3.0], [10.0, -3.0], [10.0, 3.0], [-5.0, 3.0]])
     for view in (SIDE, ABOVE):
-        rows, columns = np.nonzero(like(drawn(view, ToolBody((outline,), (), RoundAxis.Z)), GOLD))
+        rows, columns = np.nonzero(like(drawn(view, ToolBody((outline,), (), SymmetryAxis.Z)), GOLD))
         assert np.ptp(rows) + 1 == pytest.approx(48, abs=2)
         assert (columns.min(), columns.max()) == pytest.approx((200 + 80, 200 + 159), abs=2)
 
 
 def test_assumed_holder_is_drawn_transparent() -> None:
-    solid, ghost = (drawn(ABOVE, ToolBody((), (at(-12.0, 0.0),), is_ghost=ghost)) for ghost in (False, True))
+    solid, ghost = (
+        drawn(ABOVE, ToolBody((), (at(-12.0, 0.0),), is_body_assumed=ghost)) for ghost in (False, True)
+    )
     bare = drawn(ABOVE)
     there = like(solid, GREY)
     assert there.any()
@@ -82,7 +84,7 @@ def test_assumed_holder_is_drawn_transparent() -> None:
 
 
 def test_chuck_is_drawn_at_its_face_and_hides_bar() -> None:
-    chuck = make_chuck_solid(Clamping(24.0, 15.0, 3.0, 16.0), make_bar(10.0, 0.0, -20.0))
+    chuck = make_chuck_solid(Clamping(24.0, 15.0, 3.0, 16.0), make_bar_stock(10.0, 0.0, -20.0))
     found = like(drawn(SIDE, chuck=chuck), BROWN)
     _, columns = np.nonzero(found)
     assert columns.max() == pytest.approx(200 - 5 * 8, abs=1)  # its face at Z-15
@@ -94,7 +96,7 @@ def test_chuck_is_drawn_at_its_face_and_hides_bar() -> None:
 def test_center_is_drawn_in_front_of_face() -> None:
     """Its tip 2 mm in the part; 60 degrees: 8 mm of quill begin 4 / tan 30 = 6.93 mm further on."""
     held = Clamping(0.0, 0.0, quill_diameter=8.0, center_angle_deg=60.0, center_z_mm=-2.0)
-    found = like(drawn(SIDE, chuck=make_chuck_solid(held, make_bar(10.0, 0.0, -20.0))), BROWN)
+    found = like(drawn(SIDE, chuck=make_chuck_solid(held, make_bar_stock(10.0, 0.0, -20.0))), BROWN)
     assert not found[:, : 200 + 80].any()  # what is in the part is hidden
     for z in (2.0, 4.0):
         high = np.ptp(np.flatnonzero(found[:, round(200 + (10.0 + z) * 8)])) + 1

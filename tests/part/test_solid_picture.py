@@ -34,7 +34,7 @@ def milled(length: float = 20.0, radius: float = 10.0) -> MilledPart:
 
 
 def draw(solid: Solid, view: SolidView, hits: tuple[tuple[float, float], ...] = ()) -> ImageArray:
-    return SolidPicture().draw(solid, view, WIDTH, HEIGHT, hit_z_spans=hits)
+    return SolidPicture().draw_picture(solid, view, WIDTH, HEIGHT, hit_z_spans=hits)
 
 
 def red(image: ImageArray) -> np.ndarray:
@@ -83,7 +83,8 @@ def test_flange_and_pin_hide_each_other_by_view(azimuth: float, least: float, mo
 def test_half_section_shows_cut_area() -> None:
     solid = turned((20.0, 9.0), (10.0, 6.0), bore=4.0, deep=12.0)
     image = draw(
-        solid, SolidView(azimuth_deg=0.0, pixels_per_mm=9.0, center_z_mm=-15.0, open_range_deg=(-90.0, 90.0))
+        solid,
+        SolidView(azimuth_deg=0.0, pixels_per_mm=9.0, center_z_mm=-15.0, cut_out_range_deg=(-90.0, 90.0)),
     )
     area = 2.0 * (20.0 * 9.0 + 10.0 * 6.0 - 12.0 * 4.0)
     assert np.count_nonzero(orange(image)) == pytest.approx(area * 81.0, rel=0.02)
@@ -101,7 +102,7 @@ def test_bore_is_visible_only_from_its_open_end() -> None:
 
     def green(azimuth: float) -> int:
         view = SolidView(azimuth_deg=azimuth, pixels_per_mm=9.0, center_z_mm=-10.0)
-        image = SolidPicture(bore).draw(solid, view, WIDTH, HEIGHT)
+        image = SolidPicture(bore).draw_picture(solid, view, WIDTH, HEIGHT)
         return int(np.count_nonzero(((image >> 8) & 255) > (image & 255)))
 
     # Of the mouth's ellipse the bottom of the bore takes a part: it is 12 deep and 10 wide.
@@ -116,7 +117,7 @@ def test_bore_is_visible_only_from_its_open_end() -> None:
 
 def hole_at(angle: float, end: float = 2.0) -> Solid:
     part = milled()
-    part.mill_radial(np.array([[12.0, -10.0, angle], [end, -10.0, angle]]), 2.0)
+    part.mill_radial_path(np.array([[12.0, -10.0, angle], [end, -10.0, angle]]), 2.0)
     return make_milled_solid(part.field)
 
 
@@ -170,7 +171,7 @@ def test_unmilled_field_looks_like_turned_part() -> None:
 
 def test_flat_is_lit_evenly_and_the_round_is_not() -> None:
     part = milled()
-    part.mill_radial(np.array([[8.0, 5.0, 160.0], [8.0, -30.0, 160.0]]), 7.0)
+    part.mill_radial_path(np.array([[8.0, 5.0, 160.0], [8.0, -30.0, 160.0]]), 7.0)
     image = draw(
         make_milled_solid(part.field),
         SolidView(azimuth_deg=0.0, tilt_deg=20.0, pixels_per_mm=11.0, center_z_mm=-10.0),
@@ -187,7 +188,9 @@ def test_flat_is_lit_evenly_and_the_round_is_not() -> None:
 def test_part_outside_picture_leaves_background() -> None:
     view = SolidView(pixels_per_mm=10.0, center_z_mm=200.0)
     assert not draw(turned((20.0, 5.0)), view).any()
-    ground = SolidPicture(PartColors(background=0xFF102030)).draw(turned((20.0, 5.0)), view, WIDTH, HEIGHT)
+    ground = SolidPicture(PartColors(background=0xFF102030)).draw_picture(
+        turned((20.0, 5.0)), view, WIDTH, HEIGHT
+    )
     assert np.all(ground == 0xFF102030)
 
 
@@ -208,9 +211,13 @@ def test_collisions_are_red_only_at_their_positions() -> None:
 def test_picture_changes_with_part_version() -> None:
     part, picture = milled(), SolidPicture()
     view = SolidView(azimuth_deg=30.0, pixels_per_mm=9.0, center_z_mm=-10.0)
-    before = picture.draw(make_milled_solid(part.field), view, WIDTH, HEIGHT, version=part.field.change_count)
-    part.mill_axial(np.array([[0.0, 0.0, -4.0]]), 6.0)
-    after = picture.draw(make_milled_solid(part.field), view, WIDTH, HEIGHT, version=part.field.change_count)
+    before = picture.draw_picture(
+        make_milled_solid(part.field), view, WIDTH, HEIGHT, version=part.field.change_count
+    )
+    part.mill_axial_path(np.array([[0.0, 0.0, -4.0]]), 6.0)
+    after = picture.draw_picture(
+        make_milled_solid(part.field), view, WIDTH, HEIGHT, version=part.field.change_count
+    )
     assert np.count_nonzero(before != after) > 1000
 
 
@@ -231,7 +238,7 @@ def test_fitted_part_is_within_picture(azimuth: float) -> None:
 def test_quick_picture_has_the_same_outline() -> None:
     view = SolidView(azimuth_deg=30.0, pixels_per_mm=9.0, center_z_mm=-10.0)
     picture, solid = SolidPicture(), hole_at(150.0)
-    fine, quick = (picture.draw(solid, view, 421, 301, is_preview=quick) for quick in (False, True))
+    fine, quick = (picture.draw_picture(solid, view, 421, 301, is_preview=quick) for quick in (False, True))
     assert quick.shape == fine.shape == (301, 421)
     assert np.count_nonzero((fine != 0) != (quick != 0)) < 0.02 * np.count_nonzero(fine)
 
@@ -240,7 +247,7 @@ def test_step_between_faces_that_are_lit_alike_has_an_edge() -> None:
     """An island on the face: seen from nearly in front its far rim stands before a floor as light."""
     part = milled()
     turn = np.linspace(0.0, 2.0 * math.pi, 200)
-    part.mill_axial(np.column_stack([7.5 * np.cos(turn), 7.5 * np.sin(turn), np.full(200, -4.0)]), 2.5)
+    part.mill_axial_path(np.column_stack([7.5 * np.cos(turn), 7.5 * np.sin(turn), np.full(200, -4.0)]), 2.5)
     view = SolidView(azimuth_deg=60.0, tilt_deg=0.0, pixels_per_mm=12.0, center_z_mm=-4.0)
     image = draw(make_milled_solid(part.field), view)
     # At phi 180 on the rim of the island, and 3 pixels within and beyond it.

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from core.part.stock_spec import StockError, parse_profile, parse_specification
+from core.part.stock_spec import StockError, parse_stock_profile, parse_stock_specification
 from tests.coded import raises_code
 
 
 def test_bar_without_length_is_as_long_as_program_needs() -> None:
-    stock = parse_specification("bar:1.0+.02").stock(back_z_mm=-25.4, unit_mm=25.4)
+    stock = parse_stock_specification("bar:1.0+.02").stock(back_z_mm=-25.4, unit_mm=25.4)
     assert stock.specification_text == "bar:1.0+.02"
     assert stock.max_radius_mm == pytest.approx(12.7)
     assert stock.front_z_mm == pytest.approx(0.508)
@@ -17,7 +17,7 @@ def test_bar_without_length_is_as_long_as_program_needs() -> None:
 
 
 def test_stock_length_is_measured_from_face() -> None:
-    stock = parse_specification("bar:25mm:60mm+1mm").stock(back_z_mm=-500.0, unit_mm=25.4)
+    stock = parse_stock_specification("bar:25mm:60mm+1mm").stock(back_z_mm=-500.0, unit_mm=25.4)
     assert (stock.back_z_mm, stock.front_z_mm, stock.max_radius_mm) == (
         pytest.approx(-59.0),
         pytest.approx(1.0),
@@ -26,16 +26,16 @@ def test_stock_length_is_measured_from_face() -> None:
 
 
 def test_a_tube_has_its_bore() -> None:
-    stock = parse_specification("tube:1.5:.75:2").stock(back_z_mm=0.0, unit_mm=25.4)
+    stock = parse_stock_specification("tube:1.5:.75:2").stock(back_z_mm=0.0, unit_mm=25.4)
     assert stock.bore_profile[0] == (pytest.approx(-50.8), pytest.approx(9.525))
     assert stock.outside_profile[0] == (pytest.approx(-50.8), pytest.approx(19.05))
 
 
 def test_file_stock_is_parsed_with_allowance_and_plus_in_name() -> None:
-    assert parse_specification("after:op 10+.5.nc").after == "op 10+.5.nc"
-    spec = parse_specification("after:op10.nc+.02")
+    assert parse_stock_specification("after:op 10+.5.nc").after == "op 10+.5.nc"
+    spec = parse_stock_specification("after:op10.nc+.02")
     assert (spec.after, spec.allowance) == ("op10.nc", pytest.approx(0.508))
-    assert parse_specification("profile:casting.csv").profile == "casting.csv"
+    assert parse_stock_specification("profile:casting.csv").profile == "casting.csv"
 
 
 @pytest.mark.parametrize(
@@ -61,15 +61,15 @@ def test_file_stock_is_parsed_with_allowance_and_plus_in_name() -> None:
 )
 def test_invalid_stock_is_rejected(text: str, code: str) -> None:
     with raises_code(StockError, code, text):
-        parse_specification(text)
+        parse_stock_specification(text)
 
 
 def test_profile_is_read_in_either_order_with_or_without_header() -> None:
-    rising = parse_profile("p", "z,r\n-2,1\n-1,1\n-1,.5\n0,.5\n", 25.4, 0.0)
-    falling = parse_profile("p", "0,.5\n-1,.5\n-1,1\n-2,1\n", 25.4, 0.0)
+    rising = parse_stock_profile("p", "z,r\n-2,1\n-1,1\n-1,.5\n0,.5\n", 25.4, 0.0)
+    falling = parse_stock_profile("p", "0,.5\n-1,.5\n-1,1\n-2,1\n", 25.4, 0.0)
     assert rising.outside_profile == falling.outside_profile
     assert rising.outside_profile[0] == (pytest.approx(-50.8), pytest.approx(25.4))
-    tubular = parse_profile("p", "-10,6,2\n0,6,3\n", 1.0, 0.5)
+    tubular = parse_stock_profile("p", "-10,6,2\n0,6,3\n", 1.0, 0.5)
     assert tubular.bore_profile == ((-9.5, 2.0), (0.5, 3.0))
 
 
@@ -93,4 +93,4 @@ def test_profile_is_read_in_either_order_with_or_without_header() -> None:
 )
 def test_invalid_profile_is_rejected(text: str, code: str) -> None:
     with raises_code(StockError, code):
-        parse_profile("p", text, 25.4, 0.0)
+        parse_stock_profile("p", text, 25.4, 0.0)

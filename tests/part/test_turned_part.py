@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from core.part.cutter import CutSide, Cutter
-from core.part.stock import Stock, make_bar, make_tube
+from core.part.stock import Stock, make_bar_stock, make_tube_stock
 from core.part.turned_part import TurnedPart
 
 KNIFE = np.array(
@@ -38,8 +38,10 @@ def ring(outer: float, inner: float, length: float) -> float:
 
 
 def test_a_bar_and_a_tube_have_their_volume() -> None:
-    assert TurnedPart(make_bar(30.0, 1.0, -80.0)).volume_mm3 == pytest.approx(ring(15.0, 0.0, 81.0), rel=1e-6)
-    assert TurnedPart(make_tube(30.0, 12.0, 0.0, -50.0)).volume_mm3 == pytest.approx(
+    assert TurnedPart(make_bar_stock(30.0, 1.0, -80.0)).volume_mm3 == pytest.approx(
+        ring(15.0, 0.0, 81.0), rel=1e-6
+    )
+    assert TurnedPart(make_tube_stock(30.0, 12.0, 0.0, -50.0)).volume_mm3 == pytest.approx(
         ring(15.0, 6.0, 50.0), rel=1e-6
     )
 
@@ -51,7 +53,7 @@ def test_cone_stock_has_expected_volume() -> None:
 
 @pytest.mark.parametrize("step", [0.008, 0.01])
 def test_a_cylinder_is_turned(step: float) -> None:
-    part = TurnedPart(make_bar(30.0, 0.0, -60.0), step)
+    part = TurnedPart(make_bar_stock(30.0, 0.0, -60.0), step)
     before = part.volume_mm3
     met = outside().cut_material(part, (2.0, 12.0), (-25.0, 12.0))
     assert met.volume_mm3 == pytest.approx(ring(15.0, 12.0, 25.0), rel=1e-3)
@@ -62,14 +64,14 @@ def test_a_cylinder_is_turned(step: float) -> None:
 
 
 def test_a_taper_is_turned() -> None:
-    part = TurnedPart(make_bar(40.0, 0.0, -60.0))
+    part = TurnedPart(make_bar_stock(40.0, 0.0, -60.0))
     met = outside().cut_material(part, (0.0, 10.0), (-20.0, 20.0))  # from r 10 at the face to r 20
     cone = math.pi * 20.0 / 3.0 * (100.0 + 200.0 + 400.0)
     assert met.volume_mm3 == pytest.approx(ring(20.0, 0.0, 20.0) - cone, rel=1e-3)
 
 
 def test_face_is_cut_past_center() -> None:
-    part = TurnedPart(make_bar(20.0, 1.0, -30.0))
+    part = TurnedPart(make_bar_stock(20.0, 1.0, -30.0))
     met = outside().cut_material(part, (0.0, 12.0), (0.0, -0.4))
     assert met.volume_mm3 == pytest.approx(ring(10.0, 0.0, 1.0), rel=1e-3)
     assert part.volume_mm3 == pytest.approx(ring(10.0, 0.0, 30.0), rel=1e-3)
@@ -77,14 +79,14 @@ def test_face_is_cut_past_center() -> None:
 
 
 def test_groove_leaves_material_on_both_sides() -> None:
-    part = TurnedPart(make_bar(20.0, 0.0, -30.0))
+    part = TurnedPart(make_bar_stock(20.0, 0.0, -30.0))
     met = outside(BLADE).cut_material(part, (-12.0, 11.0), (-12.0, 7.0))
     assert met.volume_mm3 == pytest.approx(ring(10.0, 7.0, 3.0), rel=1e-3)
     assert (met.back_z_mm, met.front_z_mm) == (pytest.approx(-12.0, abs=0.01), pytest.approx(-9.0, abs=0.01))
 
 
 def test_round_nose_leaves_its_cross_section() -> None:
-    part = TurnedPart(make_bar(60.0, 0.0, -60.0))
+    part = TurnedPart(make_bar_stock(60.0, 0.0, -60.0))
     met = outside(BUTTON).cut_material(
         part, (-30.0, 40.0), (-30.0, 30.0)
     )  # plunged by its radius: a half circle
@@ -95,7 +97,7 @@ def test_round_nose_leaves_its_cross_section() -> None:
 
 
 def test_a_sphere_is_turned_by_chords_of_its_arc() -> None:
-    part = TurnedPart(make_bar(20.0, 0.0, -20.0))
+    part = TurnedPart(make_bar_stock(20.0, 0.0, -20.0))
     before = part.volume_mm3
     point = np.array([[0.0, 0.0], [0.001, 30.0], [-0.001, 30.0]])
     tool = Cutter([point], [], CutSide.OUTSIDE)
@@ -108,14 +110,14 @@ def test_a_sphere_is_turned_by_chords_of_its_arc() -> None:
 
 
 def test_a_drill_leaves_its_cone() -> None:
-    part = TurnedPart(make_bar(30.0, 0.0, -40.0))
+    part = TurnedPart(make_bar_stock(30.0, 0.0, -40.0))
     met = in_bore(DRILL).cut_material(part, (2.0, 0.0), (-20.0, 0.0))
     assert met.volume_mm3 == pytest.approx(ring(5.0, 0.0, 15.0) + math.pi * 125.0 / 3.0, rel=1e-3)
     assert in_bore(DRILL).cut_material(part, (2.0, 0.0), (-20.0, 0.0)).volume_mm3 == 0.0
 
 
 def test_bored_wall_is_in_bore_profile() -> None:
-    part = TurnedPart(make_tube(30.0, 16.0, 0.0, -40.0))
+    part = TurnedPart(make_tube_stock(30.0, 16.0, 0.0, -40.0))
     met = in_bore().cut_material(part, (2.0, 11.0), (-25.0, 11.0))
     assert met.volume_mm3 == pytest.approx(ring(11.0, 8.0, 25.0), rel=1e-3)
     rest = part.make_remaining_piece()
@@ -126,7 +128,7 @@ def test_bored_wall_is_in_bore_profile() -> None:
 
 
 def test_a_face_groove_leaves_a_core_and_a_ring() -> None:
-    part = TurnedPart(make_bar(40.0, 0.0, -30.0))
+    part = TurnedPart(make_bar_stock(40.0, 0.0, -30.0))
     tool = Cutter([np.array([[0.0, 0.0], [0.0, 4.0], [20.0, 4.0], [20.0, 0.0]])], [], CutSide.FACE)
     met = tool.cut_material(part, (1.0, 8.0), (-5.0, 8.0))  # between r 8 and r 12, 5 deep
     assert met.volume_mm3 == pytest.approx(ring(12.0, 8.0, 5.0), rel=1e-3)
@@ -138,7 +140,7 @@ def test_a_face_groove_leaves_a_core_and_a_ring() -> None:
 
 
 def test_parting_off_separates_front_piece() -> None:
-    part = TurnedPart(make_bar(20.0, 0.0, -40.0))
+    part = TurnedPart(make_bar_stock(20.0, 0.0, -40.0))
     before = part.volume_mm3
     outside(BLADE).cut_material(part, (-18.0, 12.0), (-18.0, -0.2))
     assert [piece.volume_mm3 for piece in part.parted_pieces] == [
@@ -153,7 +155,7 @@ def test_parting_off_separates_front_piece() -> None:
 
 
 def test_a_tube_is_parted_where_the_blade_reaches_its_bore() -> None:
-    part = TurnedPart(make_tube(20.0, 12.0, 0.0, -40.0))
+    part = TurnedPart(make_tube_stock(20.0, 12.0, 0.0, -40.0))
     outside(BLADE).cut_material(part, (-18.0, 12.0), (-18.0, 6.1))
     assert part.parted_pieces == []
     outside(BLADE).cut_material(part, (-18.0, 12.0), (-18.0, 5.9))
@@ -163,7 +165,7 @@ def test_a_tube_is_parted_where_the_blade_reaches_its_bore() -> None:
 
 
 def test_a_thread_has_its_form_and_its_volume() -> None:
-    part = TurnedPart(make_bar(20.0, 0.0, -40.0))
+    part = TurnedPart(make_bar_stock(20.0, 0.0, -40.0))
     depth, lead = 1.0, 2.0
     half = depth * math.tan(math.radians(30.0))
     form = np.array([[0.0, 0.0], [3.0 * half, 3.0], [-3.0 * half, 3.0]])
@@ -176,7 +178,7 @@ def test_a_thread_has_its_form_and_its_volume() -> None:
 
 
 def test_rear_tool_cuts_same_as_front_tool() -> None:
-    front, rear = TurnedPart(make_bar(30.0, 0.0, -60.0)), TurnedPart(make_bar(30.0, 0.0, -60.0))
+    front, rear = TurnedPart(make_bar_stock(30.0, 0.0, -60.0)), TurnedPart(make_bar_stock(30.0, 0.0, -60.0))
     outside().cut_material(front, (2.0, 12.0), (-25.0, 12.0))
     Cutter([KNIFE * np.array([1.0, -1.0])], [], CutSide.OUTSIDE, is_rear=True).cut_material(
         rear, (2.0, -12.0), (-25.0, -12.0)
@@ -185,7 +187,7 @@ def test_rear_tool_cuts_same_as_front_tool() -> None:
 
 
 def test_collision_query_and_cut_in_air_do_not_change_part() -> None:
-    part = TurnedPart(make_bar(30.0, 0.0, -60.0))
+    part = TurnedPart(make_bar_stock(30.0, 0.0, -60.0))
     before = part.volume_mm3
     assert outside().find_cut(part, (-5.0, 20.0), (-5.0, 10.0)).depth_mm == pytest.approx(5.0, abs=0.01)
     assert part.volume_mm3 == before
@@ -194,7 +196,7 @@ def test_collision_query_and_cut_in_air_do_not_change_part() -> None:
 
 
 def test_shank_collides_with_shoulder() -> None:
-    part = TurnedPart(make_bar(40.0, 0.0, -60.0))
+    part = TurnedPart(make_bar_stock(40.0, 0.0, -60.0))
     shank = np.array(
         [[-2.0, 3.0], [-2.0, 40.0], [10.0, 40.0], [10.0, 3.0]]
     )  # 2 mm before the edge, 3 above it
@@ -210,7 +212,7 @@ def test_shank_collides_with_shoulder() -> None:
 
 
 def test_boring_bar_too_thick_for_bore_collides_with_opposite_wall() -> None:
-    part = TurnedPart(make_tube(40.0, 10.0, 0.0, -30.0))
+    part = TurnedPart(make_tube_stock(40.0, 10.0, 0.0, -30.0))
     thick = np.array([[0.5, -0.5], [0.5, -11.0], [40.0, -11.0], [40.0, -0.5]])
     thin = np.array([[0.5, -0.5], [0.5, -8.0], [40.0, -8.0], [40.0, -0.5]])
     at = (2.0, 5.0), (-10.0, 5.0)
@@ -219,7 +221,7 @@ def test_boring_bar_too_thick_for_bore_collides_with_opposite_wall() -> None:
 
 
 def test_profile_starts_at_face_and_has_vertical_shoulders() -> None:
-    part = TurnedPart(make_bar(30.0, 0.0, -50.0))
+    part = TurnedPart(make_bar_stock(30.0, 0.0, -50.0))
     outside().cut_material(part, (1.0, 10.0), (-20.0, 10.0))
     corners = [(0.0, 10.0), (-20.0, 10.0), (-20.0, 15.0), (-50.0, 15.0)]
     told = part.make_remaining_piece().outside_profile
@@ -228,7 +230,7 @@ def test_profile_starts_at_face_and_has_vertical_shoulders() -> None:
 
 
 def test_cut_outside_stock_or_in_removed_area_removes_nothing() -> None:
-    part = TurnedPart(make_bar(20.0, 0.0, -30.0))
+    part = TurnedPart(make_bar_stock(20.0, 0.0, -30.0))
     assert not outside().cut_material(part, (-50.0, 20.0), (-50.0, 5.0))  # behind the stock
     assert not outside().cut_material(part, (5.0, 20.0), (5.0, -5.0))  # before its face
     assert not in_bore().cut_material(part, (20.0, 5.0), (1.0, 5.0))

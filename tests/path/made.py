@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.path.polyline import Polyline, Stroke
+from app.path.polyline import Polyline, StrokeKind
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.modal_state import ModalState
 
@@ -19,7 +19,7 @@ def turned(n: int, kind: BlockKind, start: Way, end: Way, **more: object) -> Blo
     return Block(n, n, kind, "", *start, *end, **given)  # type: ignore[arg-type]
 
 
-def polyline(points: list[tuple[float, float, Stroke]], first: list[int]) -> Polyline:
+def polyline(points: list[tuple[float, float, StrokeKind]], first: list[int]) -> Polyline:
     """A trail of (z, x, stroke) points and where blocks end."""
     z, x, stroke = (np.array(column) for column in zip(*points, strict=True))
     bounds = (float(z.min()), float(z.max()), float(x.min()), float(x.max()))

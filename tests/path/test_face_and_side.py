@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.compose.machine.machine_setup import create_setup, read_machine
+from app.compose.machine.machine_setup import create_power_up_setup, read_machine
 from app.path.path_picture import PictureBuilder, ProgramPicture, build_picture, map_to_face
-from app.path.polyline import MAX_CHORD_ERROR_MM, Polyline, Stroke
+from app.path.polyline import MAX_CHORD_ERROR_MM, Polyline, StrokeKind
 from core.geometry.virtual_mill import FacePlane, PlaneMove, SidePlane
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import ToolOffset
@@ -89,7 +89,7 @@ def test_flat_is_line_on_face_and_dip_in_x() -> None:
     assert (face.x[0], face.x[-1]) == (3, -3)  # Y is up
     assert picture.x[0] == pytest.approx(-math.sqrt(34))
     assert -5.05 < picture.x.max() <= -5.0
-    assert picture.stroke[-1] == Stroke.MILL
+    assert picture.stroke[-1] == StrokeKind.MILL
 
 
 def test_flat_in_plane_entered_at_90_degrees_is_rotated_on_part() -> None:
@@ -128,7 +128,7 @@ def test_z_and_c_move_is_drawn_on_side_at_largest_diameter() -> None:
 
 
 def test_secondary_offset_does_not_move_drawing() -> None:
-    modal = LOCKED._replace(secondary_x=0.5, secondary_z=0.25)
+    modal = LOCKED._replace(secondary_offset_x=0.5, secondary_offset_z=0.25)
     way = PlaneMove(FacePlane(0.0), (5, 0, -1), (5, 0, -2), 0.0)
     picture = drawn(
         turned(1, BlockKind.PLANE_LINE, (-4.5, -0.75, 0), (-4.5, -1.75, 0), plane=way, modal=modal)
@@ -141,7 +141,7 @@ def test_secondary_offset_does_not_move_drawing() -> None:
 def test_drawing_matches_machine_transformation(name: str) -> None:
     # Every point of a view, put back through the frame's own kinematics, is where X, Z and C are.
     lathe = read_machine(None)
-    setup = create_setup(lathe, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(lathe, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     blocks = list(
         iter_timed_blocks(Timeline.from_program(load_source(PROGRAMS / f"{name}.nc"), setup, lathe))
     )

@@ -9,25 +9,25 @@ import pytest
 
 from app.path.measuring import (
     MAX_CROSSING_CHORDS,
-    PointKind,
     SnapPoint,
+    SnapPointKind,
     SnapPoints,
-    find_crossings,
+    find_intersections,
     find_nearest_chord,
 )
-from app.path.polyline import Stroke
+from app.path.polyline import StrokeKind
 from tests.path.made import polyline
 
 EVERYWHERE = (-100.0, 100.0, -100.0, 100.0)
 # a square of 4 mm, its last side crossed by a diagonal that comes from elsewhere
 SQUARE = polyline(
     [
-        (0, 0, Stroke.JUMP),
-        (4, 0, Stroke.TURN),
-        (4, 4, Stroke.TURN),
-        (0, 4, Stroke.TURN),
-        (-2, 1, Stroke.JUMP),
-        (6, 1, Stroke.TURN),
+        (0, 0, StrokeKind.JUMP),
+        (4, 0, StrokeKind.TURN),
+        (4, 4, StrokeKind.TURN),
+        (0, 4, StrokeKind.TURN),
+        (-2, 1, StrokeKind.JUMP),
+        (6, 1, StrokeKind.TURN),
     ],
     [0, 2, 3, 4, 6],
 )
@@ -35,39 +35,42 @@ SQUARE = polyline(
 
 def test_ends_of_blocks_and_starts_after_jumps_are_points() -> None:
     features = SnapPoints(SQUARE)
-    assert features.find_nearest(0.3, 0.2) == SnapPoint(0, 0, PointKind.END)
-    assert features.find_nearest(-3, 1) == SnapPoint(-2, 1, PointKind.END)
+    assert features.find_nearest_point(0.3, 0.2) == SnapPoint(0, 0, SnapPointKind.END)
+    assert features.find_nearest_point(-3, 1) == SnapPoint(-2, 1, SnapPointKind.END)
 
 
 def test_intermediate_arc_points_are_not_snap_points() -> None:
-    bend = polyline([(0, 0, Stroke.JUMP), (1, 1, Stroke.TURN), (2, 0, Stroke.TURN)], [0, 3])
-    assert SnapPoints(bend).find_nearest(1, 1) != SnapPoint(1, 1, PointKind.END)
+    bend = polyline([(0, 0, StrokeKind.JUMP), (1, 1, StrokeKind.TURN), (2, 0, StrokeKind.TURN)], [0, 3])
+    assert SnapPoints(bend).find_nearest_point(1, 1) != SnapPoint(1, 1, SnapPointKind.END)
 
 
 def test_arc_centers_are_snap_points() -> None:
     features = SnapPoints(replace(SQUARE, arc_centers=np.array([[2.0, 2.0]])))
-    assert features.find_nearest(2.4, 2.1) == SnapPoint(2, 2, PointKind.CENTER)
+    assert features.find_nearest_point(2.4, 2.1) == SnapPoint(2, 2, SnapPointKind.CENTER)
 
 
 def test_intersections_are_found_in_visible_area() -> None:
     features = SnapPoints(SQUARE)
-    assert features.find_nearest(4, 1.1) == SnapPoint(4, 0, PointKind.END)
+    assert features.find_nearest_point(4, 1.1) == SnapPoint(4, 0, SnapPointKind.END)
     features.update_intersections(EVERYWHERE)
-    assert features.find_nearest(4, 1.1) == SnapPoint(4, 1, PointKind.INTERSECTION)
+    assert features.find_nearest_point(4, 1.1) == SnapPoint(4, 1, SnapPointKind.INTERSECTION)
     features.update_intersections((-100, 3, -100, 100))
-    assert features.find_nearest(4, 1.1) == SnapPoint(4, 0, PointKind.END)
+    assert features.find_nearest_point(4, 1.1) == SnapPoint(4, 0, SnapPointKind.END)
 
 
 def test_jump_intersects_nothing() -> None:
-    assert find_crossings(SQUARE, EVERYWHERE).tolist() == [[4, 1]]
+    assert find_intersections(SQUARE, EVERYWHERE).tolist() == [[4, 1]]
 
 
 def test_intersections_are_skipped_for_too_many_segments() -> None:
     zigzag = polyline(
-        [(float(k % 2), float(k), Stroke.TURN if k else Stroke.JUMP) for k in range(MAX_CROSSING_CHORDS + 2)],
+        [
+            (float(k % 2), float(k), StrokeKind.TURN if k else StrokeKind.JUMP)
+            for k in range(MAX_CROSSING_CHORDS + 2)
+        ],
         list(range(MAX_CROSSING_CHORDS + 3)),
     )
-    assert len(find_crossings(zigzag, (-1, 2, -1, 1e4))) == 0
+    assert len(find_intersections(zigzag, (-1, 2, -1, 1e4))) == 0
 
 
 @pytest.mark.parametrize(
@@ -76,24 +79,24 @@ def test_intersections_are_skipped_for_too_many_segments() -> None:
 def test_arrow_key_selects_next_point_in_its_direction(
     way: tuple[int, int], found: tuple[float, float] | None
 ) -> None:
-    spot = SnapPoints(SQUARE).find_in_direction(0, 0, way)
+    spot = SnapPoints(SQUARE).find_point_in_direction(0, 0, way)
     assert (spot and spot[:2]) == found
 
 
 def test_next_point_along_path_wraps_around() -> None:
     features = SnapPoints(SQUARE)
-    assert features.find_next_along_path(4, 4, 1) == SnapPoint(0, 4, PointKind.END)
-    assert features.find_next_along_path(0, 0, -1) == SnapPoint(6, 1, PointKind.END)
-    assert features.find_next_along_path(6, 1, 1) == SnapPoint(0, 0, PointKind.END)
+    assert features.find_next_path_point(4, 4, 1) == SnapPoint(0, 4, SnapPointKind.END)
+    assert features.find_next_path_point(0, 0, -1) == SnapPoint(6, 1, SnapPointKind.END)
+    assert features.find_next_path_point(6, 1, 1) == SnapPoint(0, 0, SnapPointKind.END)
 
 
 def test_empty_path_has_no_snap_points() -> None:
-    nothing = polyline([(0, 0, Stroke.JUMP)], [0])
+    nothing = polyline([(0, 0, StrokeKind.JUMP)], [0])
     features = SnapPoints(replace(nothing, z=np.zeros(0), x=np.zeros(0), stroke=np.zeros(0, dtype=np.uint8)))
     features.update_intersections(EVERYWHERE)
-    assert features.find_nearest(0, 0) is None
-    assert features.find_in_direction(0, 0, (1, 0)) is None
-    assert features.find_next_along_path(0, 0, 1) is None
+    assert features.find_nearest_point(0, 0) is None
+    assert features.find_point_in_direction(0, 0, (1, 0)) is None
+    assert features.find_next_path_point(0, 0, 1) is None
 
 
 def test_touch_selects_nearest_segment() -> None:

@@ -10,8 +10,8 @@ import resources
 from app.compose.machine.machine_files import load_machine, parse_machine
 from app.compose.program_proving import create_loading_steps
 from app.compose.stored_offsets import NO_OFFSETS, Offsets
-from app.path.part_player import FAST_FACTOR, PartPlayer, PartPlayers, SolidRequest
-from app.path.path_aspects import PathAspect, find_views
+from app.path.part_player import FAST_FACTOR, PartPlayer, PartPlayers, SolidImageRequest
+from app.path.path_aspects import PathViewKind, list_available_views
 from app.path.path_picture import ProgramPicture
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import ProgramSource
@@ -57,23 +57,28 @@ def settled(player: PartPlayer) -> PartPlayer:
 
 
 def line(player: PartPlayer) -> int:
-    shown = settled(player).result
+    shown = settled(player).latest_result
     assert shown is not None
     return shown.part_instant.line_number
 
 
 def test_loaded_program_is_shown_at_its_end(player: PartPlayer) -> None:
     player.load_picture(picture(SHAFT))
-    assert player.time_s == player.duration_s > 5.0
+    assert player.program_time_s == player.duration_s > 5.0
     assert line(player) == 13
 
 
 def test_player_without_program_shows_nothing_and_ignores_keys(player: PartPlayer) -> None:
     player.toggle_playback()
-    player.step_blocks(1)
+    player.step_by_blocks(1)
     player.seek_line(3)
     player.update()
-    assert (player.result, player.is_playing, player.time_s, player.is_outdated) == (None, False, 0.0, False)
+    assert (player.latest_result, player.is_playing, player.program_time_s, player.is_outdated) == (
+        None,
+        False,
+        0.0,
+        False,
+    )
 
 
 def test_unloaded_program_is_not_shown(player: PartPlayer) -> None:
@@ -81,24 +86,24 @@ def test_unloaded_program_is_not_shown(player: PartPlayer) -> None:
     settled(player)
     player.load_picture(None)
     player.update()
-    assert player.result is None
+    assert player.latest_result is None
 
 
 def test_playback_at_end_restarts_and_follows_clock(player: PartPlayer, clock: Clock) -> None:
     player.load_picture(picture(SHAFT))
     player.toggle_playback()
-    assert player.time_s == 0.0
+    assert player.program_time_s == 0.0
     clock.now += 0.2
     player.update()
-    assert player.time_s == pytest.approx(0.2)
+    assert player.program_time_s == pytest.approx(0.2)
     player.toggle_fast_playback()
     clock.now += 0.2
     player.update()
-    assert player.time_s == pytest.approx(0.2 + 0.2 * FAST_FACTOR)
+    assert player.program_time_s == pytest.approx(0.2 + 0.2 * FAST_FACTOR)
     player.toggle_playback()
     clock.now += 0.2
     player.update()
-    assert player.time_s == pytest.approx(0.2 + 0.2 * FAST_FACTOR)
+    assert player.program_time_s == pytest.approx(0.2 + 0.2 * FAST_FACTOR)
 
 
 def test_playback_stops_at_end(player: PartPlayer, clock: Clock) -> None:
@@ -107,7 +112,7 @@ def test_playback_stops_at_end(player: PartPlayer, clock: Clock) -> None:
     player.toggle_playback()
     clock.now += 0.2
     player.update()
-    assert (player.is_playing, player.time_s) == (False, player.duration_s)
+    assert (player.is_playing, player.program_time_s) == (False, player.duration_s)
 
 
 def test_playback_does_not_jump_after_screen_was_blocked(player: PartPlayer, clock: Clock) -> None:
@@ -115,7 +120,7 @@ def test_playback_does_not_jump_after_screen_was_blocked(player: PartPlayer, clo
     player.toggle_playback()
     clock.now += 5.0
     player.update()
-    assert player.time_s <= 0.25
+    assert player.program_time_s <= 0.25
 
 
 def test_steps_go_from_block_to_block(player: PartPlayer) -> None:
@@ -123,21 +128,21 @@ def test_steps_go_from_block_to_block(player: PartPlayer) -> None:
     player.seek_time(0.0)
     lines = []
     for _ in range(4):
-        player.step_blocks(1)
+        player.step_by_blocks(1)
         lines.append(line(player))
     assert lines == [4, 5, 6, 7]
-    player.step_blocks(-1)
+    player.step_by_blocks(-1)
     assert line(player) == 6
     for _ in range(9):
-        player.step_blocks(-1)
-    assert player.time_s == 0.0
+        player.step_by_blocks(-1)
+    assert player.program_time_s == 0.0
 
 
 def test_seek_line_shows_part_at_line(player: PartPlayer) -> None:
     player.load_picture(picture(SHAFT))
     player.seek_line(6)
     assert line(player) == 6
-    shown = player.result
+    shown = player.latest_result
     assert shown is not None
     assert shown.part_instant.tool is not None
     assert shown.part_instant.tool.control_point == pytest.approx((-12.7, 10.16))
@@ -146,11 +151,11 @@ def test_seek_line_shows_part_at_line(player: PartPlayer) -> None:
 def test_keys_are_ignored_while_player_follows_run(player: PartPlayer) -> None:
     player.load_picture(picture(SHAFT))
     player.follows_run = True
-    at = player.time_s
+    at = player.program_time_s
     player.toggle_playback()
-    player.step_blocks(-1)
+    player.step_by_blocks(-1)
     player.seek_line(1)
-    assert (player.time_s, player.is_playing) == (at, False)
+    assert (player.program_time_s, player.is_playing) == (at, False)
 
 
 def test_player_follows_run_to_tool_position(player: PartPlayer) -> None:
@@ -158,7 +163,7 @@ def test_player_follows_run_to_tool_position(player: PartPlayer) -> None:
     player.follows_run = True
     turning = player._picture.find_block_for_line(6) if player._picture else 0
     player.follow_run(turning, (0.55 * 25.4 / 2, 0.0))
-    shown = settled(player).result
+    shown = settled(player).latest_result
     assert shown is not None
     assert shown.part_instant.tool is not None
     assert shown.part_instant.tool.control_point == pytest.approx((-0.225 * 25.4, 10.16))
@@ -179,7 +184,7 @@ def test_failed_picture_is_reported(player: PartPlayer, monkeypatch: pytest.Monk
     monkeypatch.setattr("core.proving.part_history.PartHistory.__init__", broken)
     player.load_picture(picture(SHAFT))
     settled(player)
-    assert (player.result, player.error_text) == (None, "no such tool")
+    assert (player.latest_result, player.error_text) == (None, "no such tool")
 
 
 def test_program_with_errors_is_shown_up_to_its_first_error(player: PartPlayer) -> None:
@@ -205,18 +210,18 @@ def test_players_close_with_turndesk() -> None:
 def test_too_long_program_shows_reason(player: PartPlayer, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("core.proving.part_history.MAX_MOVES", 5)
     made = picture(SHAFT)
-    assert find_views(made, has_part=True)[-1] == (PathAspect.SECTION,)
-    assert find_views(made) == [(PathAspect.PATH,)]
+    assert list_available_views(made, has_part=True)[-1] == (PathViewKind.SECTION,)
+    assert list_available_views(made) == [(PathViewKind.PATH,)]
     player.load_picture(made)
     assert begins(player.error_text, "findings.part-too-long", blocks=12, most=5)
-    assert settled(player).result is None
+    assert settled(player).latest_result is None
 
 
 def test_blocks_before_line_are_counted() -> None:
     made = picture(SHAFT)
     # M03S1500, T1, then one block a line: before line 6 are those of lines 2 to 5.
-    assert made.count_blocks_before(6) == 4
-    assert made.count_blocks_before(1) == 0
+    assert made.count_blocks_before_line(6) == 4
+    assert made.count_blocks_before_line(1) == 0
 
 
 def test_seek_block_shows_its_line(player: PartPlayer) -> None:
@@ -241,8 +246,8 @@ MILLED = HEAD + (
 )
 def test_live_tool_collision_in_rapid_is_red_in_3d_view(player: PartPlayer, program: str, red: bool) -> None:
     player.load_picture(picture(program))
-    player.set_solid_request(SolidRequest(SolidView(pixels_per_mm=5.0, center_z_mm=-10.0), 200, 150))
-    shown = settled(player).result
+    player.set_image_request(SolidImageRequest(SolidView(pixels_per_mm=5.0, center_z_mm=-10.0), 200, 150))
+    shown = settled(player).latest_result
     assert shown is not None
     assert shown.image is not None
     r, g = ((shown.image >> off) & 255 for off in (16, 8))

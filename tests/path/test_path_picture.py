@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.path.path_picture import PictureBuilder, build_picture
-from app.path.polyline import MAX_CHORD_ERROR_MM, Stroke, count_arc_chords
+from app.path.polyline import MAX_CHORD_ERROR_MM, StrokeKind, count_arc_chords
 from core.interpreter.shared.actions import SpindleStop
 from core.interpreter.shared.elementary_blocks import Block, BlockKind, StraightMoveSeries, TimedSeries
 from core.interpreter.shared.modal_state import ModalState
@@ -31,7 +31,7 @@ def test_lines_share_their_corners() -> None:
     picture = sketch.build_picture()
     assert picture.x.tolist() == [10, 8, 8]
     assert picture.z.tolist() == [5, 1, -20]
-    assert picture.stroke.tolist() == [Stroke.JUMP, Stroke.RAPID, Stroke.TURN]
+    assert picture.stroke.tolist() == [StrokeKind.JUMP, StrokeKind.RAPID, StrokeKind.TURN]
     assert [picture.count_finished_points(n) for n in (-1, 0, 1, 2, 99)] == [0, 0, 2, 3, 3]
 
 
@@ -50,7 +50,7 @@ def test_no_blocks_make_an_empty_picture() -> None:
 
 
 def test_drawing_excludes_tool_offset_and_includes_work_shift() -> None:
-    modal = ModalState(spindle=1, tool_x=-50.0, tool_z=-200.0)
+    modal = ModalState(spindle=1, tool_offset_x=-50.0, tool_offset_z=-200.0)
     block = move(1, BlockKind.FEED, (5, 0), (5, -3), modal=modal, offset_x=-50.0, offset_z=-230.0)
     sketch = PictureBuilder()
     sketch.add_block(block, 1.0)
@@ -62,13 +62,18 @@ def test_tool_change_is_a_jump() -> None:
     sketch = PictureBuilder()
     sketch.add_block(move(1, BlockKind.FEED, (5, 0), (5, -3)), 1.0)
     sketch.add_block(move(2, BlockKind.FEED, (2, 7), (2, 6)), 2.0)
-    assert sketch.build_picture().stroke.tolist() == [Stroke.JUMP, Stroke.TURN, Stroke.JUMP, Stroke.TURN]
+    assert sketch.build_picture().stroke.tolist() == [
+        StrokeKind.JUMP,
+        StrokeKind.TURN,
+        StrokeKind.JUMP,
+        StrokeKind.TURN,
+    ]
 
 
 def test_feed_with_stopped_spindle_is_drawn_as_milling() -> None:
     sketch = PictureBuilder()
     sketch.add_block(move(1, BlockKind.FEED, (5, 0), (5, -3), modal=ModalState()), 1.0)
-    assert sketch.build_picture().stroke[-1] == Stroke.MILL
+    assert sketch.build_picture().stroke[-1] == StrokeKind.MILL
 
 
 @pytest.mark.parametrize("clockwise", [True, False])

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from app.path.measuring import LargestDistance, find_largest_distance
-from app.path.polyline import Stroke
+from app.path.polyline import StrokeKind
 from tests.path.made import polyline
 
-JUMP, RAPID, TURN = Stroke.JUMP, Stroke.RAPID, Stroke.TURN
+JUMP, RAPID, TURN = StrokeKind.JUMP, StrokeKind.RAPID, StrokeKind.TURN
 BEFORE = polyline([(9, 9, JUMP), (0, 5, RAPID), (-9, 5, TURN), (-9, 8, TURN)], [0, 2, 3, 4])
 
 

@@ -19,7 +19,7 @@ from core.executor.commands import ChangeOffsets, CycleStart, FeedHold, Reset, S
 from core.executor.job import Proof
 from core.executor.snapshot import LogEvent, MachineState
 from core.store.production import part_cycles
-from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.production.part_cycles import CycleRow, ProductionStopRow
 from core.store.store import Store
 from tests.executor.rig import Rig
 from tests.executor.test_changed_offsets import corrected, running
@@ -54,7 +54,7 @@ class Recorded:
             return part_cycles.read_cycles(connection, None, 100)
 
     @property
-    def stops(self) -> tuple[StopRow, ...]:
+    def stops(self) -> tuple[ProductionStopRow, ...]:
         self.settle()
         with self.store.read() as connection:
             return part_cycles.read_stops(connection, None, 100)

@@ -9,8 +9,8 @@ import pytest
 
 from app.compose.runs.journal import Journal
 from app.production.parts_book import read_production_data
-from app.production.tool_life_watch import ToolLifeWatch
-from app.production.tool_totals import TOTALS_SETTING, ToolTotals
+from app.production.tool_life_watch import ToolLifeMonitor
+from app.production.tool_totals import TOTALS_SETTING, ToolUseTotals
 from core.executor.snapshot import MachineState, Snapshot
 from core.store.store import Store
 from core.store.store_rows import OffsetKind
@@ -28,12 +28,12 @@ class Screen:
         book.user_access.persistence = self.journal
         assert book.store is not None
         book.current_data, book.load_count = read_production_data(book.store, "", OffsetKind.TOOL, {}), 1
-        self.watch = ToolLifeWatch(book, lambda: self.control)
+        self.watch = ToolLifeMonitor(book, lambda: self.control)
 
     def see(self, ends: int, state: MachineState = MachineState.RUN, **seconds: float) -> None:
         """A frame in which the tools have cut for so many seconds."""
         cutting = {int(name[1:]): value for name, value in seconds.items()}
-        self.watch.observe(replace(CUT, state=state, ends=ends, cutting=cutting), lambda _: None)
+        self.watch.process_snapshot(replace(CUT, state=state, ends=ends, cutting=cutting), lambda _: None)
 
     def end(self) -> None:
         """As a killed screen: what was posted is written, and nothing more."""
@@ -111,8 +111,8 @@ def test_control_in_screen_process_stores_no_totals(tmp_path: Path) -> None:
 
 
 def test_totals_are_the_same_after_they_were_stored() -> None:
-    totals = ToolTotals("control", 4, {1: 2.5, 12: 0.0}, frozenset({12}))
-    assert ToolTotals.from_setting(totals.setting_value) == totals
+    totals = ToolUseTotals("control", 4, {1: 2.5, 12: 0.0}, frozenset({12}))
+    assert ToolUseTotals.from_setting(totals.setting_value) == totals
 
 
 @pytest.mark.parametrize(
@@ -127,6 +127,6 @@ def test_totals_are_the_same_after_they_were_stored() -> None:
     ],
 )
 def test_damaged_totals_are_ignored(change: dict[str, object]) -> None:
-    plain = ToolTotals("control", 4, {1: 2.5}, frozenset({1})).setting_value
-    assert ToolTotals.from_setting(plain | change) is None
-    assert ToolTotals.from_setting(None) is None
+    plain = ToolUseTotals("control", 4, {1: 2.5}, frozenset({1})).setting_value
+    assert ToolUseTotals.from_setting(plain | change) is None
+    assert ToolUseTotals.from_setting(None) is None

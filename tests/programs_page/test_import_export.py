@@ -11,7 +11,7 @@ from app.desk.persistence import Persistence
 from app.programs import import_export
 from app.programs.atomic_files import FileOperationError
 from app.programs.import_export import TransferResult, export_programs, import_programs
-from app.programs.program_commands import complete_name, delete_program, rename_program
+from app.programs.program_commands import add_missing_extension, delete_program, rename_program
 from app.programs.removable_media import PARENT_NAME, FolderChooser, UsbStick
 from tests.programs_page.test_run_history import Kept
 from tests.texts import pattern
@@ -39,7 +39,7 @@ def test_nothing_is_copied_when_one_program_differs_at_destination(tmp_path: Pat
     own = tmp_path / "own"
     made(own, b="M00\n")
     carried = import_programs(sources, own, Keeping(), lambda _path: "", may_overwrite=False)
-    assert carried == TransferResult(different_names=("b.nc",))
+    assert carried == TransferResult(conflicting_names=("b.nc",))
     assert not (own / "a.nc").exists()
 
 
@@ -112,13 +112,13 @@ def test_a_full_stick_leaves_no_half_file(tmp_path: Path, monkeypatch: pytest.Mo
     [("part", "part.nc"), (" part ", "part.nc"), ("part.TXT", "part.TXT"), ("3.5", "3.5.nc")],
 )
 def test_missing_extension_is_added_to_name(typed: str, name: str) -> None:
-    assert complete_name(typed, Path("like.nc")) == name
+    assert add_missing_extension(typed, Path("like.nc")) == name
 
 
 @pytest.mark.parametrize("typed", ["", "  ", "a/b", "..", ".hidden", "a:b", "aux", "x" * 300])
 def test_invalid_name_is_rejected(typed: str) -> None:
     with pytest.raises(FileOperationError):
-        complete_name(typed, Path("like.nc"))
+        add_missing_extension(typed, Path("like.nc"))
 
 
 def test_rename_that_changes_only_case_is_rejected(tmp_path: Path) -> None:
@@ -141,14 +141,14 @@ def test_folder_chooser_enters_folders_and_returns_to_places(tmp_path: Path) -> 
     (tmp_path / "stick" / "jobs" / ".hidden.nc").write_text("")
     (tmp_path / "stick" / "jobs" / "photo.jpg").write_text("")
     chooser = FolderChooser(tmp_path, lambda: (UsbStick("STICK", tmp_path / "stick", 5),))
-    chooser.show_lines(chooser.list_lines())
-    assert [line.name for line in chooser.listed_lines] == ["STICK", "THIS CONTROL"]
+    chooser.show_entries(chooser.list_entries())
+    assert [line.name for line in chooser.listed_entries] == ["STICK", "THIS CONTROL"]
     for name in ("STICK", "jobs"):
-        chooser.open_line(next(line for line in chooser.listed_lines if line.name == name))
-        chooser.show_lines(chooser.list_lines())
-    assert [line.name for line in chooser.listed_lines] == [PARENT_NAME, "a.nc"]
+        chooser.open_entry(next(line for line in chooser.listed_entries if line.name == name))
+        chooser.show_entries(chooser.list_entries())
+    assert [line.name for line in chooser.listed_entries] == [PARENT_NAME, "a.nc"]
     assert [path.name for path in chooser.program_paths] == ["a.nc"]
     for _ in range(2):
-        chooser.open_line(chooser.listed_lines[0])
-        chooser.show_lines(chooser.list_lines())
+        chooser.open_entry(chooser.listed_entries[0])
+        chooser.show_entries(chooser.list_entries())
     assert chooser.current_folder is None

@@ -15,7 +15,7 @@ from app.programs.removable_media import (
     TargetMedium,
     UsbStick,
     describe_media_error,
-    list_sticks,
+    list_usb_sticks,
 )
 from tests.texts import pattern
 from tests.texts import text as wording
@@ -38,7 +38,7 @@ def listed(tmp_path: Path, *rows: tuple[str, str, str, str]) -> tuple[UsbStick, 
         blocks.mkdir(exist_ok=True)
         if not (blocks / device).exists():
             (blocks / device).symlink_to(disk / "part")
-    return list_sticks((Path("/media"), Path("/run/media")), lambda _path: True, mounts, blocks)
+    return list_usb_sticks((Path("/media"), Path("/run/media")), lambda _path: True, mounts, blocks)
 
 
 def test_mounted_removable_media_are_listed(tmp_path: Path) -> None:
@@ -65,7 +65,7 @@ def test_read_only_stick_is_marked(tmp_path: Path, options: str, of_system: str)
 
 def test_invalid_mount_lines_are_ignored(tmp_path: Path) -> None:
     (tmp_path / "mountinfo").write_text("nonsense\n1 2 3\n")
-    assert list_sticks((Path("/media"),), lambda _path: True, tmp_path / "mountinfo", tmp_path) == ()
+    assert list_usb_sticks((Path("/media"),), lambda _path: True, tmp_path / "mountinfo", tmp_path) == ()
 
 
 @pytest.mark.parametrize(
@@ -134,10 +134,10 @@ def test_chooser_reports_removed_stick(tmp_path: Path) -> None:
     place = tmp_path / "STICK"
     place.mkdir()
     chooser = FolderChooser(tmp_path, lambda: (UsbStick("STICK", place, 5, is_read_only=True),))
-    chooser.show_lines(chooser.list_lines())
-    assert chooser.listed_lines[0].is_read_only
-    chooser.open_line(chooser.listed_lines[0])
-    chooser.list_lines()
+    chooser.show_entries(chooser.list_entries())
+    assert chooser.listed_entries[0].is_read_only
+    chooser.open_entry(chooser.listed_entries[0])
+    chooser.list_entries()
     place.rmdir()
     with pytest.raises(FileOperationError, match=pattern("programs.pulled-out")):
-        chooser.list_lines()
+        chooser.list_entries()

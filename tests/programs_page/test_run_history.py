@@ -26,10 +26,10 @@ class WrittenDown(NullRunRecords):
 
     told: list[tuple[object, ...]] = field(default_factory=list)
 
-    def record_start(self, program: str) -> None:
+    def record_run_start(self, program: str) -> None:
         self.told.append(("started", program))
 
-    def record_end(self, program: str, outcome: str) -> None:
+    def record_run_end(self, program: str, outcome: str) -> None:
         self.told.append(("ended", program, outcome))
 
     def record_cycle(self, program: str, seconds: float) -> None:
@@ -58,7 +58,7 @@ def told(*snapshots: Snapshot) -> list[tuple[object, ...]]:
     keep = Kept()
     record = RunHistory(keep)
     for snapshot in snapshots:
-        record.observe(snapshot, NO_PROGRAM)
+        record.process_snapshot(snapshot, NO_PROGRAM)
     return keep.told
 
 
@@ -130,8 +130,8 @@ def test_proof_is_recorded_once() -> None:
         LoadingPhase.READY, Path("pin.nc"), source=ProgramSource("pin.nc", "M30\n"), proof=proof
     )
     for _ in range(3):
-        record.observe(READY, loaded)
-    record.observe(
+        record.process_snapshot(READY, loaded)
+    record.process_snapshot(
         READY, LoadedProgram(LoadingPhase.UNREADABLE, Path("pin.nc"), error_text="gone")
     )  # has no text to belong to
     assert keep.told == [("proved", "pin.nc", "PROVED", 9.5, "M30\n")]
@@ -139,12 +139,12 @@ def test_proof_is_recorded_once() -> None:
 
 def test_failed_store_does_not_stop_run_history() -> None:
     class Broken(WrittenDown):
-        def record_start(self, program: str) -> None:
+        def record_run_start(self, program: str) -> None:
             raise StoreError(f"the disk is full: {program}")
 
     record = RunHistory(Kept(records=Broken()))
     for snapshot in (READY, RUNNING, READY):
-        record.observe(snapshot, NO_PROGRAM)
+        record.process_snapshot(snapshot, NO_PROGRAM)
     assert record.running_program == ""
 
 

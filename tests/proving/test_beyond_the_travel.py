@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import ProgramSource
 from core.proving.prove_program import MAX_FINDINGS, prove
@@ -17,7 +17,7 @@ HEAD = ("G90G94F300", "T1", "X.5Z.1")
 def beyond(count: int) -> list[int]:
     """The lines that are refused when so many moves, from line 4 on, go beyond Z-6, where the travel ends."""
     moves = [f"Z-{7 + k / 1000:.3f}" for k in range(count)]
-    setup = create_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     report = prove(ProgramSource("A", "\n".join((*HEAD, *moves, "Z.1", "M30", ""))), setup, MACHINE)
     return [each.line for each in report.errors if each.code == "soft-limit"]
 

@@ -9,7 +9,7 @@ from types import ModuleType
 
 from core.proving.checks import cut_checks, edge_checks, part_findings, thread_checks
 from core.proving.checks.part_checks import PART_CHECKS, PROGRAM_CHECKS
-from core.proving.checks_page import main, render_page
+from core.proving.checks_page import main, render_checks_page
 
 MODULES = (part_findings, cut_checks, cut_checks, edge_checks, thread_checks)
 ROOT = Path(__file__).parents[2]
@@ -17,9 +17,9 @@ ROOT = Path(__file__).parents[2]
 
 def test_checks_page_matches_table(tmp_path: Path) -> None:
     """python -m core.proving.checks_page docs/checks.md"""
-    assert (ROOT / "docs/checks.md").read_text(encoding="utf-8") == render_page()
+    assert (ROOT / "docs/checks.md").read_text(encoding="utf-8") == render_checks_page()
     assert main([str(tmp_path / "checks.md")]) == 0
-    assert (tmp_path / "checks.md").read_text(encoding="utf-8") == render_page()
+    assert (tmp_path / "checks.md").read_text(encoding="utf-8") == render_checks_page()
 
 
 def test_checks_table_lists_exactly_the_reported_checks() -> None:
@@ -44,7 +44,7 @@ PROMISED = (
 
 
 def test_every_check_that_is_promised_is_on_the_page() -> None:
-    assert [name for name in PROMISED.split() if f"**{name}** (" not in render_page()] == []
+    assert [name for name in PROMISED.split() if f"**{name}** (" not in render_checks_page()] == []
 
 
 def test_every_check_has_a_program_that_triggers_it() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.part.stock import Clamping, make_bar, make_tube
+from core.part.stock import Clamping, make_bar_stock, make_tube_stock
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving.checks.cut_checks import find_max_depth
 from tests.proving.test_edge_checks import part_of
@@ -50,14 +50,14 @@ def test_depth_of_cut_of_cnmg432_is_checked(
     r: str, expected: list[tuple[str, int]], metric: bool, diameter: bool
 ) -> None:
     program = text(PASS.format(r=r), metric=metric, diameter=diameter)
-    part = part_of(program, make_bar(25.4, 0.0, -60.0), {1: CNMG})
+    part = part_of(program, make_bar_stock(25.4, 0.0, -60.0), {1: CNMG})
     assert [(each.check_name, each.line) for each in part.findings] == expected
 
 
 def test_assumed_tool_is_checked_as_cnmg432_and_named() -> None:
-    (found,) = part_of(text(PASS.format(r=".25")), make_bar(25.4, 0.0, -60.0), {}).findings
+    (found,) = part_of(text(PASS.format(r=".25")), make_bar_stock(25.4, 0.0, -60.0), {}).findings
     assert (found.check_name, found.severity, found.assumptions) == ("depth-of-cut", "warning", ("T1",))
-    assert part_of(text(PASS.format(r=".27")), make_bar(25.4, 0.0, -60.0), {}).findings == ()
+    assert part_of(text(PASS.format(r=".27")), make_bar_stock(25.4, 0.0, -60.0), {}).findings == ()
 
 
 def test_depth_of_cut_is_not_checked_with_assumed_stock() -> None:
@@ -70,7 +70,7 @@ def test_depth_of_cut_is_not_checked_with_assumed_stock() -> None:
 def test_a_boring_bar_cuts_half_its_diameter_at_most(r: str, expected: list[tuple[str, int]]) -> None:
     """A bore of r 10 mm and a bar of 6 mm: .52 in are 3.21 mm deep, .5 in 2.7 mm."""
     program = text(f"T1\nX[.35]Z[.1]\nX[{r}]\nG95F[.003]Z[-.4]\nX[.35]\nG94F[300]Z[1]")
-    part = part_of(program, make_tube(38.1, 20.0, 0.0, -60.0), {1: BORER})
+    part = part_of(program, make_tube_stock(38.1, 20.0, 0.0, -60.0), {1: BORER})
     assert [(each.check_name, each.line) for each in part.findings] == expected
 
 
@@ -85,7 +85,7 @@ GROOVE = "T1\nX[.6]Z[-.5]\nG95F[.002]X[.4]\nX[.6]\nX[{r}]\nZ[-.3]\nX[.6]\nG94F[3
     ],
 )  # fmt: skip
 def test_side_cut_with_blade_is_checked(tool: ToolShape, r: str, expected: list[tuple[str, int]]) -> None:
-    part = part_of(text(GROOVE.format(r=r)), make_bar(25.4, 0.0, -60.0), {1: tool})
+    part = part_of(text(GROOVE.format(r=r)), make_bar_stock(25.4, 0.0, -60.0), {1: tool})
     assert [(each.check_name, each.line) for each in part.findings] == expected
 
 
@@ -93,19 +93,19 @@ def test_side_cut_with_blade_is_checked(tool: ToolShape, r: str, expected: list[
 def test_blade_may_finish_wall_of_its_groove(tool: ToolShape) -> None:
     """From a plunge of 2 mm to .05 in: .05 in of a wall .1 in high are left, less than the blade is wide."""
     wall = "T1\nX[.6]Z[-.5]\nG95F[.002]X[.4]\nZ[-.45]\nX[.6]\nG94F[300]Z[1]"
-    assert part_of(text(wall), make_bar(25.4, 0.0, -60.0), {1: tool}).findings == ()
+    assert part_of(text(wall), make_bar_stock(25.4, 0.0, -60.0), {1: tool}).findings == ()
 
 
 def test_depth_of_pass_into_shoulder_is_its_average() -> None:
     """.02 in deep over .5 in, and .3 in of a shoulder for the last .01 in: .026 in on the average."""
     steps = "T1\nX[.6]Z[.05]\nX[.35]\nG95F[.006]Z[-.49]\nX[.6]\nG94F[300]Z[.05]\nX[.2]\n"
     steps += "G95F[.006]Z[-.49]\nX[.6]\nG94F[300]Z[.05]\nX[.18]\nG95F[.004]Z[-.5]\nX[.6]\nG94F[300]Z[1]"
-    assert part_of(text(steps), make_bar(25.4, 0.0, -60.0), {1: CNMG}).findings == ()
+    assert part_of(text(steps), make_bar_stock(25.4, 0.0, -60.0), {1: CNMG}).findings == ()
 
 
 def test_a_blade_may_chamfer() -> None:
     chamfer = "T1\nX[.6]Z[-.5]\nG95F[.002]X[.4]\nX[.55]\nZ[-.4]\nX[.5]\nX[.46]Z[-.44]\nX[.6]\nG94F[300]Z[1]"
-    part = part_of(text(chamfer), make_bar(25.4, 0.0, -60.0), {1: BLADE})
+    part = part_of(text(chamfer), make_bar_stock(25.4, 0.0, -60.0), {1: BLADE})
     assert part.findings == ()
 
 
@@ -123,7 +123,7 @@ def test_a_blade_may_chamfer() -> None:
 def test_blade_next_to_chuck_is_checked(z: str, expected: set[str]) -> None:
     program = text(f"T1\nX[1.5]Z[.1]\nZ[{z}]\nX[.6]\nG95F[.002]X[.4]\nX[.6]\nG94F[300]X[1.5]\nZ[1]")
     held = Clamping(100.0, 40.0, 0.0, 60.0)
-    part = part_of(program, make_bar(25.4, 0.0, -80.0), {1: BLADE}, held)
+    part = part_of(program, make_bar_stock(25.4, 0.0, -80.0), {1: BLADE}, held)
     assert {each.check_name for each in part.findings} == expected
 
 
@@ -131,6 +131,6 @@ def test_cross_hole_through_both_walls_has_no_finding() -> None:
     """A live drill across a tube, from X.5 to X-.5: nothing is found."""
     live = ToolShape(ToolKind.DRILL, tip=8, diameter=3.0, point=118.0, length=40.0)
     program = "G90G94F300G73\nT1\nX.7Z.1\nM19\nG04F1\nM15\nZ-.4\nF3X-.45\nF300X.7\nZ1\nM16\nM05\nM30\n"
-    part = part_of(program, make_tube(19.05, 12.7, 0.0, -60.0), {1: live})
+    part = part_of(program, make_tube_stock(19.05, 12.7, 0.0, -60.0), {1: live})
     assert [each.check_name for each in part.findings] == []
     assert part.removed_volume_mm3 > 0.0

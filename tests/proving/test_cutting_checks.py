@@ -10,7 +10,7 @@ import pytest
 
 from app.cli.main import main
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
@@ -27,7 +27,7 @@ def proved(*lines: str, machine: Machine | None = None) -> ProofReport:
     tools = {n: ToolOffset() for n in range(1, 9)}
     return prove(
         ProgramSource("A", "\n".join((*lines, ""))),
-        create_setup(machine, tool_offsets=tools, secondary_offsets={}),
+        create_power_up_setup(machine, tool_offsets=tools, secondary_offsets={}),
         machine,
     )
 
@@ -112,7 +112,7 @@ def test_finding_names_first_block_and_remedy() -> None:
 
 def test_live_tool_check_is_skipped_without_live_tool_output() -> None:
     machine = load_machine(None)
-    without = replace(machine, m_codes={25: ("catcher", True), 26: ("catcher", False)})
+    without = replace(machine, m_code_outputs={25: ("catcher", True), 26: ("catcher", False)})
     assert checks(proved(*MILL, "(~PLXC)", "(X.25Y0)", "(END)", "M30", machine=without)) == []
 
 

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Dialect, ProgramSource
 from core.motion.section_plans import SectionPlan
@@ -19,7 +19,7 @@ from core.proving.prove_program import prove
 from tests.motion.test_section_plans import list_values
 
 MACHINE = load_machine()
-SETUP = create_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+SETUP = create_power_up_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={})
 Values = list[object]
 
 
@@ -57,9 +57,15 @@ def read_spans(text: str, dialect: Dialect = Dialect.OMNITURN) -> tuple[Values, 
     found: Values = []
     for span in timeline.iter_spans():
         if isinstance(span, MotionSpan):
-            found += list_values(span.chunk.profile)
-            found.append((span.start_time_s, span.chunk.start_time_s, span.chunk.block_numbers.tolist()))
-            found += [span.chunk.block_starts_s.tolist(), span.chunk.block_ends_s.tolist()]
+            found += list_values(span.planned_chunk.profile)
+            found.append(
+                (
+                    span.start_time_s,
+                    span.planned_chunk.start_time_s,
+                    span.planned_chunk.block_numbers.tolist(),
+                )
+            )
+            found += [span.planned_chunk.block_starts_s.tolist(), span.planned_chunk.block_ends_s.tolist()]
             found.append([(block.n, block.line, block.text) for block in span.blocks])
         else:
             found.append((span.start_time_s, span.end_time_s, span.block and span.block.n))

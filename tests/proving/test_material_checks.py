@@ -7,15 +7,15 @@ from dataclasses import replace
 
 import pytest
 
-from core.part.stock import Stock, make_bar, make_tube
-from core.part.tool_shape import Hand, ToolKind, ToolShape
+from core.part.stock import Stock, make_bar_stock, make_tube_stock
+from core.part.tool_shape import ToolHand, ToolKind, ToolShape
 from tests.proving.test_edge_checks import part_of
 from tests.proving.test_part_proof import text
 
 INCH = 25.4
-ROD, PIPE = make_bar(25.4, 0.0, -76.2), make_tube(25.4, 12.0, 0.0, -76.2)
+ROD, PIPE = make_bar_stock(25.4, 0.0, -76.2), make_tube_stock(25.4, 12.0, 0.0, -76.2)
 TURNING = ToolShape(ToolKind.TURNING, tip=3, nose_radius=0.8, insert="CNMG120408")
-LEFT = ToolShape(ToolKind.TURNING, Hand.LEFT, tip=4, nose_radius=0.8, insert="CNMG120408")
+LEFT = ToolShape(ToolKind.TURNING, ToolHand.LEFT, tip=4, nose_radius=0.8, insert="CNMG120408")
 REAR = ToolShape(ToolKind.TURNING, tip=2, nose_radius=0.8, insert="CNMG120408", rear=True)
 BLADE = ToolShape(ToolKind.PARTING, tip=3, width=2.0, length=7.6)
 LONG_BLADE = ToolShape(ToolKind.PARTING, tip=3, width=2.0, length=15.0)
@@ -133,7 +133,7 @@ SOUND = "T{t}\nX[.3]Z[.2]\nM03S600\nX[.237]\nG33X[.212]Z[-.5]I[.012]K[.05]P\nX[.
 
 def test_thread_return_through_part_is_an_error_and_pullout_is_not() -> None:
     """With start and end swapped each pass retracts towards the axis, and returns through the part."""
-    stock = make_bar(12.55, 0.0, -60.0)
+    stock = make_bar_stock(12.55, 0.0, -60.0)
     v = {1: ToolShape(ToolKind.THREADING, tip=8, point=60.0)}
     assert ("through-part", "error") in found(text(SWAPPED.format(t=1)), stock, v)
     assert found(text(SOUND.format(t=1)), stock, v) == []

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from core.part.cutter import CutSide, Cutter
-from core.part.stock import make_bar, make_tube
+from core.part.stock import make_bar_stock, make_tube_stock
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import TurnedPart
 from core.proving.milling import MillingState, MillMove
@@ -24,7 +24,7 @@ def cross_hole(milling: MillingState, z: float) -> float:
 
 
 def test_turning_after_milling_leaves_milled_hole_volume() -> None:
-    part = TurnedPart(make_bar(30.0, 0.0, -40.0))
+    part = TurnedPart(make_bar_stock(30.0, 0.0, -40.0))
     milling = MillingState(part)
     hole = cross_hole(milling, -30.0)
     assert hole == pytest.approx(math.pi * 4.0 * 15.0, rel=0.02)  # but for the round of the bar
@@ -33,7 +33,7 @@ def test_turning_after_milling_leaves_milled_hole_volume() -> None:
 
 
 def test_a_face_groove_after_milling_leaves_its_core_and_its_ring() -> None:
-    part = TurnedPart(make_bar(30.0, 0.0, -40.0))
+    part = TurnedPart(make_bar_stock(30.0, 0.0, -40.0))
     milling = MillingState(part)
     hole = cross_hole(milling, -30.0)
     tool = Cutter([np.array([[0.0, 0.0], [0.0, 3.0], [20.0, 3.0], [20.0, 0.0]])], [], CutSide.FACE)
@@ -44,7 +44,7 @@ def test_a_face_groove_after_milling_leaves_its_core_and_its_ring() -> None:
 
 
 def test_boring_after_milling_can_remove_whole_part() -> None:
-    part = TurnedPart(make_tube(30.0, 10.0, 0.0, -40.0))
+    part = TurnedPart(make_tube_stock(30.0, 10.0, 0.0, -40.0))
     milling = MillingState(part)
     cross_hole(milling, -30.0)
     borer = np.array([[0.0, 0.0], [0.0, -6.0], [30.0, -6.0], [30.0, 0.0]])

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
-from app.compose.stored_offsets import read_offsets
-from core.interpreter.shared.job_setup import SecondaryOffset, Setup
+from app.compose.machine.machine_setup import create_power_up_setup
+from app.compose.stored_offsets import read_offsets_file
+from core.interpreter.shared.job_setup import InterpreterSetup, SecondaryOffset
 from core.language.source import ProgramSource, load_source
 from core.proving.program_timeline import Timeline, iter_timed_series
 from core.proving.prove_program import prove
@@ -27,7 +27,7 @@ R = 0.015 * 25.4
 NOSE = {n: SecondaryOffset(-R, -R, R) for n in (1, 2, 3, 4)}
 
 
-def ends(source: ProgramSource, setup: Setup) -> tuple[float, float, float]:
+def ends(source: ProgramSource, setup: InterpreterSetup) -> tuple[float, float, float]:
     """Cycle time of the proof, last time of the trace, and end of the timeline that is drawn."""
     shown = Timeline.from_program(source, setup, MACHINE)
     for _ in iter_timed_series(shown):
@@ -35,10 +35,10 @@ def ends(source: ProgramSource, setup: Setup) -> tuple[float, float, float]:
     last = 0.0
     for rows in iter_setpoints(Timeline.from_program(source, setup, MACHINE), DT):
         last = float(rows.times_s[-1]) if len(rows.times_s) else last
-    return prove(source, setup, MACHINE).times.cycle_s, last, shown.time_s
+    return prove(source, setup, MACHINE).program_times.cycle_time_s, last, shown.time_s
 
 
-def check(source: ProgramSource, setup: Setup) -> None:
+def check(source: ProgramSource, setup: InterpreterSetup) -> None:
     proof, trace, shown = ends(source, setup)
     assert shown == pytest.approx(proof, abs=1e-6)
     assert proof - 1e-6 <= trace <= proof + DT + 1e-6
@@ -55,13 +55,13 @@ GOLDEN = [
 @pytest.mark.skipif(not WORKED, reason="the worked examples are not at hand")
 @pytest.mark.parametrize("path", WORKED, ids=lambda path: path.stem)
 def test_forecasts_agree_for_worked_examples(path: Path) -> None:
-    check(load_source(path), create_setup(MACHINE, tool_offsets=ALL_TOOLS, secondary_offsets=NOSE))
+    check(load_source(path), create_power_up_setup(MACHINE, tool_offsets=ALL_TOOLS, secondary_offsets=NOSE))
 
 
 @pytest.mark.parametrize("path", sorted(SAMPLES.glob("*.nc")), ids=lambda path: path.stem)
 def test_forecasts_agree_for_samples(path: Path) -> None:
-    tools, secondary, *_ = read_offsets(SAMPLES / "offsets.toml")
-    check(load_source(path), create_setup(MACHINE, tool_offsets=tools, secondary_offsets=secondary))
+    tools, secondary, *_ = read_offsets_file(SAMPLES / "offsets.toml")
+    check(load_source(path), create_power_up_setup(MACHINE, tool_offsets=tools, secondary_offsets=secondary))
 
 
 @pytest.mark.parametrize("path", GOLDEN, ids=lambda path: path.stem)
@@ -77,7 +77,7 @@ def test_forecasts_agree_on_wait_for_speed_after_css() -> None:
     lines = ("G90G94F300", "M03S1500", "T1", "X.25Z.2", *css, "T2", "X0Z.2", "G95F.003Z-.5", "M30", "")
     source, setup = (
         ProgramSource("A", "\n".join(lines)),
-        create_setup(MACHINE, tool_offsets=ALL_TOOLS, secondary_offsets={}),
+        create_power_up_setup(MACHINE, tool_offsets=ALL_TOOLS, secondary_offsets={}),
     )
     proof, trace, _ = ends(source, setup)
     assert proof <= trace <= proof + DT

@@ -8,13 +8,19 @@ import pickle
 import pytest
 
 from app.compose.machine.machine_files import load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import ProgramSource
 from core.proving.proof_pass import find_modulo_angle_range
 from core.proving.proof_report import ProofReport
 from core.proving.prove_program import prove
-from core.tool_edges import FIRST_NAMED_TOOL, NamedTool, format_edge_name, get_tool_number, make_row_number
+from core.tool_edges import (
+    FIRST_NAMED_TOOL,
+    NamedToolNumber,
+    format_edge_name,
+    get_tool_number,
+    make_edge_row_number,
+)
 
 LATHE, MILL = load_shipped_machine("sinumerik-modulo"), load_shipped_machine("ac-table-mill")
 
@@ -23,7 +29,9 @@ def turned(text: str) -> ProofReport:
     """The proof of a SINUMERIK program with T1."""
     tools = {1: ToolOffset()}
     return prove(
-        ProgramSource("a.mpf", text), create_setup(LATHE, tool_offsets=tools, secondary_offsets={}), LATHE
+        ProgramSource("a.mpf", text),
+        create_power_up_setup(LATHE, tool_offsets=tools, secondary_offsets={}),
+        LATHE,
     )
 
 
@@ -32,7 +40,9 @@ def milled(text: str) -> ProofReport:
     tools = {1: ToolOffset()}
     whole = f"BEGIN PGM A MM\n{text}\nEND PGM A MM\n"
     return prove(
-        ProgramSource("a.h", whole), create_setup(MILL, tool_offsets=tools, secondary_offsets={}), MILL
+        ProgramSource("a.h", whole),
+        create_power_up_setup(MILL, tool_offsets=tools, secondary_offsets={}),
+        MILL,
     )
 
 
@@ -79,7 +89,7 @@ def test_milled_cut_without_tool_is_reported(text: str, told: list[tuple[int, st
     ],
 )
 def test_missing_m3_is_reported(text: str, told: list[tuple[int, str]]) -> None:
-    around = create_setup(LATHE, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    around = create_power_up_setup(LATHE, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     report = prove(ProgramSource("a.mpf", text), around, LATHE)
     assert found(report, "spindle-off") == told
 
@@ -88,15 +98,15 @@ def test_named_tool_is_shown_by_name() -> None:
     """Beyond copies, processes and edges: it is shown as the program writes it."""
     report = turned(f'T="Rough er" D1\nS1000 M3\n{CUT}')
     assert [format_edge_name(each) for each in report.tool_numbers] == ['T="Rough er"']
-    tool = NamedTool(FIRST_NAMED_TOOL, "ROUGH")
+    tool = NamedToolNumber(FIRST_NAMED_TOOL, "ROUGH")
     for same in (
         copy.deepcopy(tool),
         pickle.loads(pickle.dumps(tool)),
-        get_tool_number(make_row_number(tool, 2)),
+        get_tool_number(make_edge_row_number(tool, 2)),
     ):
         assert (same, format_edge_name(same)) == (FIRST_NAMED_TOOL, 'T="ROUGH"')
-    assert format_edge_name(make_row_number(tool, 2)) == 'T="ROUGH" D2'
-    assert (format_edge_name(3), format_edge_name(make_row_number(3, 2))) == ("T3", "T3 D2")
+    assert format_edge_name(make_edge_row_number(tool, 2)) == 'T="ROUGH" D2'
+    assert (format_edge_name(3), format_edge_name(make_edge_row_number(3, 2))) == ("T3", "T3 D2")
 
 
 @pytest.mark.parametrize(
@@ -121,7 +131,7 @@ def test_modulo_axes_are_reported_within_their_range() -> None:
         0.0,
         360.0,
     )
-    assert turned("T1 D1\nG0 X30 Z2\nG0 C=IC(-400)").ranges.c_range == (0.0, 360.0)
+    assert turned("T1 D1\nG0 X30 Z2\nG0 C=IC(-400)").program_ranges.c_range == (0.0, 360.0)
 
 
 @pytest.mark.parametrize(("text", "named"), [("T1 D1\nG0 X40 Z-9000", False)])

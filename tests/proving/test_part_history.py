@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import ProgramSource
-from core.part.solid_bodies import RoundAxis
-from core.part.stock import Clamping, make_bar
+from core.part.solid_bodies import SymmetryAxis
+from core.part.stock import Clamping, make_bar_stock
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving import part_history, part_instant
 from core.proving.part_history import PartHistory, ProgramSteps, StepCollector, find_polyline_fraction
-from core.proving.part_instant import PartInstant
+from core.proving.part_instant import PartState
 from core.proving.part_simulation import PartSimulation
 from core.proving.program_tools import PartSettings, ProgramTools
 from core.proving.prove_program import prove
@@ -26,7 +26,7 @@ from core.proving.tip_moves import LiveToolStep
 INCH = 25.4
 TURNING = ToolShape(ToolKind.TURNING, tip=3, nose_radius=0.0, insert="DCMT11T304")
 BLADE = ToolShape(ToolKind.PARTING, tip=3, width=2.0, stick_out=30.0)
-SETTING = PartSettings(make_bar(INCH, 0.0, -2.0 * INCH), {1: TURNING, 2: BLADE})
+SETTING = PartSettings(make_bar_stock(INCH, 0.0, -2.0 * INCH), {1: TURNING, 2: BLADE})
 HEAD = "G90G94F300\nM03S1500\nT1\n"
 SHAFT = HEAD + "X.6Z.05\nX.4\nG95F.004Z-.5\nX.45Z-.6\nX.55\nG94F300Z.05\nX.3\nG95F.004Z-.3\nX.55\nM30\n"
 RAPID = SHAFT.replace("G95F.004Z-.3", "G00Z-.3")
@@ -34,7 +34,9 @@ RAPID = SHAFT.replace("G95F.004Z-.3", "G00Z-.3")
 
 def moves(text: str, setting: PartSettings = SETTING) -> ProgramSteps | None:
     tools = {n: ToolOffset(-12.7, -50.8) for n in range(1, 4)}
-    setup = create_setup(load_machine(None), tool_offsets=tools, secondary_offsets={1: SecondaryOffset()})
+    setup = create_power_up_setup(
+        load_machine(None), tool_offsets=tools, secondary_offsets={1: SecondaryOffset()}
+    )
     gathered = StepCollector(setting)
     prove(ProgramSource("PART", text), setup, load_machine(None), on_span=gathered.add_span)
     return gathered.make_program_steps()
@@ -95,7 +97,7 @@ def test_shown_instant_is_not_changed_by_later_steps() -> None:
 
 def test_rapid_into_material_has_its_position() -> None:
     seen = history(RAPID)
-    (hit,) = seen.at(len(seen.steps)).hits
+    (hit,) = seen.at(len(seen.steps)).material_hits
     assert (hit.finding.check_name, hit.finding.line) == ("rapid-into-stock", 11)
     # from the face to Z-.3, between the radius of the rapid and that of the cut before
     assert hit.z_positions.max() == pytest.approx(0.0, abs=0.01)
@@ -109,13 +111,13 @@ def test_rapid_into_material_has_its_position() -> None:
 def test_collision_is_not_shown_before_it_happens() -> None:
     seen = history(RAPID)
     seen.at(len(seen.steps))
-    assert seen.at(4).hits == ()
+    assert seen.at(4).material_hits == ()
     assert seen.at(4).findings == ()
 
 
 def test_valid_program_has_no_collisions() -> None:
     seen = history(SHAFT)
-    assert seen.at(len(seen.steps)).hits == ()
+    assert seen.at(len(seen.steps)).material_hits == ()
 
 
 def test_parted_piece_is_removed() -> None:
@@ -202,7 +204,7 @@ def test_polyline_fraction_follows_corner() -> None:
 
 
 MILL = PartSettings(
-    make_bar(INCH, 0.0, -60.0),
+    make_bar_stock(INCH, 0.0, -60.0),
     {1: TURNING, 6: ToolShape(ToolKind.END_MILL, tip=8, diameter=6.0, length=15.0)},
 )
 MILLED = HEAD + (
@@ -244,7 +246,7 @@ def test_half_executed_milling_move_has_tool_halfway() -> None:
     assert instant.tool.control_point == pytest.approx((-0.6 * INCH, 0.4 * INCH))
 
 
-def depth_at(seen: PartHistory, instant: PartInstant, z: float) -> float:
+def depth_at(seen: PartHistory, instant: PartState, z: float) -> float:
     """The greatest radius on the side of the mill, inches."""
     assert instant.x_plus_half is not None
     assert instant.x_minus_half is not None
@@ -282,13 +284,13 @@ def test_milled_material_is_removed_along_block() -> None:
 def test_live_tool_collision_in_rapid_has_its_position() -> None:
     seen = history(MILLED.replace("G94F4X.4", "G94F300X.4"), MILL)
     instant = seen.at(len(seen.steps))
-    hit, along = instant.hits
+    hit, along = instant.material_hits
     assert (hit.finding.code, hit.finding.line, along.finding.line) == ("rapid-into-stock", 15, 16)
     radius = 3.0 / INCH  # of the mill
     back, front = hit.z_positions[0] - hit.column_width_mm / 2, hit.z_positions[0] + hit.column_width_mm / 2
     assert (back / INCH, front / INCH) == pytest.approx((-0.4 - radius, -0.4 + radius), abs=0.01)
     assert (hit.inner_radii[0] / INCH, hit.outer_radii[0] / INCH) == pytest.approx((0.4, 0.5), abs=0.01)
-    assert history(MILLED, MILL).at(len(seen.steps)).hits == ()
+    assert history(MILLED, MILL).at(len(seen.steps)).material_hits == ()
 
 
 def test_copies_of_milled_part_share_unchanged_columns(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -298,8 +300,10 @@ def test_copies_of_milled_part_share_unchanged_columns(monkeypatch: pytest.Monke
     kept = [field for _, field, _ in seen._kept._copies.values() if field is not None]
     assert len(kept) > 3
     one, other = kept[-2:]  # between them the tool goes away
-    assert all(a is b for a, b in zip(one.columns.values(), other.columns.values(), strict=True))
-    alone = sum(column.nbytes for column in kept[-1].columns.values())
+    assert all(
+        a is b for a, b in zip(one.radii_by_column.values(), other.radii_by_column.values(), strict=True)
+    )
+    alone = sum(column.nbytes for column in kept[-1].radii_by_column.values())
     assert seen._kept._total_bytes < 2.0 * alone + sum(m.nbytes for m, _, _ in seen._kept._copies.values())
 
 
@@ -311,7 +315,7 @@ def test_scene_has_tool_and_chuck_around_part() -> None:
     assert around.chuck.max_radius_mm == 20.0
     assert float(around.chuck.column_edges[-1]) == -30.0
     assert around.tool is not None
-    assert around.tool.round_axis is RoundAxis.X
+    assert around.tool.symmetry_axis is SymmetryAxis.X
     assert history(MILLED, MILL).make_scene_at(instant).chuck is None
 
 
@@ -335,7 +339,7 @@ def test_chuck_collision_is_red_on_chuck_and_not_on_part() -> None:
     """The jaws' face stands at Z-10 mm, .394 in; T1 turns on to Z-.5."""
     held = Clamping(60.0, 10.0, 5.0, 40.0)
     seen = history(SHAFT, replace(SETTING, clamping=held))
-    hits = {hit.finding.check_name: hit for hit in seen.at(len(seen.steps)).hits}
+    hits = {hit.finding.check_name: hit for hit in seen.at(len(seen.steps)).material_hits}
     hit = hits["into-chuck"]
     assert hit.z_positions.max() == pytest.approx(-10.0, abs=0.1)
     assert hit.z_positions.min() < -12.0

@@ -12,15 +12,15 @@ import re
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
-from app.compose.part_data import read_known_part
+from app.compose.machine.machine_setup import create_power_up_setup
+from app.compose.part_data import make_part_settings
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import ProgramSource
-from core.part.stock import Clamping, Stock, make_bar, make_tube
+from core.part.stock import Clamping, Stock, make_bar_stock, make_tube_stock
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving import part_proof
 from core.proving.assumed_tools import parse_edge_width
-from core.proving.part_proof import prove_with_part
+from core.proving.part_proof import prove_program_and_part
 from core.proving.program_tools import PartSettings
 from core.proving.proof_report import PartReport, ProofReport
 from tests.texts import shows
@@ -54,11 +54,11 @@ def proved(
 ) -> tuple[ProofReport, PartReport]:
     machine = load_machine(None)
     tools = {n: ToolOffset(-12.7, -50.8) for n in range(1, 12)}
-    setup = create_setup(
+    setup = create_power_up_setup(
         machine, tool_offsets=tools, secondary_offsets={1: SecondaryOffset(-0.381, -0.381, 0.381)}
     )
     setting = PartSettings(stock, TOOLS if shapes is None else shapes)
-    report, part = prove_with_part(ProgramSource("PART", program), setup, machine, setting)
+    report, part = prove_program_and_part(ProgramSource("PART", program), setup, machine, setting)
     assert part is not None
     return report, part
 
@@ -78,7 +78,7 @@ X[.55]
 G94F[300]X[.6]
 Z[1]"""
 
-BAR = make_bar(2 * 0.5 * INCH, 0.02 * INCH, -2.0 * INCH)
+BAR = make_bar_stock(2 * 0.5 * INCH, 0.02 * INCH, -2.0 * INCH)
 
 CASES = {
     # G00 left on
@@ -110,17 +110,17 @@ CASES = {
     "part-off-unsupported": (
         "T2\nX[.6]Z[.1]\nZ[-1.9]\nG95F[.002]X[-.01]\nG94F[300]X[.6]",
         "T2\nX[.6]Z[.1]\nZ[-.9]\nG95F[.002]X[-.01]\nG94F[300]X[.6]",
-        make_bar(8.0, 0.0, -2.5 * INCH), 6,
+        make_bar_stock(8.0, 0.0, -2.5 * INCH), 6,
     ),
     # a bar of 8 mm does not go into a bore of 7
     "holder-into-stock": (
         "T4\nX[.137]Z[.1]\nZ[-.4]\nM00\nX[.13]\nZ[1]", "T4\nX[.2]Z[.1]\nZ[-.4]\nM00\nX[.19]\nZ[1]",
-        make_tube(25.4, 7.0, 0.0, -50.0), 5,
+        make_tube_stock(25.4, 7.0, 0.0, -50.0), 5,
     ),
     "feed-into-holder": (
         "T4\nX[.142]Z[.1]\nG95F[.002]Z[-.4]\nX[.13]\nG94F[300]Z[1]",
         "T4\nX[.24]Z[.1]\nG95F[.002]Z[-.4]\nX[.22]\nG94F[300]Z[1]",
-        make_tube(25.4, 7.0, 0.0, -50.0), 5,
+        make_tube_stock(25.4, 7.0, 0.0, -50.0), 5,
     ),
 }  # fmt: skip
 
@@ -129,7 +129,7 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_check_finds_its_error_and_accepts_valid_program(name: str, metric: bool, diameter: bool) -> None:
     wrong, sound, stock, line = CASES[name]
-    stock_of_twin = make_tube(25.4, 11.0, 0.0, -50.0) if "holder" in name else stock
+    stock_of_twin = make_tube_stock(25.4, 11.0, 0.0, -50.0) if "holder" in name else stock
     _, part = proved(text(wrong, metric=metric, diameter=diameter), stock)
     assert (name.split(maxsplit=1)[0], line) in checks(part)
     report, part = proved(text(sound, metric=metric, diameter=diameter), stock_of_twin)
@@ -169,7 +169,7 @@ def test_removed_volume_is_calculated() -> None:
 
 def test_looped_parts_are_parted_off_one_by_one() -> None:
     loop = "LS3\nT2\nX[.3]Z[.1]\nZ[-.4]\nG95F[.002]X[-.01]\nG94F[300]X[.3]\nG10X0Z[-.4]\nLF"
-    _, part = proved(text(loop), make_bar(10.0, 0.0, -60.0))
+    _, part = proved(text(loop), make_bar_stock(10.0, 0.0, -60.0))
     each = math.pi * 25.0 * (0.4 * INCH - 2.0)
     assert [piece.volume_mm3 for piece in part.parted_pieces] == [pytest.approx(each, rel=2e-3)] * 3
     assert checks(part) == []
@@ -186,7 +186,7 @@ def test_fed_bar_starts_again_at_bar_stop() -> None:
 
 def test_tool_comment_overrides_guess_from_moves() -> None:
     drilled = "T7(1/4 DRILL)\nX[0]Z[.1]\nG95F[.004]Z[-.5]\nG94F[300]Z[1]"
-    _, part = proved(text(drilled), make_bar(20.0, 0.0, -40.0), {})
+    _, part = proved(text(drilled), make_bar_stock(20.0, 0.0, -40.0), {})
     by_comment = text_of("findings.by-its-comment")
     assert part.assumptions == (
         text_of("findings.treated-as", tool="T7", kind="a drill, 0.250 in", why=by_comment),
@@ -203,12 +203,12 @@ def test_worked_example_causes_no_false_finding(example: str) -> None:
     machine = load_machine(None)
     d = (-0.381, -0.381, 0.381)
     tools = {n: ToolOffset() for n in range(1, 33)}
-    setup = create_setup(
+    setup = create_power_up_setup(
         machine, tool_offsets=tools, secondary_offsets={n: SecondaryOffset(*d) for n in (1,)}
     )
     source = ProgramSource(example, worked(example).read_text(encoding="latin-1"))
-    _, part = prove_with_part(
-        source, setup, machine, PartSettings(drives=read_known_part(machine, {}, {}).drives)
+    _, part = prove_program_and_part(
+        source, setup, machine, PartSettings(drives=make_part_settings(machine, {}, {}).drives)
     )
     assert part is not None
     assert checks(part) == []
@@ -216,9 +216,9 @@ def test_worked_example_causes_no_false_finding(example: str) -> None:
 
 def test_six_flats_of_a_worked_example_have_their_volume() -> None:
     machine = load_machine(None)
-    setup = create_setup(machine, tool_offsets={21: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(machine, tool_offsets={21: ToolOffset()}, secondary_offsets={})
     source = ProgramSource("SIX", worked("plane-xc-six-flats").read_text(encoding="latin-1"))
-    _, part = prove_with_part(source, setup, machine, PartSettings())
+    _, part = prove_program_and_part(source, setup, machine, PartSettings())
     assert part is not None
     assert part.is_milled
     # The mill's axis goes round a hexagon of circumradius .38465 in, .1 deep: its .125 leave a hexagon of
@@ -240,7 +240,7 @@ SLOT = "T6\nX[.6]Z[-.4]\nM05\nM15\nM19\nG04F3\nG94F[4]X[.4]\nZ[-.8]\nX[.6]\nG94F
 
 @pytest.mark.parametrize(("metric", "diameter"), WAYS)
 def test_slot_is_milled_with_locked_spindle(metric: bool, diameter: bool) -> None:
-    _, part = proved(text(SLOT, metric=metric, diameter=diameter), make_bar(25.4, 0.0, -60.0), MILL)
+    _, part = proved(text(SLOT, metric=metric, diameter=diameter), make_bar_stock(25.4, 0.0, -60.0), MILL)
     assert checks(part) == []
     depth, width, length = 0.1 * INCH, 6.0, 0.4 * INCH
     # a flat floor 2.54 under the crown of the bar: the depth at y is less by r - sqrt(r² - y²)
@@ -251,17 +251,17 @@ def test_slot_is_milled_with_locked_spindle(metric: bool, diameter: bool) -> Non
     assert part.removed_volume_mm3 > strip * length
     assert part.removed_volume_mm3 < strip * (length + width)
     _, part = proved(text(SLOT.replace("G94F[4]X", "G94F[200]X"), metric=metric, diameter=diameter),
-                     make_bar(25.4, 0.0, -60.0), MILL)  # fmt: skip
+                     make_bar_stock(25.4, 0.0, -60.0), MILL)  # fmt: skip
     assert ("rapid-into-stock", 9) in checks(part)
 
 
 def test_piece_parted_off_after_slot_has_smaller_volume() -> None:
     off = SLOT + "\nM05\nM03S900\nT2\nX[.6]Z[.1]\nZ[-1.2]\nG95F[.002]X[-.01]\nG94F[300]X[.6]"
     _, whole = proved(
-        text("T2\nX[.6]Z[.1]\nZ[-1.2]\nG95F[.002]X[-.01]\nG94F[300]X[.6]"), make_bar(25.4, 0.0, -60.0)
+        text("T2\nX[.6]Z[.1]\nZ[-1.2]\nG95F[.002]X[-.01]\nG94F[300]X[.6]"), make_bar_stock(25.4, 0.0, -60.0)
     )
-    _, part = proved(text(off), make_bar(25.4, 0.0, -60.0), {**TOOLS, **MILL})
-    _, slot = proved(text(SLOT), make_bar(25.4, 0.0, -60.0), MILL)
+    _, part = proved(text(off), make_bar_stock(25.4, 0.0, -60.0), {**TOOLS, **MILL})
+    _, slot = proved(text(SLOT), make_bar_stock(25.4, 0.0, -60.0), MILL)
     (piece,), (full,) = part.parted_pieces, whole.parted_pieces
     assert piece.volume_mm3 == pytest.approx(full.volume_mm3 - slot.removed_volume_mm3, rel=1e-3)
 
@@ -271,18 +271,18 @@ def chucked(
     diameter: bool = False,
 ) -> PartReport:  # fmt: skip
     machine = load_machine(None)
-    setup = create_setup(
+    setup = create_power_up_setup(
         machine, tool_offsets={n: ToolOffset(-12.7, -50.8) for n in range(1, 12)}, secondary_offsets={}
     )
-    setting = PartSettings(make_bar(25.4, 0.0, -80.0), shapes, clamping=clamping)
-    _, part = prove_with_part(
+    setting = PartSettings(make_bar_stock(25.4, 0.0, -80.0), shapes, clamping=clamping)
+    _, part = prove_program_and_part(
         ProgramSource("PART", text(lines, metric=metric, diameter=diameter)), setup, machine, setting
     )
     assert part is not None
     return part
 
 
-CHUCK = Clamping(diameter=100.0, stick_out=1.2 * INCH, jaw_length=10.0, jaw_diameter=60.0)
+CHUCK = Clamping(chuck_diameter=100.0, stick_out=1.2 * INCH, jaw_length=10.0, jaw_diameter=60.0)
 PARTED = "T2\nX[.6]Z[.1]\nZ[-1]\nG95F[.002]X[-.01]\nG94F[300]X[.6]\nZ[1]"
 
 
@@ -299,7 +299,9 @@ def test_rapid_next_to_bar_clears_small_jaws() -> None:
     assert checks(chucked(beside, Clamping(100.0, 1.2 * INCH, 20.0, 48.0))) == []
 
 
-CENTRE = Clamping(diameter=0.0, stick_out=0.0, quill_diameter=12.0, center_angle_deg=60.0, center_z_mm=-3.0)
+CENTRE = Clamping(
+    chuck_diameter=0.0, stick_out=0.0, quill_diameter=12.0, center_angle_deg=60.0, center_z_mm=-3.0
+)
 
 
 @pytest.mark.parametrize(("metric", "diameter"), WAYS)
@@ -334,13 +336,13 @@ def ganged(lines: str, apart: float) -> PartReport:
     """T1 turns, and a drill stands on the plate beside it, ``apart`` mm further along X."""
     machine = load_machine(None)
     places = {1: (-12.7, -50.8), 3: (-12.7 + apart, -50.8)}
-    setup = create_setup(
+    setup = create_power_up_setup(
         machine, tool_offsets={n: ToolOffset(*at) for n, at in places.items()}, secondary_offsets={}
     )
     setting = PartSettings(
-        make_bar(25.4, 0.0, -80.0), TOOLS, gang={n: (z, x) for n, (x, z) in places.items()}
+        make_bar_stock(25.4, 0.0, -80.0), TOOLS, gang={n: (z, x) for n, (x, z) in places.items()}
     )
-    _, part = prove_with_part(ProgramSource("PART", text(lines)), setup, machine, setting)
+    _, part = prove_program_and_part(ProgramSource("PART", text(lines)), setup, machine, setting)
     assert part is not None
     return part
 
@@ -371,9 +373,9 @@ def test_part_of_very_long_program_is_made_when_stock_is_stated(
 
 def test_thread_in_bore_removes_only_its_grooves() -> None:
     machine = load_machine(None)
-    setup = create_setup(machine, tool_offsets={8: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(machine, tool_offsets={8: ToolOffset()}, secondary_offsets={})
     source = ProgramSource("THREAD", worked("thread-internal").read_text(encoding="latin-1"))
-    _, part = prove_with_part(source, setup, machine, PartSettings())
+    _, part = prove_program_and_part(source, setup, machine, PartSettings())
     assert part is not None
     assert part.last_piece is not None
     assert part.last_piece.bore_profile is not None
@@ -385,7 +387,7 @@ def test_thread_in_bore_removes_only_its_grooves() -> None:
 
 def test_cut_deeper_than_edge_length_is_reported() -> None:
     cut = "T1\nX[1.1]Z[.05]\nX[{r}]\nG95F[.004]Z[-.5]\nX[1.1]\nG94F[300]Z[1]"
-    thick = make_bar(50.8, 0.0, -60.0)
+    thick = make_bar_stock(50.8, 0.0, -60.0)
     _, part = proved(text(cut.format(r=0.3)), thick)  # .7 in; .5 of 11.2 mm is .22 in
     assert ("feed-into-holder", 6) in checks(part)
     _, part = proved(text(cut.format(r=0.9)), thick)
@@ -395,14 +397,14 @@ def test_cut_deeper_than_edge_length_is_reported() -> None:
 def test_an_arc_into_a_shoulder_is_as_deep_as_the_shoulder_is_high() -> None:
     """60 degrees of a fillet of .15: .1 in of metal above it, of which each chord meets another slice."""
     cut = "T1\nX[.7]Z[.05]\nX[.3]\nG95F[.004]Z[-.4]\nG03X[.375]Z[-.5299]R.15\nX[.7]\nG94F[300]Z[1]"
-    _, part = proved(text(cut), make_bar(20.32, 0.0, -60.0))
+    _, part = proved(text(cut), make_bar_stock(20.32, 0.0, -60.0))
     assert checks(part) == []
 
 
 def test_slot_removed_by_turning_counts_once() -> None:
     turned = "M05\nM03S1500\nT1\nX[.6]Z[.1]\nX[.35]\nG95F[.004]Z[-1]\nX[.55]\nG94F[300]Z[1]"
-    _, plain = proved(text(turned), make_bar(25.4, 0.0, -60.0), TOOLS)
-    _, slotted = proved(text(f"{SLOT}\n{turned}"), make_bar(25.4, 0.0, -60.0), {**TOOLS, **MILL})
+    _, plain = proved(text(turned), make_bar_stock(25.4, 0.0, -60.0), TOOLS)
+    _, slotted = proved(text(f"{SLOT}\n{turned}"), make_bar_stock(25.4, 0.0, -60.0), {**TOOLS, **MILL})
     assert slotted.is_milled
     assert slotted.removed_volume_mm3 == pytest.approx(plain.removed_volume_mm3, rel=2e-3)
     assert slotted.remaining_volume_mm3 == pytest.approx(plain.remaining_volume_mm3, rel=2e-3)
@@ -426,7 +428,7 @@ def test_stopped_spindle_turns_nothing_and_is_reported() -> None:
     """Turned to r .4, then fed in at r .2 with the spindle stopped: there is no groove, and that is told."""
     turned = "T1\nX[.55]Z[.1]\nX[.4]\nG95F.004Z[-.3]\nG94F300X[.55]\nZ[.1]\n"
     still = text(turned + "M05\nX[.2]\nG94F10Z[-.2]\nG00Z[.1]\nG01F300X[.6]\n")
-    stock = make_bar(INCH, 0.0, -2 * INCH)
+    stock = make_bar_stock(INCH, 0.0, -2 * INCH)
     (_, alone), (report, part) = proved(text(turned), stock), proved(still, stock)
     assert part.removed_volume_mm3 == pytest.approx(alone.removed_volume_mm3)
     assert text_of("findings.cuts-stopped", tool="T1", line=11) in part.unchecked_data
@@ -440,7 +442,7 @@ def test_live_tool_in_zc_plane_is_radial() -> None:
     """A tool along the axis would cut a slot with its flank on the way out."""
     worked("plane-zc-figure-eight")
     path = FOLDER / "plane-zc-figure-eight.nc"
-    _, part = proved(path.read_text(), make_bar(0.98 * INCH, 0.0, -1.5 * INCH), {})
+    _, part = proved(path.read_text(), make_bar_stock(0.98 * INCH, 0.0, -1.5 * INCH), {})
     assert part.last_piece is not None
     (shape,) = (each for each in part.tool_shapes.values() if each is not None)
     assert shape.direction[0] == 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.compose.machine.machine_files import load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.dialects import interpret_program
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import ProgramSource
@@ -17,7 +17,7 @@ STOP, READ = "M0", "R1=$AA_IW[Z]"
 
 def told(name: str, text: str, code: str) -> list[tuple[int, str]]:
     machine = MILL if name.endswith(".h") else LATHE
-    setup = create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     report = prove(ProgramSource(name, text), setup, machine)
     return [(each.line, str(each.severity)) for each in report.diagnostics if each.code == code]
 
@@ -57,7 +57,7 @@ def test_run_ends_at_error_after_program_stop() -> None:
     text = f"T1 D1\nG0 X30 Z0\n{STOP}\n{READ}\nR2=10/R1\nM30\n"
     running = interpret_program(
         ProgramSource("a.mpf", text),
-        create_setup(LATHE, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
+        create_power_up_setup(LATHE, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
     )
     assert [block.line for block in running.generate_blocks()] == [1, 2, 3]
     assert running.has_errors

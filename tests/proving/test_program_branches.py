@@ -11,11 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.compose.machine.machine_files import load_machine, load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
-from app.compose.stored_offsets import read_offsets
+from app.compose.machine.machine_setup import create_power_up_setup
+from app.compose.stored_offsets import read_offsets_file
 from core.interpreter.dialects import SharedProgram
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
-from core.interpreter.shared.job_setup import Setup, ToolOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset
 from core.language.diagnostics import Severity
 from core.language.source import ProgramSource, load_source
 from core.proving import program_branches
@@ -30,10 +30,10 @@ MACHINE = load_machine(None)
 HEAD = ("G90G94F300", "T1", "X.5Z.1")
 
 
-def circumstances(**inputs: bool) -> Setup:
+def circumstances(**inputs: bool) -> InterpreterSetup:
     """All tools on part zero; inputs by number, such as ``i10=True``."""
     states = {name.removeprefix("i"): on for name, on in inputs.items()}
-    return create_setup(
+    return create_power_up_setup(
         MACHINE, tool_offsets={1: ToolOffset(), 2: ToolOffset()}, secondary_offsets={}, input_states=states
     )
 
@@ -151,7 +151,7 @@ END PGM BD MM
 def test_start_depends_on_current_block_delete_switch() -> None:
     """With the switch on the program runs on into a parameter that nothing has set."""
     mill = load_shipped_machine("ac-table-mill")
-    around = create_setup(mill, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    around = create_power_up_setup(mill, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     source = ProgramSource("bd.h", ENDS_BEFORE)
     assert prove(source, around, mill).errors == ()
     report = prove(source, replace(around, block_delete=True), mill)
@@ -160,13 +160,13 @@ def test_start_depends_on_current_block_delete_switch() -> None:
 
 def test_tool_of_other_block_delete_setting_does_not_prevent_start() -> None:
     report = proved("/T7", "/X.5Z.1", "M30", deleted=True)
-    assert (report.missing_tools, report.tool_numbers) == ((), (1,))
-    assert proved("/T7", "/X.5Z.1", "M30").missing_tools == (7,)
+    assert (report.missing_tool_numbers, report.tool_numbers) == ((), (1,))
+    assert proved("/T7", "/X.5Z.1", "M30").missing_tool_numbers == (7,)
 
 
 def test_tool_used_only_in_branch_is_required_before_start() -> None:
     report = proved("M97I1C1P1", "M30", "}1", "T7", "X.5Z.1", "M99")
-    assert report.missing_tools == (7,)
+    assert report.missing_tool_numbers == (7,)
     assert report.tool_numbers == (1, 7)
 
 
@@ -188,10 +188,10 @@ def test_input_change_between_two_reads_is_a_warning() -> None:
 def test_cycle_time_range_covers_input_states() -> None:
     lines = ("LS4", "Z-1F20", "M97I1C1P1", "Z.1F300", "LF", "M30", "}1", "X1F10", "G04F2", "X.5", "M99")
     off, on = proved(*lines), proved(*lines, i1=True)
-    assert off.times.cycle_s < on.times.cycle_s - 10
+    assert off.program_times.cycle_time_s < on.program_times.cycle_time_s - 10
     for report in (off, on):
         assert report.branch_summary.cycle_time_range == pytest.approx(
-            (off.times.cycle_s, on.times.cycle_s), abs=0.05
+            (off.program_times.cycle_time_s, on.program_times.cycle_time_s), abs=0.05
         )
         assert report.branch_summary.proved_count == 5
 
@@ -199,11 +199,11 @@ def test_cycle_time_range_covers_input_states() -> None:
 def test_cycle_time_range_covers_block_delete() -> None:
     lines = ("/G04F3", "G04F1", "M30")
     off, on = proved(*lines), proved(*lines, deleted=True)
-    assert off.times.cycle_s == pytest.approx(on.times.cycle_s + 3)
+    assert off.program_times.cycle_time_s == pytest.approx(on.program_times.cycle_time_s + 3)
     assert (
         off.branch_summary.cycle_time_range
         == on.branch_summary.cycle_time_range
-        == (on.times.cycle_s, off.times.cycle_s)
+        == (on.program_times.cycle_time_s, off.program_times.cycle_time_s)
     )
 
 
@@ -212,7 +212,7 @@ def test_program_without_inputs_is_proved_once() -> None:
     assert program_branches.BranchProof(reading, circumstances(), MACHINE, ideal=False).root_pass is None
     report = proved("Z-1", "M30")
     assert (report.branch_summary.proved_count, report.branch_summary.unproved_count) == (1, 0)
-    assert report.branch_summary.cycle_time_range == (report.times.cycle_s,) * 2
+    assert report.branch_summary.cycle_time_range == (report.program_times.cycle_time_s,) * 2
 
 
 def many(count: int) -> tuple[str, ...]:
@@ -257,9 +257,9 @@ def test_uncalled_subroutine_is_reported() -> None:
 
 
 def test_bar_feeder_sample_and_its_end_of_bar_branch_are_proved() -> None:
-    tools, secondary, *_ = read_offsets(SAMPLES / "offsets.toml")
+    tools, secondary, *_ = read_offsets_file(SAMPLES / "offsets.toml")
     source = load_source(SAMPLES / "pinbar.nc")
-    setup = create_setup(MACHINE, tool_offsets=tools, secondary_offsets=secondary)
+    setup = create_power_up_setup(MACHINE, tool_offsets=tools, secondary_offsets=secondary)
     assert prove(source, setup, MACHINE).branch_summary.proved_count == 2
     worse = replace(source, text=source.text.replace("M31\n", "M31\nZ9.5\n"))
     (found,) = prove(worse, setup, MACHINE).errors

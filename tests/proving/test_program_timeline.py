@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.shared.elementary_blocks import BlockKind
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import Dialect, ProgramSource
@@ -19,7 +19,7 @@ HEAD = "G90G94F300G73\nM03S600\nT1\nX.3Z.2\nX.25\n"
 def laid(
     text: str, dialect: Dialect = Dialect.OMNITURN, *, ideal: bool = True
 ) -> list[tuple[BlockKind, float]]:
-    setup = create_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     timeline = Timeline.from_program(ProgramSource("T", text, dialect), setup, MACHINE, is_ideal=ideal)
     found = [(block.kind, t1 - t0) for block, t0, t1 in iter_timed_blocks(timeline)]
     assert not timeline.has_errors, timeline.diagnostics
@@ -38,12 +38,12 @@ def test_corners_and_spindle_waits_have_zero_time_on_ideal_machine() -> None:
     text = HEAD + "G94F60\n" + side * 2 + "M30\n"
     report = prove(
         ProgramSource("T", text),
-        create_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
+        create_power_up_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
         MACHINE,
         is_ideal=True,
     )
-    assert report.times.wait_s == 0.0
-    assert report.times.cutting_s == pytest.approx(2 * (1.0 + 0.125 + 1.0 + 0.125), abs=1e-6)
+    assert report.program_times.wait_time_s == 0.0
+    assert report.program_times.cutting_time_s == pytest.approx(2 * (1.0 + 0.125 + 1.0 + 0.125), abs=1e-6)
 
 
 def test_thread_does_not_wait_for_index_on_ideal_machine() -> None:

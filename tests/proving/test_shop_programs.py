@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
-from app.compose.part_data import read_known_part
+from app.compose.machine.machine_setup import create_power_up_setup
+from app.compose.part_data import make_part_settings
 from app.offsets.offsets_file import read_tool_shapes
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import ProgramSource
 from core.machine.machine_model import ClampingModel
-from core.part.stock_spec import parse_specification
-from core.proving.part_proof import prove_with_part
+from core.part.stock_spec import parse_stock_specification
+from core.proving.part_proof import prove_program_and_part
 from core.proving.proof_report import PartReport, ProofReport
 
 FOLDER = Path(__file__).parent / "shop_programs"
@@ -37,14 +37,14 @@ def proved(name: str, folder: Path) -> tuple[ProofReport, PartReport]:
     shapes_file.write_text(job.get("tools", ""))
     shapes = read_tool_shapes(shapes_file) if "tools" in job else {}
     tools = {n: ToolOffset(-12.7, -50.8) for n in range(1, 9)}
-    setup = create_setup(
+    setup = create_power_up_setup(
         machine, tool_offsets=tools, secondary_offsets={1: SecondaryOffset(-NOSE, -NOSE, NOSE)}
     )
-    setting = read_known_part(machine, tools, shapes, 1.7 * INCH if "stock" in job else None)
+    setting = make_part_settings(machine, tools, shapes, 1.7 * INCH if "stock" in job else None)
     if "stock" in job:
-        setting = replace(setting, stock=parse_specification(job["stock"]))
+        setting = replace(setting, stock=parse_stock_specification(job["stock"]))
     source = ProgramSource(name, (FOLDER / f"{name}.nc").read_text())
-    report, part = prove_with_part(source, setup, machine, setting, is_ideal=True)
+    report, part = prove_program_and_part(source, setup, machine, setting, is_ideal=True)
     assert part is not None
     return report, part
 
@@ -112,13 +112,13 @@ def test_rod_end_has_expected_removed_volume_and_cutting_time(folder: Path) -> N
     flat = float(np.trapezoid((np.sqrt(100.0 - y**2) - 8.0) * (10.0 + np.sqrt(64.0 - y**2)), y))
     assert part.removed_volume_mm3 == pytest.approx(2.0 * flat, rel=0.02)
     fast = (25.4 * 2 + 25.0) / 50.0
-    assert report.times.cutting_s == pytest.approx(13.2 + fast, abs=2.0)
+    assert report.program_times.cutting_time_s == pytest.approx(13.2 + fast, abs=2.0)
 
 
 def test_flange_has_its_speed_limit_and_radius(folder: Path) -> None:
     """250 m/min: at the axis G77 limits the spindle to 2800 rpm. pi x 20² x 15 mm are left of the boss."""
     report, part = proved("flange-metric", folder)
-    assert report.ranges.rpm_range[1] == pytest.approx(2800.0)
+    assert report.program_ranges.rpm_range[1] == pytest.approx(2800.0)
     assert radius_at(part, -5.0 / INCH) * INCH == pytest.approx(20.0, abs=0.01)
 
 

@@ -17,14 +17,14 @@ from typing import Any
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
-from app.compose.part_data import read_known_part
+from app.compose.machine.machine_setup import create_power_up_setup
+from app.compose.part_data import make_part_settings
 from app.compose.specified_stock import StockContext, read_stock
 from app.offsets.offsets_file import read_tool_shapes
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import ProgramSource
 from core.machine.machine_model import ClampingModel
-from core.proving.part_proof import prove_with_part, require_tool_offsets
+from core.proving.part_proof import prove_program_and_part, require_tool_offsets
 
 CATALOGUE = Path(__file__).parent / "slip_catalogue"
 JOBS: dict[str, dict[str, Any]] = tomllib.loads((CATALOGUE / "jobs.toml").read_text())
@@ -80,13 +80,13 @@ def findings(job: str, line: int, text: str, folder: Path) -> list[tuple[int, st
     shapes = read_tool_shapes(shapes_file)
     machine = replace(load_machine(None), clamping=ClampingModel(diameter=3.0 * INCH), tooling_kind="single")
     tools = {n: ToolOffset(-12.7, -50.8, shape.nose_radius) for n, shape in shapes.items()}
-    setup = create_setup(
+    setup = create_power_up_setup(
         machine, tool_offsets=tools, secondary_offsets={1: SecondaryOffset(-NOSE, -NOSE, NOSE)}
     )
-    setting = read_known_part(machine, tools, shapes, told["stick_out"] * INCH)
+    setting = make_part_settings(machine, tools, shapes, told["stick_out"] * INCH)
     before = StockContext(lambda path: ProgramSource(path.name, ""), setup, machine, setting)
     setting = replace(setting, stock=read_stock(told["stock"], before))
-    report, _ = prove_with_part(ProgramSource(job, "\n".join(lines) + "\n"), setup, machine, setting)
+    report, _ = prove_program_and_part(ProgramSource(job, "\n".join(lines) + "\n"), setup, machine, setting)
     report = require_tool_offsets(report, setup)
     return [
         (d.line, str(d.severity), d.check_name or d.code)

@@ -13,12 +13,12 @@ from pathlib import Path
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
-from app.compose.part_data import read_known_part
+from app.compose.machine.machine_setup import create_power_up_setup
+from app.compose.part_data import make_part_settings
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import ProgramSource
-from core.proving.checks.part_checks import is_serious
-from core.proving.part_proof import prove_with_part
+from core.proving.checks.part_checks import is_serious_finding
+from core.proving.part_proof import prove_program_and_part
 from core.proving.program_tools import PartSettings
 
 PROGRAMS = Path(__file__).parents[2] / "resources" / "programs"
@@ -70,18 +70,18 @@ def slips(lines: list[str]) -> Iterator[tuple[str, int, str]]:
 def test_slip_in_sample_gives_error_or_is_listed_as_harmless(name: str) -> None:
     machine = load_machine(None)
     tools = {n: ToolOffset(-12.7, -50.8) for n in range(1, 9)}
-    setup = create_setup(
+    setup = create_power_up_setup(
         machine, tool_offsets=tools, secondary_offsets={1: SecondaryOffset(-0.381, -0.381, 0.381)}
     )
-    setting = PartSettings(drives=read_known_part(machine, {}, {}).drives)
+    setting = PartSettings(drives=make_part_settings(machine, {}, {}).drives)
     lines = (PROGRAMS / f"{name}.nc").read_text(encoding="utf-8").splitlines()
     missed: dict[str, set[int]] = {"rapid": set(), "point": set(), "minus": set()}
     made = 0
     for kind, at, line in slips(lines):
         text = "\n".join([*lines[: at - 1], line, *lines[at:]])
-        report, _ = prove_with_part(ProgramSource(name, text), setup, machine, setting)
+        report, _ = prove_program_and_part(ProgramSource(name, text), setup, machine, setting)
         made += 1
-        if not any(map(is_serious, report.diagnostics)):
+        if not any(map(is_serious_finding, report.diagnostics)):
             missed[kind].add(at)
     assert made > 5
     for kind, found in missed.items():

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import ProgramSource
-from core.proving.part_proof import prove_with_part
+from core.proving.part_proof import prove_program_and_part
 from core.proving.program_tools import PartSettings
 from core.proving.proof_report import PartReport
 
@@ -178,10 +178,10 @@ M30
 
 def part_of(text: str) -> PartReport:
     machine = load_machine(None)
-    setup = create_setup(
+    setup = create_power_up_setup(
         machine, tool_offsets={n: ToolOffset(12.7, -76.2) for n in range(1, 9)}, secondary_offsets={}
     )
-    report, part = prove_with_part(ProgramSource("SOUND", text), setup, machine, PartSettings())
+    report, part = prove_program_and_part(ProgramSource("SOUND", text), setup, machine, PartSettings())
     assert part is not None
     assert report.errors == ()
     return part

@@ -7,16 +7,16 @@ from dataclasses import replace
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
-from app.compose.part_data import read_known_part
+from app.compose.machine.machine_setup import create_power_up_setup
+from app.compose.part_data import make_part_settings
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
-from core.part.stock import make_bar
+from core.part.stock import make_bar_stock
 from core.part.tool_shape import ToolKind, ToolShape
-from core.proving.part_proof import prove_with_part, require_tool_offsets
+from core.proving.part_proof import prove_program_and_part, require_tool_offsets
 
-ROD = make_bar(19.05, 0.0, -60.0)
+ROD = make_bar_stock(19.05, 0.0, -60.0)
 TURNING = ToolShape(ToolKind.TURNING, tip=3, nose_radius=0.4, insert="DCMT11T304")
 BORER = ToolShape(ToolKind.BORING, tip=2, nose_radius=0.4, insert="DCMT070204", diameter=5.0, stick_out=40.0)
 DRILL = ToolShape(ToolKind.DRILL, diameter=6.0, point=118.0, length=40.0)
@@ -32,9 +32,9 @@ def found(
     machine = machine or load_machine(None)
     tools = {n: ToolOffset(-12.7, -50.8) for n in SHAPES}
     shapes = SHAPES if shapes is None else shapes
-    setting = replace(read_known_part(machine, {}, shapes), stock=ROD)
-    setup = create_setup(machine, tool_offsets=tools, secondary_offsets={})
-    report, _ = prove_with_part(ProgramSource("P", f"{HEAD}{program}\nM30\n"), setup, machine, setting)
+    setting = replace(make_part_settings(machine, {}, shapes), stock=ROD)
+    setup = create_power_up_setup(machine, tool_offsets=tools, secondary_offsets={})
+    report, _ = prove_program_and_part(ProgramSource("P", f"{HEAD}{program}\nM30\n"), setup, machine, setting)
     return [(each.line, str(each.severity), each.code) for each in report.diagnostics]
 
 
@@ -79,7 +79,7 @@ def test_possible_broach_gives_spindle_off_warning() -> None:
 
 def test_live_tool_without_m_code_gives_no_stationary_cut_finding() -> None:
     machine = load_machine(None)
-    without = replace(machine, m_codes={25: ("catcher", True), 26: ("catcher", False)})
+    without = replace(machine, m_code_outputs={25: ("catcher", True), 26: ("catcher", False)})
     program = CROSS.format(on="").replace("M16", "")
     assert "cut-standing" not in {code for *_, code in found(program, machine=without)}
 
@@ -90,11 +90,11 @@ def test_missing_tool_offset_is_error_only_if_other_tools_have_offsets(
 ) -> None:
     """T3 has none while T1 has one; or no offset has been entered at all, as in an office."""
     machine = load_machine(None)
-    setup = create_setup(
+    setup = create_power_up_setup(
         machine, tool_offsets={n: ToolOffset(-12.7, -50.8) for n in known}, secondary_offsets={}
     )
     program = ProgramSource("P", f"{HEAD}{HOLE.format(t=3, x='0', stop='')}\nM30\n")
-    report, _ = prove_with_part(program, setup, machine, read_known_part(machine, {}, SHAPES))
+    report, _ = prove_program_and_part(program, setup, machine, make_part_settings(machine, {}, SHAPES))
     report = require_tool_offsets(report, setup)
     (told,) = [each for each in report.diagnostics if each.code == "tool-offset-missing"]
     assert str(told.severity) == severity

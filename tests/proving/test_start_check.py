@@ -8,14 +8,14 @@ from dataclasses import replace
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.executor.job import Job, make_job, start_program_pass
 from core.interpreter.shared.checkpoint import Checkpoint, PassStart
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import ToolOffset
 from core.interpreter.shared.modal_state import ModalState
 from core.language.source import ProgramSource
-from core.part.stock import Clamping, make_bar
+from core.part.stock import Clamping, make_bar_stock
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving.part_history import PartHistory, StepCollector
 from core.proving.program_tools import PartSettings
@@ -26,7 +26,7 @@ INCH = 25.4
 TURNING = ToolShape(ToolKind.TURNING, tip=3, nose_radius=0.0, insert="DCMT11T304")
 BORING = ToolShape(ToolKind.BORING, tip=2, diameter=8.0, stick_out=40.0)
 DRILL = ToolShape(ToolKind.DRILL, tip=7, diameter=12.7, stick_out=60.0)
-SETTING = PartSettings(make_bar(1.5 * INCH, 0.0, -2.0 * INCH), {1: TURNING, 2: BORING, 3: DRILL})
+SETTING = PartSettings(make_bar_stock(1.5 * INCH, 0.0, -2.0 * INCH), {1: TURNING, 2: BORING, 3: DRILL})
 TOOLS = {1: ToolOffset(-12.7, -50.8), 2: ToolOffset(-25.4, -63.5), 3: ToolOffset(-38.1, -76.2)}
 
 # A drill of Ø.5 goes 1 in deep, a boring bar opens the bore to Ø.8; then the outside is turned to Ø1.2.
@@ -42,7 +42,7 @@ DEEPER = 16
 def job_of(text: str) -> Job:
     return make_job(
         ProgramSource("PART", text),
-        create_setup(load_machine(None), tool_offsets=TOOLS, secondary_offsets={}),
+        create_power_up_setup(load_machine(None), tool_offsets=TOOLS, secondary_offsets={}),
     )
 
 
@@ -85,8 +85,8 @@ def interrupted(
 def line_of(text: str, at: tuple[float, ...], tool: int) -> Job:
     """Return a line of MDI from these axis positions."""
     offset = TOOLS[tool]
-    modal = ModalState(tool=tool, tool_x=offset.x, tool_z=offset.z, rapid_rate=100.0, rpm=900.0)
-    setup = create_setup(load_machine(None), tool_offsets=TOOLS, secondary_offsets={})
+    modal = ModalState(tool=tool, tool_offset_x=offset.x, tool_offset_z=offset.z, rapid_rate=100.0, rpm=900.0)
+    setup = create_power_up_setup(load_machine(None), tool_offsets=TOOLS, secondary_offsets={})
     begin = PassStart(Checkpoint(modal), is_mdi_line=True)
     return make_job(ProgramSource("MDI", text), replace(setup, start=at, begin=begin))
 
@@ -99,7 +99,7 @@ def test_start_at_line_1_from_inside_bore_hits_bore_wall() -> None:
     job = job_of(BORE)
     found = check_of(job).check_start(passes(job), interrupted(job))
     assert met(found) == (CollisionBody.PART, 2, False)
-    assert not found.is_assumed
+    assert not found.has_assumed_data
     assert found.safe_jog_direction == "Z+"
     assert [leg[:2] for leg in found.path] == [
         pytest.approx(axes(*IN_THE_BORE)),
@@ -135,7 +135,7 @@ def test_stopped_tool_is_inside_part_without_specified_stock() -> None:
     job = job_of(BORE)
     found = check_of(job, replace(SETTING, stock=None)).check_start(passes(job), interrupted(job))
     assert met(found) == (CollisionBody.PART, 2, False)
-    assert not found.is_assumed
+    assert not found.has_assumed_data
 
 
 def test_a_tool_that_was_jogged_into_the_wall_is_inside_the_part() -> None:
@@ -151,9 +151,9 @@ def test_first_move_through_assumed_stock_is_marked_as_assumed() -> None:
     job = job_of(BORE)
     now = StartState((*axes(1, 0.9, -1.2), 0.0), 1, starts_at_first_line=False)
     through = job_of("G90G94F300G73\nT1\nX.2Z-1.2\nX.9\n" + BORE)
-    assert check_of(job).check_start(passes(through), now).is_assumed is False
+    assert check_of(job).check_start(passes(through), now).has_assumed_data is False
     found = check_of(job, replace(SETTING, stock=None)).check_start(passes(through), now)
-    assert (found.hit_body, found.is_assumed) == (CollisionBody.PART, True)
+    assert (found.hit_body, found.has_assumed_data) == (CollisionBody.PART, True)
 
 
 @pytest.mark.parametrize(("text", "crosses"), [("X1.2Z.5", True), ("Z.5", False), ("G95F.003X.42", False)])
@@ -193,7 +193,7 @@ def test_tool_jogged_into_specified_stock_is_inside_part() -> None:
     job = job_of(BORE)
     now = StartState((*axes(1, 0.5, -0.5), 0.0), 1)
     assert met(check_of(job).check_start(passes(job), now)) == (CollisionBody.PART, 1, True)
-    assert check_of(job, replace(SETTING, stock=None)).check_start(passes(job), now).is_assumed
+    assert check_of(job, replace(SETTING, stock=None)).check_start(passes(job), now).has_assumed_data
 
 
 def test_safe_jog_direction_is_for_active_tool_when_other_tool_hits_part() -> None:

@@ -8,18 +8,18 @@ from typing import Any
 import pytest
 
 from app.compose.machine.machine_files import load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.diagnostics import Diagnostic
 from core.language.source import ProgramSource
-from core.part.stock import Clamping, Stock, make_bar, make_tube
+from core.part.stock import Clamping, Stock, make_bar_stock, make_tube_stock
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving.checks.part_checks import PART_CHECKS
 from core.proving.checks.thread_checks import DriveLimits
-from core.proving.part_proof import prove_with_part
+from core.proving.part_proof import prove_program_and_part
 from core.proving.program_tools import PartSettings
 from core.proving.prove_program import prove
-from core.tool_edges import make_row_number
+from core.tool_edges import make_edge_row_number
 from tests.proving import test_edge_checks, test_part_proof, test_thread_checks
 from tests.proving.test_part_proof import text
 
@@ -50,12 +50,12 @@ def in_sinumerik(program: str) -> str:
 
 def found(program: str, stock: Stock | None, shapes: dict[int, ToolShape], **said: Any) -> list[Diagnostic]:
     """Return what the proof finds in a SINUMERIK program; ``said`` are further fields of the setting."""
-    keys = {make_row_number(n, 1): shape for n, shape in shapes.items()}
-    setup = create_setup(
+    keys = {make_edge_row_number(n, 1): shape for n, shape in shapes.items()}
+    setup = create_power_up_setup(
         LATHE, tool_offsets=dict.fromkeys(keys, ToolOffset(-12.7, -50.8)), secondary_offsets={}
     )
     setting = PartSettings(stock, keys, **said)
-    report, part = prove_with_part(ProgramSource("a.mpf", program), setup, LATHE, setting)
+    report, part = prove_program_and_part(ProgramSource("a.mpf", program), setup, LATHE, setting)
     assert part is not None
     return list(report.diagnostics)
 
@@ -88,7 +88,7 @@ def test_sinumerik_mistakes_are_reported_in_sinumerik_terms(name: str) -> None:
 
 
 HEAD = "G90 G94 G700 DIAMOF F300\nS1500 M3\n"
-ROD, PIPE = make_bar(25.4, 0.0, -60.0), make_tube(25.4, 12.0, 0.0, -60.0)
+ROD, PIPE = make_bar_stock(25.4, 0.0, -60.0), make_tube_stock(25.4, 12.0, 0.0, -60.0)
 CHUCK = Clamping(100.0, 40.0, 0.0, 60.0, max_rpm=1000.0)
 CENTRE = Clamping(0.0, 0.0, quill_diameter=12.0, center_angle_deg=60.0, center_z_mm=-3.0)
 PASS = "T{t} D1\nX.6 Z.05\nX.4\nG95 F.004 Z{z}\nX.6\nG94 F300 Z1\n"
@@ -102,7 +102,7 @@ MORE: dict[str, tuple[str, Stock, dict[str, Any]]] = {
     "spindle-overspeed": (PASS.format(t=1, z="-.3"), ROD, {"clamping": CHUCK}),
     "into-tailstock": (PASS.format(t=1, z="-.3").replace("X.4", "X.03"), ROD, {"clamping": CENTRE}),
     "stock-whips": (
-        PASS.format(t=1, z="-.3").replace("X.4", "X.08"), make_bar(6.0, 0.0, -320.0),
+        PASS.format(t=1, z="-.3").replace("X.4", "X.08"), make_bar_stock(6.0, 0.0, -320.0),
         {"clamping": Clamping(100.0, 300.0, 10.0, 60.0)},
     ),
     "neighbour-tool": (PASS.format(t=1, z="-.5"), ROD, {"gang": {1: (-50.8, -12.7), 3: (-50.8, 2.3)}}),
@@ -110,7 +110,7 @@ MORE: dict[str, tuple[str, Stock, dict[str, Any]]] = {
     "drill-off-axis": (HOLE.format(x=".02", z="-.3"), ROD, {}),
     "past-stock": (HOLE.format(x="0", z="-2.9"), ROD, {}),
     "no-bore": (PASS.format(t=4, z="-.5").replace("X.6", "X.3").replace("X.4", "X.4"), ROD, {}),
-    "contour-past-part-off": (ARC + OFF, make_bar(25.4, 0.0, -80.0), {}),
+    "contour-past-part-off": (ARC + OFF, make_bar_stock(25.4, 0.0, -80.0), {}),
     "thread-in-air": (THREAD.format(r=".55"), ROD, {}),
     "thread-run-up": (THREAD.format(r=".49").replace("Z.2", "Z.02"), ROD, {"drives": DriveLimits(20.0)}),
     "drill-without-limit": (
@@ -133,7 +133,7 @@ def test_workholding_checks_are_reported_in_sinumerik_terms(check: str) -> None:
     program, stock, said = MORE[check]
     shapes = {**test_edge_checks.SHAPES, 10: TAP}
     if "gang" in said:
-        said = {"gang": {make_row_number(n, 1): at for n, at in said["gang"].items()}}
+        said = {"gang": {make_edge_row_number(n, 1): at for n, at in said["gang"].items()}}
     told = found(f"{HEAD}{program}M30\n", stock, shapes, **said)
     assert check in {each.check_name for each in told}
     assert [each for each in told if not reads_as(each, OMNITURN, KLARTEXT)] == []
@@ -177,7 +177,7 @@ def test_limited_surface_speed_gives_no_finding_in_sinumerik(limit: str) -> None
 )
 def test_klartext_mistakes_are_reported_in_klartext_terms(body: str) -> None:
     mill = load_shipped_machine("ac-table-mill")
-    setup = create_setup(mill, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(mill, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     told = prove(ProgramSource("a.h", f"BEGIN PGM A MM\n{body}\nEND PGM A MM\n"), setup, mill).diagnostics
     assert told
     assert [each for each in told if not reads_as(each, OMNITURN, SINUMERIK)] == []

@@ -8,17 +8,17 @@ from dataclasses import replace
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
-from app.compose.part_data import read_known_part
+from app.compose.machine.machine_setup import create_power_up_setup
+from app.compose.part_data import make_part_settings
 from core.interpreter.shared.elementary_blocks import BlockKind
 from core.interpreter.shared.job_setup import ToolOffset
 from core.interpreter.shared.modal_state import ModalState
 from core.language.source import ProgramSource
-from core.part.stock import Stock, make_bar, make_tube
-from core.part.tool_shape import Hand, ToolKind, ToolShape
+from core.part.stock import Stock, make_bar_stock, make_tube_stock
+from core.part.tool_shape import ToolHand, ToolKind, ToolShape
 from core.proving.assumed_tools import find_groove_width, parse_tap_size
 from core.proving.checks.thread_checks import DriveLimits
-from core.proving.part_proof import prove_with_part
+from core.proving.part_proof import prove_program_and_part
 from core.proving.program_tools import PartSettings
 from core.proving.tip_moves import TipMove
 from tests.proving.test_part_proof import WAYS, text
@@ -33,8 +33,8 @@ def move(start: tuple[float, float], end: tuple[float, float], kind: BlockKind =
 
 
 SHAPES = {4: TAP, 5: V}
-ROD = make_bar(12.7, 0.0, -60.0)
-DRILLED = make_tube(25.4, 5.1, 0.0, -60.0)
+ROD = make_bar_stock(12.7, 0.0, -60.0)
+DRILLED = make_tube_stock(25.4, 5.1, 0.0, -60.0)
 
 
 def findings(
@@ -42,11 +42,11 @@ def findings(
 ) -> list[tuple[str, int]]:
     machine = load_machine(None)
     tools = {n: ToolOffset(-12.7, -50.8) for n in range(1, 12)}
-    known = read_known_part(machine, {}, shapes)
+    known = make_part_settings(machine, {}, shapes)
     setting = PartSettings(stock, shapes, drives=drives or known.drives)
-    report, part = prove_with_part(
+    report, part = prove_program_and_part(
         ProgramSource("P", program),
-        create_setup(machine, tool_offsets=tools, secondary_offsets={}),
+        create_power_up_setup(machine, tool_offsets=tools, secondary_offsets={}),
         machine,
         setting,
     )
@@ -140,8 +140,8 @@ def test_thread_start_ahead_of_part_zero_requires_run_up(metric: bool, diameter:
     lines = lines.replace("I[.01]", "I[.02]") if diameter else lines
     slow = DriveLimits(z_acceleration_mm_s2=20.0)
     program = text(lines, metric=metric, diameter=diameter)
-    assert findings(program, make_bar(12.7, 2.54, -60.0), slow) == [("thread-run-up", 8)]
-    assert findings(program, make_bar(12.7, 0.5, -60.0), slow) == []
+    assert findings(program, make_bar_stock(12.7, 2.54, -60.0), slow) == [("thread-run-up", 8)]
+    assert findings(program, make_bar_stock(12.7, 0.5, -60.0), slow) == []
 
 
 def test_braking_in_material_longer_than_lead_is_reported() -> None:
@@ -167,7 +167,7 @@ def test_comment_sets_pitch_of_undefined_tap() -> None:
 
 
 def test_left_hand_tap_feeds_in_with_reversed_spindle() -> None:
-    left = {4: ToolShape(ToolKind.TAP, Hand.LEFT, diameter=6.35, pitch=1.27)}
+    left = {4: ToolShape(ToolKind.TAP, ToolHand.LEFT, diameter=6.35, pitch=1.27)}
     assert ("wrong-spindle-direction", 7) in findings(text(TAPPED), DRILLED, shapes=left)
     turned = TAPPED.replace("M04", "M00").replace("M03", "M04").replace("M00", "M03")
     assert findings(text(turned), DRILLED, shapes=left) == []

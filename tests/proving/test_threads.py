@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.shared.elementary_blocks import BlockKind
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import ProgramSource
@@ -20,7 +20,7 @@ MULTI = "".join(f"Z{z}\nG33X.24Z-.5I.01K.15\n" for z in (".2", ".25", ".3"))
 
 
 def timeline(text: str) -> Timeline:
-    setup = create_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+    setup = create_power_up_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={})
     return Timeline.from_program(ProgramSource("T", text), setup, MACHINE)
 
 
@@ -70,13 +70,13 @@ def test_thread_start_wait_is_at_most_one_revolution() -> None:
 def test_revolutions_are_integral_of_spindle_speed() -> None:
     spindle = SpindleForecast(MACHINE)
     spindle.command_speed(0.0, 600.0)  # from .08 on 1500 rpm/s: .4 s and 2 turns
-    assert spindle.revolutions_at(0.08) == 0.0
-    assert spindle.revolutions_at(0.48) == pytest.approx(2.0)
-    assert spindle.revolutions_at(1.48) == pytest.approx(12.0)
+    assert spindle.calculate_revolutions_at(0.08) == 0.0
+    assert spindle.calculate_revolutions_at(0.48) == pytest.approx(2.0)
+    assert spindle.calculate_revolutions_at(1.48) == pytest.approx(12.0)
     spindle.command_speed(
         2.0, -300.0
     )  # .8 turns at speed, then 600 rpm down at 2500 rpm/s, 300 up at 1500 rpm/s
-    assert spindle.revolutions_at(3.0) == pytest.approx(
+    assert spindle.calculate_revolutions_at(3.0) == pytest.approx(
         17.2 + 0.8 + 5.0 * 0.24 - 2.5 * 0.2 - 5.0 * (1.0 - 0.08 - 0.44)
     )
 
@@ -92,7 +92,7 @@ def test_revolutions_are_integral_of_spindle_speed() -> None:
 def test_proof_rejects_invalid_threads(text: str, code: str) -> None:
     report = prove(
         ProgramSource("T", text),
-        create_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
+        create_power_up_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
         MACHINE,
     )
     assert code in {found.code for found in report.errors}

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from app.desk.command_errors import EXIT_OK
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import ProgramSource
@@ -37,7 +37,7 @@ def traced(program: str) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
     machine = load_machine()
     timeline = Timeline.from_program(
         ProgramSource("part.nc", HEAD + program),
-        create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
+        create_power_up_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
         machine,
     )
     return np.concatenate([rows.positions[:, :2] for rows in iter_setpoints(timeline, 0.001)])

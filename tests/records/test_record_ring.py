@@ -36,7 +36,7 @@ def samples(first: int, count: int) -> FloatArray:
 
 
 def tick(t: float, line: int, on: tuple[str, ...] = ()) -> list[float]:
-    bits = [*pack_bits(OF.inputs, ()), *pack_bits(OF.outputs, on)]
+    bits = [*pack_bits(OF.input_names, ()), *pack_bits(OF.output_names, on)]
     return [t, 600.0, 599.0, NAN, 1.0, 0.5, 0.25, 0.001, float(line), 7.0, 4.0, *bits]
 
 

@@ -73,7 +73,7 @@ class PlayedSamples:
     """Live samples up to ``now``."""
 
     now: float = 100.0
-    buffer_length_s: float = 300.0
+    buffer_duration_s: float = 300.0
     channels: tuple[Channel, ...] = CHANNELS
     asked: list[tuple[float, float]] = field(default_factory=list)
     other: dict[str, FloatArray] = field(default_factory=dict)
@@ -93,12 +93,12 @@ class PlayedSamples:
             self.lets.wait()
         return float(np.floor(self.now * RATE + 1e-6) / RATE)
 
-    def read_between(
+    def read_samples_between(
         self, start_s: float, end_s: float, channel_names: Collection[str] | None = None
     ) -> ScopeRecord:
         """As the recorder gives it."""
         self.asked.append((start_s, end_s))
         return record_of(
-            seconds(max(start_s, 0.0, self.now - self.buffer_length_s), min(end_s, self.newest_time_s)),
+            seconds(max(start_s, 0.0, self.now - self.buffer_duration_s), min(end_s, self.newest_time_s)),
             channel_names,
         )

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.scope.curve_points import CurveColumns, make_points, make_round_range, update_range
+from app.scope.curve_points import CurveColumns, make_curve_points, make_round_range, update_range
 from app.scope.scope_curves import LiveCurves, PictureRequest, RecordingCurves
-from app.scope.signals import Quantity, find_default_keys, list_signals
+from app.scope.signals import Quantity, find_default_signal_keys, list_signals
 from app.scope.time_window import Trigger, TriggerEvent
 from core.executor.snapshot import MachineState
 from core.records.record import list_machine_channels
@@ -32,7 +32,7 @@ def wanted(
 def test_single_outlier_sample_is_drawn() -> None:
     times, values = np.arange(100_000) / 1000.0, np.zeros(100_000)
     values[54_321] = 7.0
-    found = make_points(times, values, 0.1)
+    found = make_curve_points(times, values, 0.1)
     assert found.has_line_pairs
     assert len(found.times_s) == 2 * 1000
     at = int(np.argmax(found.values))
@@ -43,7 +43,7 @@ def test_single_outlier_sample_is_drawn() -> None:
 
 def test_step_edge_between_two_columns_is_connected() -> None:
     times = np.arange(20) / 10.0
-    found = make_points(times, np.where(times < 0.95, 0.0, 1.0), 0.5)
+    found = make_curve_points(times, np.where(times < 0.95, 0.0, 1.0), 0.5)
     low, high = found.values[0::2], found.values[1::2]
     assert list(low) == [0.0, 0.0, 0.0, 1.0]
     assert list(high) == [0.0, 0.0, 1.0, 1.0]
@@ -51,13 +51,13 @@ def test_step_edge_between_two_columns_is_connected() -> None:
 
 def test_few_samples_are_drawn_unreduced() -> None:
     times = np.array([0.0, 1.0, 2.0])
-    found = make_points(times, times**2, 0.5)
+    found = make_curve_points(times, times**2, 0.5)
     assert not found.has_line_pairs
     assert list(found.values) == [0.0, 1.0, 4.0]
 
 
 def test_gap_of_unknown_values_is_not_joined() -> None:
-    found = make_points(np.arange(5.0), np.array([1.0, 2.0, np.nan, 4.0, 5.0]), 1.0)
+    found = make_curve_points(np.arange(5.0), np.array([1.0, 2.0, np.nan, 4.0, 5.0]), 1.0)
     assert list(found.values) == [1.0, 2.0, 4.0, 5.0]
     assert found.is_joined_to_next is not None
     assert list(found.is_joined_to_next) == [True, False, True, False]
@@ -92,8 +92,8 @@ def test_columns_added_in_pieces_equal_columns_added_at_once() -> None:
 
 
 def test_empty_input_gives_no_points() -> None:
-    assert len(make_points(np.empty(0), np.empty(0), 0.1).times_s) == 0
-    assert len(make_points(np.arange(3.0), np.full(3, np.nan), 0.1).times_s) == 0
+    assert len(make_curve_points(np.empty(0), np.empty(0), 0.1).times_s) == 0
+    assert len(make_curve_points(np.arange(3.0), np.full(3, np.nan), 0.1).times_s) == 0
 
 
 def test_lane_range_is_unchanged_while_values_fit() -> None:
@@ -129,7 +129,7 @@ def test_inch_curve_is_metric_curve_converted() -> None:
 def test_velocity_is_derived_from_record() -> None:
     record = record_of(seconds(0.0, 10.0))
     curves = RecordingCurves(record, 0.0)
-    column = curves.read_column(SIGNALS["X demand velocity"])
+    column = curves.read_signal_values(SIGNALS["X demand velocity"])
     assert column is not None
     assert column[10:-10] == pytest.approx(5.0 * np.cos(record.times_s[10:-10]), abs=1e-4)
 
@@ -169,10 +169,12 @@ def test_live_curves_match_recorded_curves() -> None:
     curves = {each.signal.key: each.points for each in sight.curves}
     whole = RecordingCurves(record_of(seconds(90.0, played.newest_time_s)), 0.0)
     for key, points in curves.items():
-        column = whole.read_column(SIGNALS[key])
+        column = whole.read_signal_values(SIGNALS[key])
         assert column is not None
         middle = slice(200, -200)  # columns at the edges are not whole yet
-        for time, value in zip(points.times_s[middle] + sight.zero_s, points.values[middle], strict=True):
+        for time, value in zip(
+            points.times_s[middle] + sight.zero_time_s, points.values[middle], strict=True
+        ):
             near = np.abs(whole.record.times_s - time) <= 0.5 * asked.width + 0.0011
             assert np.nanmin(column[near]) - 1e-9 <= value <= np.nanmax(column[near]) + 1e-9
 
@@ -290,17 +292,17 @@ def test_derived_signal_note_states_time_window() -> None:
 def test_channels_that_are_not_recorded_are_not_offered() -> None:
     there = {each.key for each in list_signals([each for each in CHANNELS if "load" not in each.name])}
     assert "X load" not in there
-    assert find_default_keys(list_signals(CHANNELS))[0] == "X following error"
+    assert find_default_signal_keys(list_signals(CHANNELS))[0] == "X following error"
 
 
 def test_mill_offers_three_linear_axes_and_lathe_two() -> None:
     rotary = dict.fromkeys("XYZ", False) | dict.fromkeys("AC", True)
-    shown = find_default_keys(list_signals(list_machine_channels(rotary, (), ())))
+    shown = find_default_signal_keys(list_signals(list_machine_channels(rotary, (), ())))
     assert shown == (
         *(f"{letter} following error" for letter in "XYZ"),
         *(f"{letter} velocity" for letter in "XYZ"),
         "spindle speed",
     )
-    lathe = find_default_keys(list_signals(CHANNELS))
+    lathe = find_default_signal_keys(list_signals(CHANNELS))
     assert "spindle command" in lathe
     assert not any(key.startswith("C ") for key in lathe)

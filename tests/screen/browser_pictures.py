@@ -17,7 +17,7 @@ from tempfile import TemporaryDirectory
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
 
-from app.screen.screen_theme import use_language
+from app.screen.screen_theme import set_language
 from tests.extras.modules import of_extras
 from tests.screen.pictures import lean
 
@@ -36,7 +36,7 @@ def main(argv: list[str] | None = None) -> int:
     os.environ["QT_QPA_PLATFORM"], os.environ["TZ"] = "offscreen", "UTC"
     time.tzset()
     app = QApplication.instance() or QApplication(sys.argv[:1])
-    use_language(args.language)
+    set_language(args.language)
     args.out.mkdir(parents=True, exist_ok=True)
     with TemporaryDirectory() as folder:
         os.environ["TURNDESK_HOME"] = folder

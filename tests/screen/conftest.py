@@ -20,7 +20,7 @@ from app.compose.runs.journal import Journal
 from app.desk.desk import Desk
 from app.desk.translation import ENGLISH_CODE
 from app.screen.color_palettes import DARK_PALETTE
-from app.screen.screen_theme import ScreenTheme, load_fonts, style_application, use_language
+from app.screen.screen_theme import ScreenTheme, load_fonts, set_language, style_application
 from app.screen.window import input_times
 from app.screen.window.main_window import MainWindow
 from tests.screen.desks import desk_on
@@ -57,7 +57,7 @@ def nothing_left(qapp: QApplication) -> Iterator[None]:
     before = set(left_over(collect=False))
     yield
     leaked = [name for name in left_over(collect=True) if name not in before]
-    use_language(
+    set_language(
         ENGLISH_CODE
     )  # a window on the desk speaks its language in every picture, also in the last one
     assert not leaked, f"left over: {leaked}"

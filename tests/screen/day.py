@@ -77,7 +77,7 @@ class Day:
     def slides(self) -> tuple[float, float]:
         """Where X and Z of the lathe really stand, inches from home."""
         assert isinstance(self.desk.desk_control.station_panel, PlantControls)
-        x, z = self.desk.desk_control.station_panel.get_true_position()[:2]
+        x, z = self.desk.desk_control.station_panel.get_true_positions()[:2]
         return x / INCH, z / INCH
 
     # --- hands ---------------------------------------------------------------------------------------

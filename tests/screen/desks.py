@@ -17,9 +17,9 @@ from app.compose.desk_pages import (
     register_special_functions,
 )
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from app.compose.optional_features import list_drawing_suffixes
-from app.compose.program_proving import create_drawer, create_proof
+from app.compose.program_proving import create_path_drawer, create_proof
 from app.compose.runs.journal import Journal
 from app.desk.background_work import ProgressCallback
 from app.desk.desk import Desk
@@ -31,10 +31,10 @@ from app.desk.state.desk_clock import DeskClock
 from app.desk.state.desk_control import DeskControl
 from app.desk.state.desk_machine import DeskMachine
 from app.editor.editor_model import EditorModel
-from app.editor.version_history import NullArchive, VersionArchive
+from app.editor.version_history import NullVersionArchive, VersionArchive
 from app.jog.manual_functions import ManualFunctions
 from app.offsets.offset_book import OffsetBook
-from app.offsets.offset_effect import OffsetEffect
+from app.offsets.offset_effect import OffsetEffectWorker
 from app.path.path_picture import ProgramPicture, build_picture
 from app.scope.scope_curves import LiveSamples
 from core.executor.job import Job
@@ -75,7 +75,7 @@ def desk_on(
     built: list[Desk] = []
 
     def make_job(source: ProgramSource, block_delete: bool) -> Job:
-        setup = create_setup(
+        setup = create_power_up_setup(
             lathe, tool_offsets=TOOLS, secondary_offsets=_secondary(built[0]), block_delete=block_delete
         )
         return Job(source, setup, f"{source.name}{block_delete}", SharedProgram(source), frozenset(TOOLS))
@@ -93,20 +93,22 @@ def desk_on(
         return replace(job, setup=setup, digest=f"{job.digest} {sorted(setup.secondary.items())}")
 
     work = LoadingSteps(load_source, make_job, proved, draw, renewed)
-    archive = archive or NullArchive()
+    archive = archive or NullVersionArchive()
     own = folders[0] if folders else None
     persistence = keep or Persistence()
     desk = Desk(
         DeskControl(machine.post, machine.snapshot, machine),
         ProgramLoader(work, machine.post),
         ProgramFolders(folders or (SAMPLES,), list_drawing_suffixes()),
-        machine=DeskMachine("GT-75 SIMULATED", lathe, is_two_hand=two_hand, allows_one_hand=one_hand),
+        machine=DeskMachine(
+            "GT-75 SIMULATED", lathe, has_two_hand_start=two_hand, allows_one_hand_start=one_hand
+        ),
         persistence=persistence,
         offset_book=book,
         clock=DeskClock(format_local_time=lambda: "09:41:07"),
         closing_sequence=closing,
     )
-    desk.page_registry.attach_model(OffsetEffect(create_drawer(lathe)))
+    desk.page_registry.attach_model(OffsetEffectWorker(create_path_drawer(lathe)))
     desk.page_registry.attach_model(EditorModel(work, archive, own or Path("/dev/null"), SAMPLES))
     hand = ManualFunctions(desk, lathe, unproved)
     desk.page_registry.attach_model(hand)

@@ -14,12 +14,12 @@ from core.executor.commands import (
     FeedHold,
     ForceOutput,
     LoadJob,
-    PrepareStart,
+    PrepareCycleStart,
     Reset,
     SetFeedOverride,
     SetSpindleLimit,
     SetSwitch,
-    SupplyProof,
+    SupplyJobProof,
 )
 from core.executor.job import Job, Proof
 from core.executor.snapshot import Alarm, LogEvent, MachineState, Snapshot
@@ -66,9 +66,9 @@ class FakeMachine:
             case LoadJob(job):
                 self.job, self.proof = job, None
                 self.loaded.append(job)
-            case PrepareStart(starts):
+            case PrepareCycleStart(starts):
                 self.now = replace(self.now, starts=starts)
-            case SupplyProof(proof):
+            case SupplyJobProof(proof):
                 self.proof = proof
             case SetSwitch(name, on):
                 switched: dict[str, Any] = {name: on}
@@ -103,9 +103,9 @@ class FakeMachine:
     def _start(self) -> None:
         why = self._refusal()
         if why:
-            self.now = replace(self.now, start_refusal=why)
+            self.now = replace(self.now, start_refusal_reason=why)
         else:
-            self.now = replace(self.now, state=MachineState.RUN, start_refusal="", message="")
+            self.now = replace(self.now, state=MachineState.RUN, start_refusal_reason="", message="")
 
     def _refusal(self) -> str:
         if self.now.state is MachineState.FAULT:

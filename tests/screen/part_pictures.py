@@ -17,12 +17,12 @@ from PySide6.QtGui import QColor, QFont, QImage, QPainter
 from PySide6.QtWidgets import QApplication
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from app.compose.program_proving import get_samples_folder
-from app.compose.stored_offsets import read_offsets
+from app.compose.stored_offsets import read_offsets_file
 from app.path.part_pane_view import find_removed_quarter
 from app.screen.screen_theme import FONT_FAMILY, load_fonts
-from core.interpreter.shared.job_setup import SecondaryOffset, Setup, ToolOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, SecondaryOffset, ToolOffset
 from core.language.called_files import load_called_files
 from core.language.source import Dialect, ProgramSource, load_source
 from core.part.solid_picture import SolidPicture
@@ -30,7 +30,7 @@ from core.part.solid_view import SolidView, fit_view
 from core.part.surface_points import Solid, make_turned_solid
 from core.part.turned_part import PartedPiece
 from core.proving.part_history import PartHistory, StepCollector
-from core.proving.part_proof import prove_with_part
+from core.proving.part_proof import prove_program_and_part
 from core.proving.program_tools import PartSettings
 from tests.screen.pictures import lean
 
@@ -69,7 +69,7 @@ def part_image(path: Path) -> QImage:
     image.fill(GROUND)
     painter = QPainter(image)
     turned = solid.inner_radii.shape[2] == 1
-    open_ = SolidView(*OPEN, open_range_deg=find_removed_quarter(OPEN[1]))
+    open_ = SolidView(*OPEN, cut_out_range_deg=find_removed_quarter(OPEN[1]))
     for number, view in enumerate((SolidView(*WHOLE), open_ if turned else SolidView(*WHOLE, MILLED))):
         painter.drawImage(number * WIDE, HEAD, _drawn(solid, view))
     font = QFont(FONT_FAMILY)
@@ -90,7 +90,7 @@ def part_of(path: Path) -> Solid:
     setup, machine = _setup(path, source), load_machine(None)
     setting = PartSettings(nose_radii={n: tool.nose_radius for n, tool in setup.tools.items()})
     gathered = StepCollector(setting)
-    _, report = prove_with_part(source, setup, machine, setting, on_span=gathered.add_span)
+    _, report = prove_program_and_part(source, setup, machine, setting, on_span=gathered.add_span)
     moves = gathered.make_program_steps()
     assert report is not None
     assert moves is not None
@@ -102,13 +102,15 @@ def part_of(path: Path) -> Solid:
     return solid
 
 
-def _setup(path: Path, source: ProgramSource) -> Setup:
+def _setup(path: Path, source: ProgramSource) -> InterpreterSetup:
     """The offsets of our samples; an example of the manual has all at nought."""
     machine = load_machine(None)
     if path.resolve().parent == get_samples_folder().resolve():
-        tools, secondary, zero, *_ = read_offsets(get_samples_folder() / "offsets.toml")
-        return create_setup(machine, tool_offsets=tools, secondary_offsets=secondary, zero_offsets=zero)
-    return create_setup(
+        tools, secondary, zero, *_ = read_offsets_file(get_samples_folder() / "offsets.toml")
+        return create_power_up_setup(
+            machine, tool_offsets=tools, secondary_offsets=secondary, zero_offsets=zero
+        )
+    return create_power_up_setup(
         machine,
         tool_offsets={n: ToolOffset() for n in range(1, 33)},
         secondary_offsets={n: SecondaryOffset() for n in range(1, 33)},
@@ -137,7 +139,7 @@ def _drawn(solid: Solid, view: SolidView) -> QImage:
     back, front = float(solid.column_edges[metal[0]]), float(solid.column_edges[metal[-1] + 1])
     scale, centre = fit_view(back, front, 1.08 * solid.max_radius_mm, WIDE, HIGH, view.azimuth_deg)
     view = replace(view, pixels_per_mm=scale, center_z_mm=centre)
-    image = SolidPicture().draw(solid, view, WIDE, HIGH)
+    image = SolidPicture().draw_picture(solid, view, WIDE, HIGH)
     image[image >> 24 == 0] = GROUND
     return QImage(image.tobytes(), WIDE, HIGH, 4 * WIDE, QImage.Format.Format_RGB32).copy()
 

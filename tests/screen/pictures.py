@@ -22,10 +22,10 @@ from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
 
 from app.compose.desk_assembly import create_desk_and_executor
-from app.compose.optional_features import insert_after
+from app.compose.optional_features import insert_items_after
 from app.compose.program_proving import get_samples_folder
 from app.compose.runs.journal import Journal
-from app.compose.stored_offsets import read_offsets
+from app.compose.stored_offsets import read_offsets_file
 from app.desk.desk import Desk
 from app.editor.editor_view import EditorPage
 from app.offsets.offset_book import OffsetBook
@@ -37,7 +37,7 @@ from core.access.access_table import AccessLevel
 from core.executor.snapshot import MachineState
 from core.store.production import job_queue, measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
-from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.production.part_cycles import CycleRow, ProductionStopRow
 from core.store.production.tool_lives import ToolLifeRow
 from core.store.store import Store
 from core.store.user_records import UserRow
@@ -68,7 +68,7 @@ class Stage:
     def __init__(self, journal: Journal | None = None, machine: str | None = None) -> None:
         self.clock = ManualClock()
         self.desk, self._executor = create_desk_and_executor(
-            machine, lambda: read_offsets(get_samples_folder() / "offsets.toml"), self.clock, journal
+            machine, lambda: read_offsets_file(get_samples_folder() / "offsets.toml"), self.clock, journal
         )
         self._folder = TemporaryDirectory()
         book = journal.book() if journal is not None else OffsetBook(Store.open(Path(self._folder.name)))
@@ -82,7 +82,7 @@ class Stage:
 
     def _fill(self, store: Store) -> None:
         """The offsets of the samples and some corrections."""
-        for number, tool in read_offsets(get_samples_folder() / "offsets.toml").tool_offsets.items():
+        for number, tool in read_offsets_file(get_samples_folder() / "offsets.toml").tool_offsets.items():
             store.offsets.tool_offsets.change_row(
                 number, "touched off", {"x": tool.x, "z": tool.z, "nose_radius": tool.nose_radius}
             )
@@ -148,7 +148,7 @@ class Stage:
         desk.station_controls.palm("left", is_down=True)
         desk.station_controls.palm("right", is_down=True)
         self.tick(lambda: desk.read_snapshot().state is not MachineState.IDLE, 5.0)
-        desk.station_controls.release_all()
+        desk.station_controls.release_all_buttons()
 
 
 SIZES_MEASURED = (
@@ -194,12 +194,12 @@ def _fill_parts(store: Store) -> None:
         reading = ReadingRow(0, features[0], part, size, "in", at, "gauge", "micrometer")
         store.write(partial(measured_parts.add_reading, row=reading)).result()
     for number, (reason, seconds) in enumerate(STOPS):
-        row = StopRow(f"{number}", "", name, f"2026-03-02T09:{number:02d}:00.000Z", seconds, reason)
+        row = ProductionStopRow(f"{number}", "", name, f"2026-03-02T09:{number:02d}:00.000Z", seconds, reason)
         store.write(partial(part_cycles.save_stop, row=row)).result()
     for life in (ToolLifeRow(1, 200, 0.0, 0.9, True), ToolLifeRow(3, 0, 1800.0)):
-        store.write(partial(tool_lives.save_limits, row=life)).result()
-    store.write(lambda c: tool_lives.save_use(c, 1, 184, 4020.0)).result()
-    store.write(lambda c: tool_lives.save_use(c, 3, 61, 732.0)).result()
+        store.write(partial(tool_lives.save_tool_life_limits, row=life)).result()
+    store.write(lambda c: tool_lives.save_insert_use(c, 1, 184, 4020.0)).result()
+    store.write(lambda c: tool_lives.save_insert_use(c, 3, 61, 732.0)).result()
     for program, wanted, note in JOBS:
         store.write(partial(job_queue.add_job, program=program, parts_to_make=wanted, note=note)).result()
     store.write(lambda c: job_queue.activate_job(c, 1)).result()
@@ -257,7 +257,7 @@ def _of_the_mill(out: Path, looks: Looks) -> Iterator[Path]:
     stage = Stage(machine=MILL)
     stage.make_ready(TILTED)
     yield from taken(stage.desk, out, False, looks, mill=True)
-    stage.desk.window_state.set_page(
+    stage.desk.window_state.set_page_properties(
         can_start=True
     )  # the editor was in front, and has handed its program over again
     stage.desk.program_loader.wait_until_loaded(LOADING)
@@ -343,7 +343,7 @@ _OWN_SCENES = (
     Scene("mill-editor", "F3", mill=True, line=18),
     Scene("mill", running=True, mill=True),
 )
-SCENES = insert_after(
+SCENES = insert_items_after(
     _OWN_SCENES,
     lambda scene: scene.name,
     [(Scene(name, keys), after) for each in of_extras("pictures") for name, keys, after in each.SCENES],

@@ -6,13 +6,13 @@ import pytest
 from PySide6.QtGui import QFontMetricsF
 from PySide6.QtWidgets import QApplication
 
-from app.desk.status.machine_status import make_status
+from app.desk.status.machine_status import make_machine_status
 from app.desk.status.prompt_line import describe_cause, make_alarm_prompt, reason
 from app.desk.status.readouts import ReadoutKind
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme, load_fonts
 from app.screen.window.run_row import describe_stop
-from core.alarms import CATALOG, AlarmCode, Reaction
+from core.alarms import CATALOG, AlarmCode, AlarmReaction
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import MachineState, Snapshot
 from tests.texts import text as wording
@@ -37,7 +37,7 @@ def fits(look: ScreenTheme, text: str, size: float, width: float, *, bold: bool 
 
 def snapshot(code: AlarmCode) -> Snapshot:
     alarm = make_alarm(code, "", 1234, 0.0)
-    if CATALOG[code].reaction in {Reaction.DRIVES_OFF, Reaction.STOP}:
+    if CATALOG[code].reaction in {AlarmReaction.DRIVES_OFF, AlarmReaction.STOP}:
         return Snapshot(state=MachineState.FAULT, alarms=(alarm,))
     return Snapshot(state=MachineState.HOLD, stop=alarm)
 
@@ -45,7 +45,7 @@ def snapshot(code: AlarmCode) -> Snapshot:
 @CODES
 def test_alarm_text_cause_and_remedy_fit_their_panels(look: ScreenTheme, code: AlarmCode) -> None:
     shot = snapshot(code)
-    view = make_status(shot, ReadoutKind.POSITION, True)
+    view = make_machine_status(shot, ReadoutKind.POSITION, True)
     assert fits(look, view.state_text, 2.5, 42 * look.unit_px, bold=True), view.state_text
     assert fits(look, describe_stop(view), 2.5, ACROSS - 24 * UNIT - 6 * UNIT, bold=True)
     assert fits(look, reason(view), 1.9, ACROSS), reason(view)

@@ -65,7 +65,7 @@ def test_position_is_converted_to_axis_units(parent: QWidget) -> None:
     parent.show()
     chart.grab()
     room = plot.find_curve_area()
-    x, y = plot.find_values(QPointF(room.x() + 0.75 * room.width(), room.y() + 0.25 * room.height()))
+    x, y = plot.map_to_axis_values(QPointF(room.x() + 0.75 * room.width(), room.y() + 0.25 * room.height()))
     assert x == pytest.approx(5.0)
     assert y == pytest.approx(5.0)
 

@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 from app.mdi.mdi_model import MdiModel
 from app.mdi.mdi_view import MdiPage
 from app.screen import page_table
-from app.searchto.searchto_model import SearchtoModel
+from app.searchto.searchto_model import RestartModel
 from core.executor.snapshot import MachineState
 from tests.attached import attached
 from tests.screen.chapters import (
@@ -171,7 +171,7 @@ def search(day: Day, text: str, line: str) -> None:
     """F6, a text or nothing, Return to its state, F10 to take it."""
     day.key(Key.Key_F6)
     assert day.page == page_table.SEARCHTO_PAGE
-    model = day.desk.page_registry.find_model(SearchtoModel)
+    model = day.desk.page_registry.find_model(RestartModel)
     assert model is not None
     if text:
         day.type(text)

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QApplication
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme
 from app.screen.window.station_dock import StationDock
-from app.screen.window_layout import FINGERTIP_PX, MIN_WINDOW_PX, find_unit_px, make_layout
+from app.screen.window_layout import FINGERTIP_PX, MIN_WINDOW_PX, find_unit_px, make_automatic_layout
 from core.executor.commands import CycleStart
 from core.executor.snapshot import MachineState
 from tests.screen.hands import Hands
@@ -84,7 +84,7 @@ def test_touch_drag_turns_potentiometer(hands: Hands) -> None:
 
 def test_station_controls_are_touch_sized_in_smallest_window(hands: Hands) -> None:
     """The tracks of the pots had 42 pixels."""
-    at = make_layout(*MIN_WINDOW_PX, has_dock=True).dock
+    at = make_automatic_layout(*MIN_WINDOW_PX, has_dock=True).dock
     dock = StationDock(ScreenTheme(DARK_PALETTE, find_unit_px(*MIN_WINDOW_PX)), hands.desk)
     dock.resize(at.w, at.h)
     dock.grab()
@@ -127,5 +127,5 @@ def test_window_release_releases_touched_palm_button(hands: Hands) -> None:
     dock = dock_of(hands)
     dock.controls[-1].on_press(QPointF())
     assert hands.machine.palms == {"right"}
-    hands.window.release_all()
+    hands.window.release_all_inputs()
     assert hands.machine.palms == set()

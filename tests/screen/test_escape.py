@@ -112,7 +112,7 @@ def test_esc_holds_before_it_closes_list_or_message(day: Day) -> None:
     model.prepared_line.worker.wait_for_results(60.0)
     day.run(0.05)
     day.key(Key.Key_F3)
-    assert model.line_completion.is_open
+    assert model.line_completion.is_choice_list_open
     day.palms()
     day.reaches(MachineState.RUN)
     day.desk.say("PEG.NC WAS CHANGED ON LATHE 2: F1, X SHOWS WHAT")

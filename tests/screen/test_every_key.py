@@ -119,7 +119,7 @@ def offered(day: Day, stroke: Stroke) -> set[str]:
         "Pause": {"FeedHold"},
         "ScrollLock": {"press_estop"},
         "Escape": {"FeedHold"} if day.shot.state in MOVING_STATES else set(),
-        **dict.fromkeys(("F11", "F12"), PALMS if day.frame.current_page.STARTS else frozenset()),
+        **dict.fromkeys(("F11", "F12"), PALMS if day.frame.current_page.CAN_START_CYCLES else frozenset()),
     }
     if name in always:
         return set(always[name])
@@ -137,7 +137,7 @@ def _of_letter(day: Day, stroke: Stroke) -> set[str]:
         return found
     if stroke.modifiers is not NONE:
         return set()
-    lit = {lamp.key for lamp in frame.strip.lamps} - frame.strip.hidden_keys
+    lit = {lamp.switch_key for lamp in frame.strip.lamps} - frame.strip.hidden_keys
     lit |= AUTOMATIC_KEYS if page is frame.automatic_page else set()
     assert frame.station_dock is not None
     lit |= {"A"} - frame.station_dock.hidden_keys
@@ -202,9 +202,7 @@ def _faults_of_stroke(typist: Typist, name: str, stroke: Stroke) -> Iterator[str
         yield "is no text"
     if must - done:
         yield f"does not do {must}"
-    refused = (
-        bool(day.desk.prompt_answers.message) and day.desk.prompt_answers.notice_kind is MessageKind.REFUSAL
-    )
+    refused = bool(day.desk.prompt_line.message) and day.desk.prompt_line.notice_kind is MessageKind.REFUSAL
     if label == "" and (left or done):
         yield "has no label"
     if label and refused is not barred:
@@ -261,12 +259,8 @@ def faults_of_prompt(typist: Typist, name: str) -> Iterator[str]:
         typist.press(by_name[key])
         if palms and desk.barred():
             yield f"{what} and is refused: {desk.barred()}"
-        elif (
-            not palms
-            and desk.prompt_answers.message
-            and desk.prompt_answers.notice_kind is MessageKind.REFUSAL
-        ):
-            yield f"{what} and is refused: {desk.prompt_answers.message}"
+        elif not palms and desk.prompt_line.message and desk.prompt_line.notice_kind is MessageKind.REFUSAL:
+            yield f"{what} and is refused: {desk.prompt_line.message}"
 
 
 @pytest.mark.parametrize("day", EVERY, indirect=True, ids="-".join)
@@ -277,7 +271,7 @@ def test_every_key_does_what_page_offers(day: Day, typists: list[Typist]) -> Non
     seen: list[str] = []
     language = day.desk.machine.program_language
     for entry in list_pages(language):
-        own = language == "omniturn" or entry.name in BY_MACHINE or len(entry.languages) < ALL
+        own = language == "omniturn" or entry.name in BY_MACHINE or len(entry.program_languages) < ALL
         if not own or not typist.opens(entry.name):
             continue
         seen.append(entry.name)
@@ -298,7 +292,7 @@ def test_every_key_does_what_page_offers(day: Day, typists: list[Typist]) -> Non
 
 
 def _refused(day: Day, heard: list[str]) -> list[str]:
-    return [*heard, day.shot.start_refusal] if day.shot.start_refusal else heard
+    return [*heard, day.shot.start_refusal_reason] if day.shot.start_refusal_reason else heard
 
 
 ENDS = {
@@ -325,9 +319,9 @@ ENDS = {
 def test_control_does_what_prompt_offers(day: Day, monkeypatch: pytest.MonkeyPatch) -> None:
     key, states = ENDS[day.shot.state]
     heard: list[str] = []
-    before = day.desk.prompt_answers.hear
+    before = day.desk.prompt_line.hear
     monkeypatch.setattr(
-        type(day.desk.prompt_answers),
+        type(day.desk.prompt_line),
         "hear",
         lambda _self, event: heard.append(event.text) if event.kind == "refused" else before(event),
     )

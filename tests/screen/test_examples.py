@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QApplication
 
 from app.compose.desk_assembly import create_desk_and_executor
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from app.compose.stored_offsets import Offsets
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme
@@ -101,7 +101,7 @@ def lathe(qapp: object) -> Iterator[Lathe]:
 
 def proved(path: Path) -> ProofReport:
     machine = load_machine(None)
-    setup = create_setup(
+    setup = create_power_up_setup(
         machine, tool_offsets=OFFSETS.tool_offsets, secondary_offsets=OFFSETS.secondary_offsets
     )
     return prove(load_source(path), setup, machine)
@@ -124,4 +124,4 @@ def test_example_ends_on_screen_at_proved_end_position(lathe: Lathe, name: str) 
     end = lathe.desk.read_snapshot()
     assert (end.state, end.alarms, end.underruns, end.parts) == (MachineState.IDLE, (), 0, 1)
     assert end.demand[:2] == pytest.approx(proof.machine_final_position[:2], abs=1e-6)
-    assert end.last_cycle == pytest.approx(proof.times.cycle_s, rel=0.025)
+    assert end.last_cycle == pytest.approx(proof.program_times.cycle_time_s, rel=0.025)

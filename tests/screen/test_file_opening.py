@@ -13,12 +13,12 @@ from PySide6.QtNetwork import QLocalSocket
 from pytestqt.qtbot import QtBot
 
 from app.screen.page_table import AUTOMATIC
-from app.screen.window.file_opening import FileOpening
+from app.screen.window.file_opening import FileOpener
 from app.screen.window.main_window import MainWindow
 from app.screen.window.running_screen import (
     ACCEPTED_REPLY,
     MAX_REQUEST_BYTES,
-    RunningScreen,
+    OpenProgramReceiver,
     find_socket_name,
 )
 from core.executor.snapshot import MachineState
@@ -31,7 +31,7 @@ PIN = SAMPLES / "pin.nc"
 
 
 def drop(
-    opening: FileOpening, window: MainWindow, *paths: Path, offered: Qt.DropAction = EITHER
+    opening: FileOpener, window: MainWindow, *paths: Path, offered: Qt.DropAction = EITHER
 ) -> Qt.DropAction:
     data = QMimeData()
     data.setUrls([QUrl.fromLocalFile(str(path)) for path in paths])
@@ -52,18 +52,18 @@ def window(hands: Hands) -> MainWindow:
 
 
 @pytest.fixture
-def opening(window: MainWindow) -> FileOpening:
-    return FileOpening(window)
+def opening(window: MainWindow) -> FileOpener:
+    return FileOpener(window)
 
 
-def test_dropped_program_is_loaded_and_file_is_not_moved(opening: FileOpening, window: MainWindow) -> None:
+def test_dropped_program_is_loaded_and_file_is_not_moved(opening: FileOpener, window: MainWindow) -> None:
     assert drop(opening, window, PIN) == Qt.DropAction.CopyAction
     assert window.frame is not None
     assert window.frame.desk.program_loader.loaded_program.name == "pin.nc"
     assert window.frame.current_page.NAME == AUTOMATIC
 
 
-def test_a_drop_that_can_only_move_the_file_is_rejected(opening: FileOpening, window: MainWindow) -> None:
+def test_a_drop_that_can_only_move_the_file_is_rejected(opening: FileOpener, window: MainWindow) -> None:
     assert window.frame is not None
     before = window.frame.desk.program_loader.loaded_program.name
     drop(opening, window, PIN, offered=Qt.DropAction.MoveAction)
@@ -72,7 +72,7 @@ def test_a_drop_that_can_only_move_the_file_is_rejected(opening: FileOpening, wi
 
 @pytest.mark.parametrize("paths", [(PIN, SAMPLES / "knob.nc"), (SAMPLES,)])
 def test_several_files_and_folders_are_rejected(
-    opening: FileOpening, window: MainWindow, paths: tuple[Path, ...]
+    opening: FileOpener, window: MainWindow, paths: tuple[Path, ...]
 ) -> None:
     assert window.frame is not None
     before = window.frame.desk.program_loader.loaded_program.name
@@ -82,7 +82,7 @@ def test_several_files_and_folders_are_rejected(
 
 
 def test_no_program_is_loaded_while_one_runs(
-    opening: FileOpening, window: MainWindow, machine: FakeMachine
+    opening: FileOpener, window: MainWindow, machine: FakeMachine
 ) -> None:
     machine.now = replace(machine.now, state=MachineState.HOLD)
     assert window.frame is not None
@@ -96,7 +96,7 @@ def test_no_program_is_loaded_while_one_runs(
 def received(window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[Path]:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
     found: list[Path] = []
-    assert RunningScreen(found.append, window).start_listening()
+    assert OpenProgramReceiver(found.append, window).start_listening()
     return found
 
 
@@ -128,7 +128,7 @@ def test_a_request_that_is_not_an_existing_file_is_rejected(
 
 
 def test_a_second_screen_does_not_replace_the_first(received: list[Path], window: MainWindow) -> None:
-    assert not RunningScreen(received.append, window).start_listening()
+    assert not OpenProgramReceiver(received.append, window).start_listening()
 
 
 def test_stale_socket_of_killed_screen_is_replaced(
@@ -136,4 +136,4 @@ def test_stale_socket_of_killed_screen_is_replaced(
 ) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
     Path(find_socket_name()).touch()
-    assert RunningScreen(lambda _path: None, window).start_listening()
+    assert OpenProgramReceiver(lambda _path: None, window).start_listening()

@@ -14,10 +14,10 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.compose.runs.journal import Journal
-from app.programs.program_commands import complete_name, remove_extension
+from app.programs.program_commands import add_missing_extension, remove_extension
 from app.programs.program_list_model import ProgramListModel
 from app.programs.programs_view import ProgramsPage
-from app.programs.removable_media import UsbStick, list_sticks
+from app.programs.removable_media import UsbStick, list_usb_sticks
 from app.screen import page_table
 from app.screen.window_layout import FINGERTIP_PX
 from core.executor.commands import FeedHold, LoadJob
@@ -73,7 +73,7 @@ def shop(qtbot: QtBot, machine: FakeMachine, journal: Journal, tmp_path: Path) -
     shutil.copy(SAMPLES / "pin.nc", own / "alpha.nc")
     shutil.copy(SAMPLES / "bushing.nc", own / "beta.nc")
     desk = desk_on(machine, own, SAMPLES, keep=journal)
-    attached(desk, ProgramListModel).import_export.folder_chooser.list_sticks = lambda: (
+    attached(desk, ProgramListModel).program_transfer.folder_chooser.list_usb_sticks = lambda: (
         UsbStick("STICK", stick, 1_000_000),
     )
     with window_on(qtbot, desk, machine) as window:
@@ -143,8 +143,8 @@ def test_name_of_copy_can_be_typed_during_cycle(shop: Shop) -> None:
 def test_programs_are_sorted_by_name_date_run_parts_and_size(shop: Shop) -> None:
     assert shop.journal is not None
     shop.journal.keep(load_source(SAMPLES / "knob.nc"))
-    shop.journal.runs.record_start("knob.nc")
-    shop.sees(lambda: shop.journal is not None and bool(shop.journal.require_store().runs.read_records()))
+    shop.journal.runs.record_run_start("knob.nc")
+    shop.sees(lambda: shop.journal is not None and bool(shop.journal.require_store().runs.read_run_records()))
     shop.open_list()
     assert shop.rows() == sorted(shop.rows())
     shop.key(Key.Key_F2)
@@ -160,7 +160,7 @@ def test_programs_are_sorted_by_name_date_run_parts_and_size(shop: Shop) -> None
 def test_copy_gets_typed_name_and_extension(shop: Shop) -> None:
     shop.open_list()
     shop.key(Key.Key_F4)
-    shop.sees(lambda: shop.programs.table_panel.table.question == wording("programs.name-of-copy"))
+    shop.sees(lambda: shop.programs.table_panel.table.entry_prompt == wording("programs.name-of-copy"))
     shop.key(Key.Key_Delete)
     shop.type("gamma")
     shop.key(Key.Key_Return)
@@ -182,7 +182,7 @@ def test_typed_text_is_inserted_before_extension(shop: Shop) -> None:
 )
 def test_offered_name_completes_to_original_name(name: str, offered: str) -> None:
     assert remove_extension(name) == offered
-    assert complete_name(offered, Path(name)) == name
+    assert add_missing_extension(offered, Path(name)) == name
 
 
 @pytest.mark.parametrize(
@@ -347,7 +347,7 @@ def test_only_mounted_media_are_found_on_both_levels(tmp_path: Path) -> None:
     for path in ("one", "user/two", "user/gone"):
         (tmp_path / path).mkdir(parents=True)
     mounted = {tmp_path / "one", tmp_path / "user" / "two"}
-    found = list_sticks((tmp_path, tmp_path / "nothing"), mounted.__contains__, tmp_path / "no list")
+    found = list_usb_sticks((tmp_path, tmp_path / "nothing"), mounted.__contains__, tmp_path / "no list")
     assert [stick.label for stick in found] == ["one", "two"]
 
 

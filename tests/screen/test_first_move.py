@@ -8,7 +8,7 @@ import pytest
 
 from app.mdi.mdi_view import MdiPage
 from app.screen.window.station_dock import StationDock
-from app.searchto.searchto_model import SearchtoModel, SearchtoStage
+from app.searchto.searchto_model import RestartModel, RestartStage
 from core.executor.commands import FIRST_MOVE_CROSSES
 from core.executor.snapshot import MachineState, StartAction
 from tests.attached import attached
@@ -60,13 +60,13 @@ def dock(operator: Operator) -> StationDock:
 
 def take_way_out(operator: Operator) -> None:
     """F6, F4, F10 and both palms; then back to the Automatic page."""
-    model = attached(operator.stage.desk, SearchtoModel)
+    model = attached(operator.stage.desk, RestartModel)
     operator.key(Key.Key_F6, Key.Key_F4)
     model.restart_finder.worker.wait_for_results(60.0)
     operator.window.refresh()
     operator.key(Key.Key_F10)
     model.restart_finder.worker.wait_for_results(60.0)
-    assert model.stage is SearchtoStage.READY
+    assert model.stage is RestartStage.READY
     operator.palms()
     operator.reaches(MachineState.IDLE)
     operator.key(Key.Key_Escape, Key.Key_Escape)

@@ -114,7 +114,7 @@ class Server:
 def test_repeat_overtaken_by_release_is_not_a_press(watched: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
     server, keyboard = Server(), watched.window.keyboard_filter
     monkeypatch.setattr("app.screen.window.keyboard.open_x_server", lambda: server)
-    keyboard.filter_window(window_of(watched))
+    keyboard.filter_window_events(window_of(watched))
     now = [keyboard.input_times.clock()]
     monkeypatch.setattr(keyboard.input_times, "clock", lambda: now[0])
     send(watched, Key.Key_S, text="s", at=10_000)
@@ -173,7 +173,7 @@ def test_question_is_answered_by_touch_on_prompt_line(watched: Hands) -> None:
     assert watched.frame.prompt_line.confirm_key == "Y"
     watched.window.press_key("Yes")
     assert said == []  # a double tap is quicker than any reading
-    assert not watched.desk.confirm_key
+    assert not watched.desk.confirmation_key
     watched.desk.ask_operator("PRESS Y TO DO IT", lambda: said.append("yes"))
     read(watched.desk)
     watched.window.press_key("Yes")

@@ -22,7 +22,7 @@ from app.desk.translation import tr
 from app.screen import screen_theme
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.page_base import Page
-from app.screen.screen_theme import TRANSLATION_CONTEXT, ScreenTheme, use_language
+from app.screen.screen_theme import TRANSLATION_CONTEXT, ScreenTheme, set_language
 from app.screen.window.main_window import MainWindow
 from app.special.machine_records import make_event_row
 from core.alarms import CATALOG, AlarmCode, AlarmEntry
@@ -234,7 +234,7 @@ def test_second_window_has_its_own_language(spanish: Hands) -> None:
 
 def test_unknown_language_has_no_catalog() -> None:
     with pytest.raises(FileNotFoundError, match="turndesk_xx"):
-        use_language("xx")
+        set_language("xx")
 
 
 def test_translated_key_labels_fit(spanish: Hands) -> None:

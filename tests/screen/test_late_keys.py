@@ -9,7 +9,7 @@ from PySide6.QtCore import QCoreApplication, QEvent, QPointF, Qt
 from PySide6.QtGui import QMouseEvent
 from PySide6.QtWidgets import QApplication
 
-from app.desk.late_presses import StartingAction, name_starting_action
+from app.desk.late_presses import BlockedLateAction, get_starting_action_name
 from app.screen import page_table
 from app.screen.window.input_times import FRAMES_AFTER_STALL, PAUSE_TIME_S
 from core.executor.commands import ConfirmStart, CycleStart, EnableDrives, FeedHold, Jog, JogByStep, SetSwitch
@@ -69,12 +69,14 @@ class Stall:
         for _ in range(count):
             self.time.now += seconds
             self.hands.window.input_times.frame()
-            self.hands.window.set_late(is_late=False)
+            self.hands.window.set_event_late(is_late=False)
 
-    def told(self, *names: StartingAction) -> bool:
+    def told(self, *names: BlockedLateAction) -> bool:
         """Whether these were reported as not done."""
-        answer = self.hands.desk.prompt_answers.message
-        return shows(answer, "screen.screen-stood-still", what=", ".join(map(name_starting_action, names)))
+        answer = self.hands.desk.prompt_line.message
+        return shows(
+            answer, "screen.screen-stood-still", what=", ".join(map(get_starting_action_name, names))
+        )
 
 
 @pytest.fixture
@@ -100,7 +102,7 @@ def test_late_keys_open_field_and_type_text_in_order(stall: Stall) -> None:
     assert hands.machine.posted == []  # no letter was a command
     stall.press(Key.Key_Escape, 400)
     assert not hands.page.file_prompt.isVisible()
-    assert not hands.desk.prompt_answers.message
+    assert not hands.desk.prompt_line.message
 
 
 def test_late_page_keys_act_in_order(stall: Stall) -> None:
@@ -111,7 +113,7 @@ def test_late_page_keys_act_in_order(stall: Stall) -> None:
     stall.press(Key.Key_F8, 200)
     stall.press(Key.Key_F1, 300)
     assert hands.frame.current_page.NAME == page_table.MENU
-    assert not hands.desk.prompt_answers.message
+    assert not hands.desk.prompt_line.message
 
 
 def test_switch_pressed_twice_in_stall_switches_twice(stall: Stall) -> None:
@@ -155,7 +157,7 @@ def test_late_touch_on_unchanged_target_acts(stall: Stall) -> None:
     stall.ends()
     stall.touch_f2(500)
     assert stall.hands.page.file_prompt.isVisible()
-    assert not stall.hands.desk.prompt_answers.message
+    assert not stall.hands.desk.prompt_line.message
 
 
 # --- what is not done ---------------------------------------------------------------------------------------
@@ -172,7 +174,7 @@ def test_late_palm_buttons_start_nothing(stall: Stall, later: int) -> None:
     assert starts_of(stall) == []
     assert not hands.desk.station_controls.palms.press_times
     assert not hands.machine.palms
-    assert stall.told(StartingAction.CYCLE)
+    assert stall.told(BlockedLateAction.CYCLE)
 
 
 def test_palm_buttons_pressed_in_and_after_stall_are_not_a_pair(stall: Stall) -> None:
@@ -196,7 +198,7 @@ def test_late_drives_key_is_dropped_and_following_key_acts(stall: Stall) -> None
     assert starts_of(stall) == []
     assert hands.machine.now.state is MachineState.DISABLED
     assert hands.machine.now.single_block
-    assert stall.told(StartingAction.DRIVES)
+    assert stall.told(BlockedLateAction.DRIVES)
 
 
 def test_one_message_names_all_dropped_keys(stall: Stall) -> None:
@@ -207,12 +209,12 @@ def test_one_message_names_all_dropped_keys(stall: Stall) -> None:
     stall.press(Key.Key_D, 100, "d")
     stall.press(Key.Key_F11, 200)
     stall.press(Key.Key_F12, 250)
-    assert stall.told(StartingAction.DRIVES, StartingAction.CYCLE)
+    assert stall.told(BlockedLateAction.DRIVES, BlockedLateAction.CYCLE)
     for passed in (2.0, 1.9):
         stall.time.now += passed
         hands.desk.say("THE ANSWER TO ANOTHER KEY")
         hands.window.refresh()
-        assert stall.told(StartingAction.DRIVES, StartingAction.CYCLE)
+        assert stall.told(BlockedLateAction.DRIVES, BlockedLateAction.CYCLE)
     hands.desk.ask_operator("A QUESTION IS NEVER HIDDEN", lambda: None)
     hands.window.refresh()
     assert hands.frame.prompt_line.question_text == "A QUESTION IS NEVER HIDDEN"
@@ -235,13 +237,13 @@ def test_late_yes_key_does_not_answer_question(stall: Stall, asked: Callable[[],
     stall.ends()
     stall.press(Key.Key_Y, 500, "y")
     assert asked() == []
-    assert stall.hands.desk.confirm_key == "Y"  # it stands
-    assert stall.told(StartingAction.YES)
+    assert stall.hands.desk.confirmation_key == "Y"  # it stands
+    assert stall.told(BlockedLateAction.YES)
 
 
 def test_late_touch_on_yes_does_not_answer_question(stall: Stall, asked: Callable[[], list[str]]) -> None:
     stall.ends()
-    stall.hands.window.set_late(is_late=True)
+    stall.hands.window.set_event_late(is_late=True)
     stall.hands.window.press_key("Yes")
     assert asked() == []
 
@@ -250,7 +252,7 @@ def test_late_no_cancels_question(stall: Stall, asked: Callable[[], list[str]]) 
     stall.ends()
     stall.press(Key.Key_N, 500, "n")
     assert asked() == []
-    assert not stall.hands.desk.confirm_key
+    assert not stall.hands.desk.confirmation_key
 
 
 @pytest.mark.parametrize("later", [100, 1300])
@@ -265,7 +267,7 @@ def test_key_pressed_after_dropped_answer_is_dropped_too(
     assert asked() == []
     assert not hands.page.file_prompt.isVisible()
     assert not hands.machine.now.single_block
-    assert stall.told(StartingAction.YES, StartingAction.FOLLOWING_KEY)
+    assert stall.told(BlockedLateAction.YES, BlockedLateAction.FOLLOWING_KEY)
 
 
 def test_keys_act_again_after_pause_following_dropped_answer(
@@ -298,7 +300,7 @@ def test_late_feed_hold_always_acts(stall: Stall, key: Key) -> None:
     stall.ends()
     stall.press(key, 100)
     assert stall.hands.machine.posted == [FeedHold()]
-    assert not stall.hands.desk.prompt_answers.message
+    assert not stall.hands.desk.prompt_line.message
 
 
 def test_late_touch_on_changed_screen_is_dropped(stall: Stall) -> None:
@@ -307,7 +309,7 @@ def test_late_touch_on_changed_screen_is_dropped(stall: Stall) -> None:
     stall.press(Key.Key_F1, 100)  # done: another page
     stall.touch_f2(500)
     assert hands.frame.current_page.NAME == page_table.MENU
-    assert stall.told(StartingAction.TOUCH)
+    assert stall.told(BlockedLateAction.TOUCH)
 
 
 def test_late_start_by_mouse_is_dropped(stall: Stall) -> None:
@@ -315,7 +317,7 @@ def test_late_start_by_mouse_is_dropped(stall: Stall) -> None:
     hands.machine.now = type(hands.machine.now)(state=MachineState.DISABLED)
     hands.window.refresh()
     stall.ends()
-    hands.window.set_late(is_late=True)
+    hands.window.set_event_late(is_late=True)
     hands.window.press_key("D")  # as its lamp does it
     assert starts_of(stall) == []
-    assert stall.told(StartingAction.DRIVES)
+    assert stall.told(BlockedLateAction.DRIVES)

@@ -10,7 +10,13 @@ import pytest
 from PySide6.QtCore import QRect
 from PySide6.QtGui import QScreen
 
-from app.screen.window_layout import MIN_WINDOW_PX, Rect, find_unit_px, make_layout, make_low_layout
+from app.screen.window_layout import (
+    MIN_WINDOW_PX,
+    Rect,
+    find_unit_px,
+    make_automatic_layout,
+    make_compact_layout,
+)
 from tests.screen.hands import Hands
 
 SIZES = [
@@ -33,7 +39,7 @@ def apart(one: Rect, other: Rect) -> bool:
 @pytest.mark.parametrize("dock", [True, False])
 @pytest.mark.parametrize("size", SIZES)
 def test_layout_parts_do_not_overlap_and_fit_window(size: tuple[int, int], dock: bool) -> None:
-    at = make_layout(*size, dock)
+    at = make_automatic_layout(*size, dock)
     parts = [(name, rect) for name, rect in at._asdict().items() if dock or name != "dock"]
     for name, rect in parts:
         assert rect.w > 0, name
@@ -48,7 +54,7 @@ def test_layout_parts_do_not_overlap_and_fit_window(size: tuple[int, int], dock:
 
 @pytest.mark.parametrize("size", SIZES)
 def test_automatic_page_panels_have_minimum_sizes(size: tuple[int, int]) -> None:
-    at, u = make_layout(*size, has_dock=True), find_unit_px(*size)
+    at, u = make_automatic_layout(*size, has_dock=True), find_unit_px(*size)
     assert at.position.h >= 27 * u - 1
     assert at.feed.w >= 24 * u
     assert at.listing.h >= 18 * u
@@ -57,7 +63,7 @@ def test_automatic_page_panels_have_minimum_sizes(size: tuple[int, int]) -> None
 
 
 def test_targets_are_touch_sized_on_smallest_screen() -> None:
-    at = make_layout(*MIN_WINDOW_PX, has_dock=True)
+    at = make_automatic_layout(*MIN_WINDOW_PX, has_dock=True)
     least = 9 / (254 / (1024**2 + 600**2) ** 0.5)  # pixels: 9 mm where the corners are 10 inches apart
     assert at.keys.h >= least
     assert at.strip.h >= least
@@ -66,14 +72,15 @@ def test_targets_are_touch_sized_on_smallest_screen() -> None:
 
 def test_path_view_is_larger_without_dock() -> None:
     assert (
-        make_layout(1920, 1080, has_dock=False).path.w > make_layout(1920, 1080, has_dock=True).path.w + 200
+        make_automatic_layout(1920, 1080, has_dock=False).path.w
+        > make_automatic_layout(1920, 1080, has_dock=True).path.w + 200
     )
 
 
 @pytest.mark.parametrize("dock", [True, False])
 @pytest.mark.parametrize("size", SIZES)
 def test_page_layout_with_low_readouts_does_not_overlap(size: tuple[int, int], dock: bool) -> None:
-    at, low = make_layout(*size, dock), make_low_layout(*size, dock)
+    at, low = make_automatic_layout(*size, dock), make_compact_layout(*size, dock)
     parts = [at.title, *low, at.prompt, at.keys, *([at.dock] if dock else [])]
     for one, two in combinations(parts, 2):
         assert apart(one, two), (one, two)

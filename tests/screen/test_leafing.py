@@ -18,7 +18,7 @@ from pytestqt.qtbot import QtBot
 
 from app.desk.pages.table_content import TableContent, TableRow
 from app.desk.programs.program_folder import ProgramFolders
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.editor.editor_parts_view import FindingList
 from app.editor.live_proof import ProofFindings
 from app.offsets.cell_table_view import CellPanel
@@ -32,14 +32,14 @@ from app.screen.panel import Panel
 from app.screen.screen_theme import ScreenTheme, ThemedPainter
 from app.screen.table_panel import TablePanel
 from app.screen.window_layout import FINGERTIP_PX
-from app.special.special_view import FunctionList
+from app.special.special_view import FunctionListPanel
 from core.language.diagnostics import Diagnostic, Severity
 from core.store.store_rows import FIELDS_BY_KIND
 from tests.texts import text as wording
 
 if TYPE_CHECKING:
     from app.offsets.cell_table import CellTable
-    from app.special.special_functions import SpecialFunctionList
+    from app.special.special_functions import SpecialFunctionsModel
 
 MANY = 30
 SMALL = 6.4  # pixels of the unit at 1024x600
@@ -250,7 +250,7 @@ def test_question_does_not_cover_rows(above: QWidget, high: int, rows: int, note
     """145 pixels are what drawn letters leave to a table of the special functions at 1024x600."""
     panel = TablePanel(ScreenTheme(DARK_PALETTE, SMALL), lambda _row: None, above)
     panel.resize(640, high)
-    panel.show_table(replace(sheet_of(MANY), question=wording("screen.whose-name"), notes=("one", "two")))
+    panel.show_table(replace(sheet_of(MANY), entry_prompt=wording("screen.whose-name"), notes=("one", "two")))
     drawn: dict[str, QRectF] = {}
     write = ThemedPainter.draw_text_line
 
@@ -275,7 +275,7 @@ def test_every_mill_tool_is_reached_by_touch(above: QWidget) -> None:
     table = SimpleNamespace(
         title="TOOL TABLE", words=("L", "R"), kind=MillToolTable.kind, numbers=tuple(range(1, MANY + 1)),
         columns=("length", "radius"), choose=lambda row, _column: chosen.append(row),
-        tone_at=lambda *_: Tone.OFF, value_at=lambda *_: "1.0", field_of=lambda _: "",
+        tone_at=lambda *_: StatusTone.OFF, value_at=lambda *_: "1.0", field_of=lambda _: "",
     )  # fmt: skip
     panel = CellPanel(ScreenTheme(DARK_PALETTE, SMALL), cast("CellTable", table), above)
     panel.resize(500, 300)
@@ -291,7 +291,7 @@ def test_mill_tool_cells_are_touch_sized_next_to_pad(above: QWidget, wide: int, 
     table = SimpleNamespace(
         title="TOOL TABLE", words=names, kind=MillToolTable.kind, numbers=(1, 2),
         columns=names, choose=lambda _row, column: chosen.append(column),
-        tone_at=lambda *_: Tone.OFF, value_at=lambda *_: "1.0", field_of=lambda _: "",
+        tone_at=lambda *_: StatusTone.OFF, value_at=lambda *_: "1.0", field_of=lambda _: "",
     )  # fmt: skip
     panel = CellPanel(ScreenTheme(DARK_PALETTE, SMALL), cast("CellTable", table), above)
     panel.resize(wide, 150)
@@ -322,8 +322,8 @@ def test_every_special_function_is_reached_by_touch(above: QWidget) -> None:
     entered: list[int] = []
     functions = [SimpleNamespace(name=f"FUNCTION {n}", use="what it does") for n in range(MANY)]
     model = SimpleNamespace(functions=functions, at=0, inside=False)
-    panel = FunctionList(
-        ScreenTheme(DARK_PALETTE, SMALL), cast("SpecialFunctionList", model), entered.append, above
+    panel = FunctionListPanel(
+        ScreenTheme(DARK_PALETTE, SMALL), cast("SpecialFunctionsModel", model), entered.append, above
     )
     panel.resize(218, 360)  # as at 1024x600
     assert chosen_rows(panel, lambda: entered[-1], leaf_keys(panel)) == set(range(MANY))

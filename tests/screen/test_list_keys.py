@@ -9,8 +9,8 @@ from app.offsets.tool_offsets_view import ToolOffsetsPage
 from app.offsets.tool_shapes import ToolShapeTable
 from app.programs.program_list_model import ProgramListModel
 from app.screen import page_table
-from app.searchto.searchto_model import SearchtoModel
-from app.special.special_functions import SpecialFunctionList
+from app.searchto.searchto_model import RestartModel
+from app.special.special_functions import SpecialFunctionsModel
 from core.executor.snapshot import Alarm, LogEvent
 from tests.attached import attached
 from tests.screen.lathe import Key, Operator
@@ -41,7 +41,7 @@ def wait_for_programs(qtbot: QtBot, operator: Operator, programs: ProgramListMod
 
 def test_end_and_home_select_last_and_first_special_function(ready: Operator) -> None:
     assert ready.frame.open_page(page_table.SPECIAL)
-    functions = attached(ready.stage.desk, SpecialFunctionList)
+    functions = attached(ready.stage.desk, SpecialFunctionsModel)
     ready.key(Key.Key_End)
     assert functions.at == len(functions.functions) - 1
     ready.key(Key.Key_Home)
@@ -89,9 +89,9 @@ def test_end_and_home_select_last_and_first_zero_offset(ready: Operator) -> None
 
 def test_end_and_home_select_last_and_first_line_of_searchto(ready: Operator) -> None:
     assert ready.frame.open_page(page_table.SEARCHTO_PAGE)
-    cursor = attached(ready.stage.desk, SearchtoModel).line_cursor
+    cursor = attached(ready.stage.desk, RestartModel).line_cursor
     ready.key(Key.Key_End)
-    assert cursor.selected_line == len(cursor.lines)
+    assert cursor.selected_line == len(cursor.program_lines)
     ready.key(Key.Key_Home)
     assert cursor.selected_line == 1
 

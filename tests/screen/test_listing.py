@@ -49,7 +49,7 @@ def painted(listing: ProgramListing) -> QPixmap:
 def test_listing_reads_only_visible_lines(listing: ProgramListing) -> None:
     lines = Counted()
     listing.show_source(lines, {})
-    listing.show_run(500_000, "X1", "")
+    listing.show_run_position(500_000, "X1", "")
     lines.asked = 0
     painted(listing)
     assert 0 < lines.asked <= listing.rows
@@ -58,18 +58,18 @@ def test_listing_reads_only_visible_lines(listing: ProgramListing) -> None:
 def test_current_line_is_visible(listing: ProgramListing) -> None:
     listing.show_source([f"X{n}" for n in range(100)], {})
     for line in (1, 2, 50, 99, 100):
-        listing.show_run(line, "X1", "X2")
+        listing.show_run_position(line, "X1", "X2")
         painted(listing)
         assert listing.first_row < line <= listing.first_row + listing.rows
 
 
 def test_scrolling_stops_following_current_line_until_requested(listing: ProgramListing) -> None:
     listing.show_source([f"X{n}" for n in range(100)], {})
-    listing.show_run(50, "", "")
+    listing.show_run_position(50, "", "")
     painted(listing)
     listing.scroll_by(-1000)
     assert (listing.first_row, listing.follows_run) == (0, False)
-    listing.show_run(51, "", "")
+    listing.show_run_position(51, "", "")
     painted(listing)
     assert listing.first_row == 0
     listing.scroll_by(1000)

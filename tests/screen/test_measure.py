@@ -12,8 +12,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.path.measuring import PointKind, SnapPoint
-from app.path.path_aspects import ApproachLeg, PathAspect, TipPosition
+from app.path.measuring import SnapPoint, SnapPointKind
+from app.path.path_aspects import ApproachLeg, PathViewKind, TipPosition
 from app.path.path_marks_view import make_leg_labels
 from app.path.path_picture import PictureBuilder, ProgramPicture
 from app.path.path_view import PathView
@@ -71,7 +71,7 @@ def view(qtbot: QtBot) -> Iterator[PathView]:
 
 def settle(view: PathView) -> QImage:
     for _ in range(20):
-        view.draw_slice()
+        view.continue_drawing()
     return view.grab().toImage()
 
 
@@ -86,27 +86,27 @@ def press(view: PathView, *keys: Key) -> None:
 
 
 def test_path_is_measured_by_keyboard_only(view: PathView) -> None:
-    view.set_measuring()
+    view.switch_measuring()
     ruler = view.measurement
     assert ruler is not None
-    ruler.cursor = SnapPoint(0.0, 5.0, PointKind.END)
+    ruler.cursor = SnapPoint(0.0, 5.0, SnapPointKind.END)
     press(view, Key.Key_Return, Key.Key_Left)
-    assert ruler.cursor == SnapPoint(-20.0, 5.0, PointKind.END)
+    assert ruler.cursor == SnapPoint(-20.0, 5.0, SnapPointKind.END)
     press(view, Key.Key_Down, Key.Key_Return)
     assert (ruler.first_point, ruler.second_point) == (
-        SnapPoint(0, 5, PointKind.END),
-        SnapPoint(-20, 8, PointKind.END),
+        SnapPoint(0, 5, SnapPointKind.END),
+        SnapPoint(-20, 8, SnapPointKind.END),
     )
-    rows = dict(ruler.make_rows(view.is_metric))
+    rows = dict(ruler.make_value_rows(view.is_metric))
     assert (rows["ΔX Ø"], rows["ΔX R"], rows["ΔZ"]) == ("6.0000", "3.0000", "−20.0000")
     press(view, Key.Key_Backspace)
     assert ruler.first_point is None
 
 
 def test_tab_moves_cross_along_path(view: PathView) -> None:
-    view.set_measuring()
+    view.switch_measuring()
     assert view.measurement is not None
-    view.measurement.cursor = SnapPoint(2.0, 10.0, PointKind.END)
+    view.measurement.cursor = SnapPoint(2.0, 10.0, SnapPointKind.END)
     press(view, Key.Key_Tab, Key.Key_Tab)
     assert view.measurement.cursor[:2] == (-20.0, 5.0)
     QTest.keyClick(view, Key.Key_Tab, SHIFT)
@@ -114,28 +114,28 @@ def test_tab_moves_cross_along_path(view: PathView) -> None:
 
 
 def test_shift_moves_cross_by_one_pixel_without_snapping(view: PathView) -> None:
-    view.set_measuring()
+    view.switch_measuring()
     assert view.measurement is not None
-    view.measurement.cursor = SnapPoint(0.0, 5.0, PointKind.END)
+    view.measurement.cursor = SnapPoint(0.0, 5.0, SnapPointKind.END)
     QTest.keyClick(view, Key.Key_Right, SHIFT)
-    assert view.measurement.cursor.kind is PointKind.FREE
+    assert view.measurement.cursor.kind is SnapPointKind.FREE
     assert view.measurement.cursor.z == pytest.approx(view.panes[0].pixel_size_mm)
 
 
 def test_pointer_snaps_to_corner(view: PathView) -> None:
-    view.set_measuring()
+    view.switch_measuring()
     for z, x in ((0.0, 5.0), (-20.0, 5.0)):
         QTest.mouseClick(view, Qt.MouseButton.LeftButton, pos=on_widget(view, z, x) + QPoint(4, -3))
     assert view.measurement is not None
     assert (view.measurement.first_point, view.measurement.second_point) == (
-        SnapPoint(0, 5, PointKind.END),
-        SnapPoint(-20, 5, PointKind.END),
+        SnapPoint(0, 5, SnapPointKind.END),
+        SnapPoint(-20, 5, SnapPointKind.END),
     )
 
 
 def test_cross_remains_visible_after_zoom(view: PathView) -> None:
     view.zoom_view(12)
-    view.set_measuring()
+    view.switch_measuring()
     assert view.measurement is not None
     for _ in range(4):
         press(view, Key.Key_Tab)
@@ -146,14 +146,14 @@ def test_cross_remains_visible_after_zoom(view: PathView) -> None:
 
 
 def test_another_program_ends_measuring(view: PathView) -> None:
-    view.set_measuring()
+    view.switch_measuring()
     view.show_picture(picture(SHAFT))
     assert view.measurement is None
 
 
 def test_measuring_does_not_start_without_program(view: PathView) -> None:
     view.show_picture(None)
-    view.set_measuring()
+    view.switch_measuring()
     assert view.measurement is None
 
 
@@ -217,9 +217,9 @@ def test_single_touch_drags_view_and_selects_line(view: PathView) -> None:
 
 
 def test_face_and_side_views_appear_for_programs_that_use_them(view: PathView) -> None:
-    assert [pane.aspect for pane in view.panes] == [PathAspect.PATH]
+    assert [pane.aspect for pane in view.panes] == [PathViewKind.PATH]
     view.select_next_view()
-    assert [pane.aspect for pane in view.panes] == [PathAspect.PATH]
+    assert [pane.aspect for pane in view.panes] == [PathViewKind.PATH]
     view.show_picture(slot())
     seen = []
     for _ in range(6):
@@ -231,7 +231,7 @@ def test_face_and_side_views_appear_for_programs_that_use_them(view: PathView) -
 
 def test_tip_is_projected_to_face_and_side_views(view: PathView) -> None:
     view.show_picture(slot())
-    view.show_tip(TipPosition(4, -5.0, -5.0, c=90.0))
+    view.show_tool_tip(TipPosition(4, -5.0, -5.0, c=90.0))
     path, face = view.panes
     tip = TipPosition(4, -5.0, -5.0, c=90.0)
     assert path.find_tip_position(tip) == (-5.0, -5.0)
@@ -246,10 +246,10 @@ def test_tip_is_projected_to_face_and_side_views(view: PathView) -> None:
 
 def test_measuring_on_face_shows_x_y_and_r(view: PathView) -> None:
     view.show_picture(slot())
-    view.set_measuring()
+    view.switch_measuring()
     assert view.measurement is not None
-    assert view.measurement.pane.aspect is PathAspect.FACE
-    assert [name for name, _figure in view.measurement.make_rows(True)] == ["X", "Y", "R"]
+    assert view.measurement.pane.aspect is PathViewKind.FACE
+    assert [name for name, _figure in view.measurement.make_value_rows(True)] == ["X", "Y", "R"]
 
 
 def drawn_in(colour: str, image: QImage, view: PathView, spots: list[tuple[float, float]]) -> bool:
@@ -266,7 +266,7 @@ def drawn_in(colour: str, image: QImage, view: PathView, spots: list[tuple[float
 
 def test_comparison_draws_path_before_and_after(view: PathView) -> None:
     wider = picture([(12.0, 2.0), (7.0, 0.0), (7.0, -20.0), (9.0, -20.0)])
-    view.show_compared(picture(SHAFT), wider)
+    view.show_comparison(picture(SHAFT), wider)
     image = settle(view)
     assert view.is_comparing
     assert drawn_in(DARK_PALETTE.accent, image, view, [(-3.0, 7.0), (-3.5, 7.0)])
@@ -275,7 +275,7 @@ def test_comparison_draws_path_before_and_after(view: PathView) -> None:
 
 
 def test_zoom_in_comparison_centers_on_farthest_change(view: PathView) -> None:
-    view.show_compared(picture(SHAFT), picture([(10.0, 2.0), (5.0, 0.0), (5.0, -20.0), (8.004, -20.003)]))
+    view.show_comparison(picture(SHAFT), picture([(10.0, 2.0), (5.0, 0.0), (5.0, -20.0), (8.004, -20.003)]))
     apart = view.panes[0].largest_distance
     assert apart is not None
     assert apart.distance_mm == pytest.approx(0.005)
@@ -288,12 +288,12 @@ def test_zoom_in_comparison_centers_on_farthest_change(view: PathView) -> None:
 
 def test_tool_is_drawn_only_if_tip_position_is_known(view: PathView) -> None:
     assert not drawn_in(DARK_PALETTE.tip, settle(view), view, [(0.0, 0.0)])
-    view.show_tip(TipPosition(0, 0.0, 0.0))
+    view.show_tool_tip(TipPosition(0, 0.0, 0.0))
     assert drawn_in(DARK_PALETTE.tip, settle(view), view, [(0.0, 0.0)])
 
 
 def test_comparison_fits_both_pictures(view: PathView) -> None:
-    view.show_compared(picture([(40.0, 2.0), (40.0, -60.0)]), picture(SHAFT))
+    view.show_comparison(picture([(40.0, 2.0), (40.0, -60.0)]), picture(SHAFT))
     z0, z1, x0, x1 = view.panes[0].find_visible_area()
     assert z0 < -60
     assert z1 > 2
@@ -302,10 +302,10 @@ def test_comparison_fits_both_pictures(view: PathView) -> None:
 
 
 def test_next_picture_ends_comparison(view: PathView) -> None:
-    view.show_compared(picture(SHAFT), picture(SHAFT))
+    view.show_comparison(picture(SHAFT), picture(SHAFT))
     view.show_picture(picture(SHAFT))
     assert not view.is_comparing
-    view.show_compared(None, picture(SHAFT))
+    view.show_comparison(None, picture(SHAFT))
     assert not view.is_comparing
 
 

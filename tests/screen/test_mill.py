@@ -14,13 +14,13 @@ from pytestqt.qtbot import QtBot
 from app.automatic.automatic_view import AutomaticPage
 from app.compose.desk_assembly import create_desk_and_executor
 from app.compose.program_proving import get_samples_folder
-from app.compose.stored_offsets import read_offsets
+from app.compose.stored_offsets import read_offsets_file
 from app.editor.editor_view import EditorPage
 from app.jog.jog_view import JogPage
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme
 from app.screen.window.main_window import MainWindow
-from app.searchto.searchto_view import SearchtoPage
+from app.searchto.searchto_view import RestartPage
 from core.executor.snapshot import MachineState, Snapshot
 from core.store.store import Store
 from drivers.wakeups import ManualClock
@@ -41,10 +41,10 @@ class Mill:
         self._clock = ManualClock()
         offsets = get_samples_folder() / "offsets.toml"
         self.desk, self._executor = create_desk_and_executor(
-            machine, lambda: read_offsets(offsets), self._clock
+            machine, lambda: read_offsets_file(offsets), self._clock
         )
         self._store = Store.open(folder)
-        for number, tool in read_offsets(offsets).tool_offsets.items():
+        for number, tool in read_offsets_file(offsets).tool_offsets.items():
             self._store.offsets.tool_offsets.change_row(
                 number, "measured", {"x": tool.x, "z": tool.z, "nose_radius": tool.nose_radius}
             )
@@ -189,7 +189,7 @@ def test_view_keys_control_3d_camera(mill: Mill) -> None:
     space = mill.page.plane_view
     assert space.camera is not None
     mill.key(Key.Key_V)
-    assert space.camera.view_aspect.name == "FRONT"
+    assert space.camera.view_direction.name == "FRONT"
     near = space.camera.zoom_factor
     mill.key(Key.Key_Z)
     assert space.camera.zoom_factor > near
@@ -217,7 +217,7 @@ def test_searchto_shows_table_and_plane_at_line(mill: Mill, qtbot: QtBot) -> Non
     mill.key(Key.Key_F6)
     assert mill.window.frame is not None
     page = mill.window.frame.current_page
-    assert isinstance(page, SearchtoPage)
+    assert isinstance(page, RestartPage)
     mill.window.refresh()
     assert page.plane_view.isVisible()
     line = line_of("PLANE AXIAL A+30 C+180") + 1
@@ -238,7 +238,7 @@ def test_searchto_shows_table_and_plane_at_line(mill: Mill, qtbot: QtBot) -> Non
         (30.0, 180.0)
     )  # turned, where the line begins
     assert page.model.restart_plan is not None
-    assert shown.active_block == page.model.restart_plan.restart_point.checkpoint.blocks
+    assert shown.active_block_number == page.model.restart_plan.restart_point.checkpoint.blocks
 
 
 @pytest.mark.parametrize(
@@ -308,7 +308,7 @@ def test_tilted_tool_retracts_along_its_own_axis(qapp: QApplication, tmp_path: P
         axes = mill.desk.read_snapshot().axes
         a, y, z = (axes.index(name) for name in "AYZ")
         key = next(
-            way.key_name for way in page.model.directions if (way.axis, way.direction_sign) == ("A", 1)
+            way.key_name for way in page.model.directions if (way.axis_name, way.direction_sign) == ("A", 1)
         )
         mill.held(getattr(Key, f"Key_{key}"), lambda s: s.actual[a] > 20.0)
         lean = math.radians(mill.desk.read_snapshot().actual[a])

@@ -12,7 +12,7 @@ from app.desk.status.interrupted_notice import NoticeRow, _describe_uncertainty
 from app.desk.translation import tr
 from app.screen import page_table
 from app.screen.color_palettes import DARK_PALETTE
-from app.screen.screen_theme import ScreenTheme, load_fonts, use_language
+from app.screen.screen_theme import ScreenTheme, load_fonts, set_language
 from app.screen.window.window_bars import NoticeRows
 from app.screen.window_layout import FINGERTIP_PX
 from core.executor.snapshot import POWER_LOST_REASON, MachineState
@@ -84,11 +84,14 @@ def test_executed_part_of_interrupted_program_remains_drawn(hands: Hands) -> Non
     tip = hands.page.path_view._tip
     assert tip is not None
     tool = job.setup.tools[1]
-    assert (tip.active_block, tip.stop_position) == (9, (found.where[1] - tool.z, found.where[0] - tool.x))
+    assert (tip.active_block_number, tip.stop_position) == (
+        9,
+        (found.where[1] - tool.z, found.where[0] - tool.x),
+    )
     hands.machine.now = replace(hands.machine.now, interrupted=replace(found, text="changed"))
     hands.window.refresh()
     assert hands.page.path_view._tip is not None
-    assert hands.page.path_view._tip.active_block == 0
+    assert hands.page.path_view._tip.active_block_number == 0
 
 
 def test_touch_on_notice_row_acts_like_its_key(hands: Hands) -> None:
@@ -144,7 +147,7 @@ def test_uncertain_state_after_power_cut_is_shown_in_full_next_to_keys(
     """At 1024x600 and 1280x800 its last words, to look at tool and part, were cut off."""
     assert qapp is not None
     load_fonts()
-    use_language(language)
+    set_language(language)
     drawn: list[str] = []
     real = QPainter.drawText
 
@@ -162,7 +165,7 @@ def test_uncertain_state_after_power_cut_is_shown_in_full_next_to_keys(
     rows.resize(wide, rows.needed_height_px)  # as the window does, which asks in every frame
     monkeypatch.setattr(QPainter, "drawText", spy)
     rows.grab()
-    use_language("en")
+    set_language("en")
     lines = len(drawn) - 1 - 2 * len(keys)
     assert " ".join(drawn[1 : 1 + lines]) == rows.notice_rows[0].values_text
     rows.notice_rows = (NoticeRow("INTERRUPTED", "T1", keys),)

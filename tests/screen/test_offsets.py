@@ -16,10 +16,10 @@ from app.offsets.tool_offsets_view import ToolOffsetsPage
 from app.screen import page_table
 from app.screen.panel import Panel
 from app.screen.window_layout import FINGERTIP_PX
-from core.executor.commands import ChangeOffsets, LoadJob, UseOffsets
+from core.executor.commands import ChangeOffsets, LoadJob, UseOffsetTables
 from core.executor.snapshot import MachineState
 from core.store.store import Store
-from core.store.store_rows import ToolRow
+from core.store.store_rows import ToolOffsetRow
 from tests.offset_store import use_store
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import yes
@@ -48,7 +48,7 @@ def tools_of(hands: Hands) -> ToolOffsetsPage:
 
 def in_force(hands: Hands) -> float:
     """X of T1 that the control was told last; 0 before that."""
-    used = [command for command in hands.machine.posted if isinstance(command, UseOffsets)]
+    used = [command for command in hands.machine.posted if isinstance(command, UseOffsetTables)]
     return used[-1].tools[1].x if used else 0.0
 
 
@@ -72,9 +72,9 @@ def test_correction_is_entered_shown_and_used_in_next_cycle(hands: Hands, store:
     hands.sees(lambda: page.entry_panel.entry_texts.question_text == wording("screen.x-diameter-correction"))
     answer(hands, ".5-.502", "")
     hands.sees(lambda: page.entry_panel.entry_texts.question_text == "R?")
-    assert page.entry_panel.entry_texts.change_text.endswith("→  X −0.00100  Z +0.00000  R 0.00000")
+    assert page.entry_panel.entry_texts.change_description.endswith("→  X −0.00100  Z +0.00000  R 0.00000")
     answer(hands, "")
-    hands.sees(lambda: 1 in page.table_panel.offsets)
+    hands.sees(lambda: 1 in page.content_panel.offsets)
     assert store.offsets.secondary_offsets.read_rows()[1].x == pytest.approx(-0.001 * 25.4)
     hands.sees(lambda: hands.prompt() == wording("screen.saved", names="D1"))
     hands.key(Key.Key_Escape)
@@ -96,7 +96,7 @@ def test_rejected_entry_is_explained_and_remains_for_correction(hands: Hands, st
     hands.key(Key.Key_Backspace)
     hands.key(Key.Key_Delete)
     answer(hands, ".005", "", "")
-    hands.sees(lambda: 2 in page.table_panel.offsets)
+    hands.sees(lambda: 2 in page.content_panel.offsets)
     assert store.offsets.secondary_offsets.read_rows()[2].x == pytest.approx(0.0025 * 25.4)
 
 
@@ -136,12 +136,12 @@ def test_clear_asks_once_and_undo_restores_everything(hands: Hands, store: Store
     assert hands.frame.current_page is page
     hands.key(Key.Key_C)
     hands.key(Key.Key_C)
-    assert page.table_panel.offsets
+    assert page.content_panel.offsets
     yes(hands.window)
-    hands.sees(lambda: page.table_panel.offsets == {})
+    hands.sees(lambda: page.content_panel.offsets == {})
     hands.key(Key.Key_F4)
     yes(hands.window)
-    hands.sees(lambda: sorted(page.table_panel.offsets) == [1, 32])
+    hands.sees(lambda: sorted(page.content_panel.offsets) == [1, 32])
 
 
 def test_history_is_scrolled_and_closed(hands: Hands, store: Store) -> None:
@@ -158,7 +158,7 @@ def test_history_is_scrolled_and_closed(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_PageDown)
     assert page.history_list.first_row == page.history_list.rows
     hands.key(Key.Key_Escape)
-    hands.sees(page.table_panel.isVisible)
+    hands.sees(page.content_panel.isVisible)
 
 
 def test_a_correction_while_a_part_runs_is_proved_meanwhile(hands: Hands, store: Store) -> None:
@@ -186,7 +186,7 @@ def test_a_correction_while_a_part_runs_is_proved_meanwhile(hands: Hands, store:
     hands.machine.idle()  # a machine that did not take it up: it is read anew
     hands.sees(lambda: sum(isinstance(c, LoadJob) for c in hands.machine.posted) == loads + 1)
     hands.sees(lambda: hands.desk.program_loader.loaded_program.phase is LoadingPhase.READY)
-    used = [command for command in hands.machine.posted if isinstance(command, UseOffsets)]
+    used = [command for command in hands.machine.posted if isinstance(command, UseOffsetTables)]
     assert used[-1].secondary[1].x == pytest.approx(0.0025 * 25.4)
 
 
@@ -201,7 +201,7 @@ def test_offsets_are_metric_if_control_is_metric(hands: Hands, store: Store) -> 
     modal = hands.machine.now.modal._replace(metric=True)
     hands.machine.now = replace(hands.machine.now, modal=modal)
     answer(hands, "1")
-    hands.sees(lambda: "Z +2.5400" in page_of(hands).entry_panel.entry_texts.change_text)
+    hands.sees(lambda: "Z +2.5400" in page_of(hands).entry_panel.entry_texts.change_description)
 
 
 def test_a_tool_is_set_with_f8_and_refused_while_running(hands: Hands, store: Store) -> None:
@@ -216,8 +216,12 @@ def test_a_tool_is_set_with_f8_and_refused_while_running(hands: Hands, store: St
     hands.sees(lambda: 9 in page.model.offset_book.tool_offsets)
     hands.key(Key.Key_Right)
     answer(hands, ".0156")
-    hands.sees(lambda: page.entry_panel.entry_texts.change_text == "T9   NOSE RADIUS 0.00000 → 0.01560")
-    assert store.offsets.tool_offsets.read_rows()[9] == ToolRow(-0.5 * 25.4, -3.25 * 25.4, 0.0156 * 25.4)
+    hands.sees(
+        lambda: page.entry_panel.entry_texts.change_description == "T9   NOSE RADIUS 0.00000 → 0.01560"
+    )
+    assert store.offsets.tool_offsets.read_rows()[9] == ToolOffsetRow(
+        -0.5 * 25.4, -3.25 * 25.4, 0.0156 * 25.4
+    )
     hands.machine.now = replace(hands.machine.now, state=MachineState.HOLD)
     answer(hands, "1")
     hands.sees(lambda: hands.prompt() == wording("screen.program-runs-wear-only"))
@@ -276,7 +280,9 @@ def test_remark_is_typed_by_touch(hands: Hands, store: Store) -> None:
     page.letter_pad._places[-1][1]()
     hands.sees(lambda: store.offsets.tool_offsets.read_rows()[1].remark == "wr")
     hands.sees(
-        lambda: page.letter_pad.isHidden() and not page.number_pad.isHidden() and page.table_panel.isVisible()
+        lambda: (
+            page.letter_pad.isHidden() and not page.number_pad.isHidden() and page.content_panel.isVisible()
+        )
     )
 
 
@@ -289,14 +295,14 @@ def test_offset_change_without_store_is_rejected(hands: Hands) -> None:
 def test_offset_is_entered_by_touch_only(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F9)
     page = page_of(hands)
-    hands.sees(lambda: len(page.table_panel._places) == 4)
+    hands.sees(lambda: len(page.content_panel._places) == 4)
     assert page.number_pad.isHidden()  # until a finger is there
-    touch(hands, page.table_panel, 2)  # the upper half of the right column
+    touch(hands, page.content_panel, 2)  # the upper half of the right column
     assert page.model.offset_number == 0
-    assert page.table_panel.first_enlarged_number == 17
-    touch(hands, page.table_panel, 0)
+    assert page.content_panel.first_enlarged_number == 17
+    touch(hands, page.content_panel, 0)
     assert page.model.offset_number == 17
-    assert page.table_panel.first_enlarged_number == 0
+    assert page.content_panel.first_enlarged_number == 0
     point, two, enter = 13, 9, 20  # places on the pad, row by row
     for key in (point, two, enter, enter, enter):
         spot, *_ = page.number_pad._places[key]
@@ -304,7 +310,7 @@ def test_offset_is_entered_by_touch_only(hands: Hands, store: Store) -> None:
             page.number_pad, Qt.MouseButton.LeftButton, pos=QPoint(*map(int, spot.center().toTuple()))
         )
     yes(hands.window)
-    hands.sees(lambda: 17 in page.table_panel.offsets)
+    hands.sees(lambda: 17 in page.content_panel.offsets)
     assert store.offsets.secondary_offsets.read_rows()[17].x == pytest.approx(0.1 * 25.4)
 
 
@@ -326,8 +332,8 @@ def test_every_offset_is_reached_by_touch(
     hands.key(Key.Key_F9)
     page = page_of(hands)
     for place in range(8):
-        touch(hands, page.table_panel, zone)
-        touch(hands, page.table_panel, place)
+        touch(hands, page.content_panel, zone)
+        touch(hands, page.content_panel, place)
         assert page.model.offset_number == first + place
         hands.key(Key.Key_Escape)
 
@@ -335,16 +341,16 @@ def test_every_offset_is_reached_by_touch(
 def test_enlarged_offsets_close_by_touch_and_by_esc(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F9)
     page = page_of(hands)
-    touch(hands, page.table_panel, 1)
-    touch(hands, page.table_panel, 8)  # ALL 32
-    assert (page.table_panel.first_enlarged_number, page.model.offset_number) == (0, 0)
-    touch(hands, page.table_panel, 1)
+    touch(hands, page.content_panel, 1)
+    touch(hands, page.content_panel, 8)  # ALL 32
+    assert (page.content_panel.first_enlarged_number, page.model.offset_number) == (0, 0)
+    touch(hands, page.content_panel, 1)
     hands.key(Key.Key_Escape)
-    assert page.table_panel.first_enlarged_number == 0
+    assert page.content_panel.first_enlarged_number == 0
     assert hands.frame.current_page is page
-    touch(hands, page.table_panel, 3)
+    touch(hands, page.content_panel, 3)
     answer(hands, "7")  # typed all the same
-    hands.sees(lambda: page.table_panel.first_enlarged_number == 0)
+    hands.sees(lambda: page.content_panel.first_enlarged_number == 0)
     assert page.model.offset_number == 7
 
 
@@ -358,7 +364,7 @@ def test_effect_is_shown_for_entered_and_for_saved_change(hands: Hands, store: S
     hands.type("-.002")
     hands.key(Key.Key_F6)
     hands.sees(lambda: page.effect_view.is_comparing)
-    assert not page.table_panel.isVisible()
+    assert not page.content_panel.isVisible()
     # half of the diameter, and what R does to it is nothing here
     hands.sees(lambda: begins(hands.prompt(), "screen.apart-at-circle", far="0.00100 in"))
     whole = page.effect_view.first_projection
@@ -371,14 +377,14 @@ def test_effect_is_shown_for_entered_and_for_saved_change(hands: Hands, store: S
     hands.key(Key.Key_Z)
     assert page.effect_view.first_projection != before
     hands.key(Key.Key_F6)
-    hands.sees(page.table_panel.isVisible)
+    hands.sees(page.content_panel.isVisible)
     answer(hands, "", "", "")
-    hands.sees(lambda: 1 in page.table_panel.offsets)
+    hands.sees(lambda: 1 in page.content_panel.offsets)
     hands.sees(lambda: hands.desk.program_loader.loaded_program.phase is LoadingPhase.READY)
     hands.key(Key.Key_F6)
     hands.sees(lambda: begins(hands.prompt(), "screen.apart-at-circle", far="0.00100 in"))
     hands.key(Key.Key_Escape)
-    hands.sees(page.table_panel.isVisible)
+    hands.sees(page.content_panel.isVisible)
     assert hands.frame.current_page is page
 
 
@@ -390,7 +396,7 @@ def test_effect_is_not_shown_without_program(hands: Hands, store: Store) -> None
 
 def test_tools_are_scrolled_and_cells_selected_by_touch(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F8)
-    table = tools_of(hands).table_panel
+    table = tools_of(hands).content_panel
     touch(hands, table, 1)  # a page down
     hands.sees(lambda: (tools_of(hands).model.tool_number, table.first_row) == (6, 1))
     touch(hands, table, 2 + 8 * 4 + 4)  # the last row that is shown, wear X

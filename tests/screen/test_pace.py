@@ -153,7 +153,7 @@ def test_change_other_than_time_is_drawn_in_next_frame(hands: Hands, counted: Co
 
 
 def test_another_program_is_drawn_in_next_frame(hands: Hands, counted: Counted) -> None:
-    hands.desk.program_loader.replace_loaded(
+    hands.desk.program_loader.replace_loaded_program(
         replace(hands.desk.program_loader.loaded_program, progress_count=7)
     )
     assert counted.tick() == 1

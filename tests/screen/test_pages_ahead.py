@@ -53,7 +53,7 @@ class Asked:
         self.names.append(name)
         return self  # type: ignore[return-value]  # all that is asked of it is ``ahead``
 
-    def prepare_slice(self) -> bool:
+    def continue_preparation(self) -> bool:
         """As a page."""
         self.slices -= 1
         return self.slices > 0
@@ -66,7 +66,7 @@ def steps(ahead: PagePreloader, idle: Desk) -> int:
         if ahead.is_done:
             return count
         idle.clock.read_seconds.now += 2 * MIN_SLICE_INTERVAL_S
-        ahead.run_slice()
+        ahead.continue_loading()
         ahead._worker.wait_for_results(60.0)
     raise AssertionError("it never ends")
 
@@ -108,11 +108,11 @@ def test_nothing_is_preloaded_while_program_is_loading(idle: Desk, monkeypatch: 
     asked = Asked()
     ahead = PagePreloader(idle, asked)
     before = idle.program_loader.loaded_program
-    idle.program_loader.replace_loaded(replace(before, phase=LoadingPhase.PROVING))
+    idle.program_loader.replace_loaded_program(replace(before, phase=LoadingPhase.PROVING))
     with pytest.raises(AssertionError, match="never ends"):
         steps(ahead, idle)
     assert not asked.names
-    idle.program_loader.replace_loaded(before)
+    idle.program_loader.replace_loaded_program(before)
     steps(ahead, idle)
     assert asked.names
     ahead.close()
@@ -124,7 +124,7 @@ def test_slices_wait_for_minimum_interval(idle: Desk, monkeypatch: pytest.Monkey
     ahead = PagePreloader(idle, asked)
     idle.clock.read_seconds.now += 2 * MIN_SLICE_INTERVAL_S  # type: ignore[attr-defined]
     for _ in range(SLICES):
-        ahead.run_slice()
+        ahead.continue_loading()
         ahead._worker.wait_for_results(60.0)
     assert asked.slices == 3, "at one instant there is one slice: the modules were asked for"
     ahead.close()

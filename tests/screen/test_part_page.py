@@ -41,12 +41,12 @@ def test_selected_finding_moves_part_view_to_its_line(day: Day) -> None:
     day.sees(lambda: shown.path_view.is_part_shown)
     player = shown.path_view.part_player
     assert player is not None
-    day.sees(lambda: player.result is not None and player.result.part_instant.line_number == 11)
-    assert shown.model.selected_index == 1  # what weighs most, not the offset that nobody has set
+    day.sees(lambda: player.latest_result is not None and player.latest_result.part_instant.line_number == 11)
+    assert shown.model.selected_row_index == 1  # what weighs most, not the offset that nobody has set
     day.key(Key.Key_J)
-    day.sees(lambda: player.result is not None and player.result.part_instant.line_number == 10)
+    day.sees(lambda: player.latest_result is not None and player.latest_result.part_instant.line_number == 10)
     day.key(Key.Key_Return)
-    day.sees(lambda: player.result is not None and player.result.part_instant.line_number == 11)
+    day.sees(lambda: player.latest_result is not None and player.latest_result.part_instant.line_number == 11)
 
 
 def test_bar_stock_is_entered_by_touch(day: Day) -> None:
@@ -55,7 +55,7 @@ def test_bar_stock_is_entered_by_touch(day: Day) -> None:
     day.sees(lambda: shown.table_panel.table.title.startswith("STOCK"))
     day.key(Key.Key_F4)
     day.sees(lambda: len(shown.table_panel.table.rows) == 5)
-    shown.model.touch_row(1)
+    shown.model.handle_row_touch(1)
     day.sees(lambda: not shown.number_pad.isHidden())
     shown.number_pad.repaint()
     for key in ("1", "Enter"):

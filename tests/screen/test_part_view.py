@@ -13,7 +13,7 @@ from pytestqt.qtbot import QtBot
 
 from app.path.part_pane_view import find_removed_quarter
 from app.path.part_player import PartPlayer
-from app.path.path_aspects import PathAspect, TipPosition
+from app.path.path_aspects import PathViewKind, TipPosition
 from app.path.path_marks_view import make_part_title
 from app.path.path_view import PathView
 from app.screen.color_palettes import DARK_PALETTE, LIGHT_PALETTE
@@ -51,9 +51,9 @@ def shown(view: PathView, program: str) -> QImage:
 def settled(view: PathView) -> QImage:
     assert view.part_player is not None
     view.part_player.wait_for_result(60.0)
-    view.draw_slice()
+    view.continue_drawing()
     view.part_player.wait_for_result(60.0)
-    view.draw_slice()
+    view.continue_drawing()
     return view.grab().toImage()
 
 
@@ -94,27 +94,27 @@ def test_touch_plays_steps_and_moves_along_timeline(view: PathView) -> None:
     words = {press.__name__: rect for rect, press, *_ in view._places if hasattr(press, "__name__")}
     QTest.mouseClick(view, LEFT, pos=words["toggle_playback"].center().toPoint())
     assert player.is_playing
-    assert player.time_s == 0.0
+    assert player.program_time_s == 0.0
     assert view._bar is not None
     track = view._bar._track
     middle = QPoint(round(track.center().x()), round(track.center().y()))
     QTest.mousePress(view, LEFT, pos=middle)
     assert not player.is_playing
-    assert player.time_s == pytest.approx(player.duration_s / 2, rel=0.01)
+    assert player.program_time_s == pytest.approx(player.duration_s / 2, rel=0.01)
     QTest.mouseMove(view, QPoint(round(track.right()), middle.y()))
     QTest.mouseRelease(view, LEFT, pos=QPoint(round(track.right()), middle.y()))
-    assert player.time_s == pytest.approx(player.duration_s, rel=0.01)
+    assert player.program_time_s == pytest.approx(player.duration_s, rel=0.01)
 
 
 def test_timeline_ignores_touch_while_it_follows_run(view: PathView) -> None:
     shown(view, SHAFT)
     player = view.part_player
     assert player is not None
-    player.follows_run, before = True, player.time_s
+    player.follows_run, before = True, player.program_time_s
     assert view._bar is not None
     track = view._bar._track
     QTest.mouseClick(view, LEFT, pos=track.center().toPoint())
-    assert player.time_s == before
+    assert player.program_time_s == before
 
 
 def test_tool_is_drawn_at_position_of_run(view: PathView) -> None:
@@ -122,9 +122,9 @@ def test_tool_is_drawn_at_position_of_run(view: PathView) -> None:
     assert view.picture is not None
     assert view.part_player is not None
     block = view.picture.find_block_for_line(6)
-    view.show_tip(TipPosition(block, -0.225 * INCH, 0.4 * INCH))
+    view.show_tool_tip(TipPosition(block, -0.225 * INCH, 0.4 * INCH))
     settled(view)
-    now = view.part_player.result
+    now = view.part_player.latest_result
     assert now is not None
     assert now.part_instant.tool is not None
     assert now.part_instant.tool.control_point == pytest.approx((-0.225 * INCH, 0.4 * INCH))
@@ -152,7 +152,7 @@ def test_only_path_view_exists_without_player(qtbot: QtBot) -> None:
     qtbot.addWidget(made)
     made.show_picture(picture(SHAFT))
     made.select_next_view()
-    assert [pane.aspect for pane in made.panes] == [PathAspect.PATH]
+    assert [pane.aspect for pane in made.panes] == [PathViewKind.PATH]
     assert not made.has_several_views
 
 
@@ -167,17 +167,17 @@ def test_part_error_is_shown_in_pane_title(view: PathView, monkeypatch: pytest.M
 
 def test_without_a_program_nothing_is_played(view: PathView) -> None:
     view.show_picture(None)
-    view.draw_slice()
+    view.continue_drawing()
     view.select_next_view()
     assert not view.is_part_shown
 
 
-@pytest.mark.parametrize("aspect", [PathAspect.SECTION, PathAspect.SOLID])
-def test_measuring_continues_in_part_view(view: PathView, aspect: PathAspect) -> None:
+@pytest.mark.parametrize("aspect", [PathViewKind.SECTION, PathViewKind.SOLID])
+def test_measuring_continues_in_part_view(view: PathView, aspect: PathViewKind) -> None:
     shown(view, SHAFT)
     while view.panes[0].aspect is not aspect:
         view.select_next_view()
-    view.set_measuring(is_on=True)
+    view.switch_measuring(is_on=True)
     assert view.measurement is not None
     for key in (Qt.Key.Key_Right, Qt.Key.Key_Tab, Qt.Key.Key_Return, Qt.Key.Key_Left):
         QTest.keyClick(view, key)
@@ -189,10 +189,10 @@ def test_measuring_continues_in_part_view(view: PathView, aspect: PathAspect) ->
 
 def test_part_is_not_calculated_while_it_is_not_visible(view: PathView) -> None:
     view.show_picture(picture(SHAFT))
-    view.draw_slice()
+    view.continue_drawing()
     assert view.part_player is not None
     assert not view.part_player.worker.is_busy
-    assert view.part_player.result is None
+    assert view.part_player.latest_result is None
 
 
 # --- in space -----------------------------------------------------------------------------------------
@@ -201,7 +201,7 @@ def test_part_is_not_calculated_while_it_is_not_visible(view: PathView) -> None:
 def solid(view: PathView, program: str) -> QImage:
     """The part in space at the end of a program."""
     shown(view, program)
-    while view.panes[0].aspect is not PathAspect.SOLID:
+    while view.panes[0].aspect is not PathViewKind.SOLID:
         view.select_next_view()
     return settled(view)
 
@@ -209,7 +209,7 @@ def solid(view: PathView, program: str) -> QImage:
 def drawn(view: PathView) -> int:
     """How many pixels of the picture are part."""
     assert view.part_player is not None
-    now = view.part_player.result
+    now = view.part_player.latest_result
     assert now is not None
     assert now.image is not None
     return int((now.image >> 24 > 0).sum())
@@ -230,15 +230,15 @@ def test_solid_fills_its_pane_and_is_rotated_by_touch(view: PathView) -> None:
 def test_pan_keys_rotate_solid_up_to_a_limit(view: PathView) -> None:
     solid(view, SHAFT)
     assert view.part_player is not None
-    first = view.part_player._wanted.solid_request
+    first = view.part_player._wanted.image_request
     view.pan_view(1, 0)
-    turned = view.part_player._wanted.solid_request
+    turned = view.part_player._wanted.image_request
     assert first is not None
     assert turned is not None
     assert turned.view.azimuth_deg == first.view.azimuth_deg + 10.0
     for _ in range(40):
         view.pan_view(1, 0)
-    steepest = view.part_player._wanted.solid_request
+    steepest = view.part_player._wanted.image_request
     assert steepest is not None
     assert steepest.view.azimuth_deg == 85.0
 
@@ -255,20 +255,20 @@ def test_collision_of_rapid_is_red_in_3d_view(view: PathView) -> None:
 
 def test_c_key_rotates_solid_while_pressed(view: PathView) -> None:
     solid(view, SHAFT)
-    view.show_tip(TipPosition(3, 0.0, 5.0, c=30.0))
+    view.show_tool_tip(TipPosition(3, 0.0, 5.0, c=30.0))
     assert view.part_player is not None
-    wanted = view.part_player._wanted.solid_request
+    wanted = view.part_player._wanted.image_request
     assert wanted is not None
     assert wanted.view.roll_deg == 30.0
 
 
 def test_no_solid_is_drawn_without_removed_material(view: PathView) -> None:
     shown(view, "G90G94F300\nM03S1500\nT1\nX2Z2\nM30\n")
-    while view.panes[0].aspect is not PathAspect.SOLID:
+    while view.panes[0].aspect is not PathViewKind.SOLID:
         view.select_next_view()
     settled(view)
     assert view.part_player is not None
-    now = view.part_player.result
+    now = view.part_player.latest_result
     assert now is not None
     assert now.image is None
 
@@ -276,10 +276,10 @@ def test_no_solid_is_drawn_without_removed_material(view: PathView) -> None:
 def test_next_view_after_solid_is_open_solid_and_then_path(view: PathView) -> None:
     whole = solid(view, SHAFT)
     view.select_next_view()
-    assert [pane.aspect for pane in view.panes] == [PathAspect.OPEN_SOLID]
+    assert [pane.aspect for pane in view.panes] == [PathViewKind.OPEN_SOLID]
     assert settled(view) != whole
     view.select_next_view()
-    assert [pane.aspect for pane in view.panes] == [PathAspect.PATH]
+    assert [pane.aspect for pane in view.panes] == [PathViewKind.PATH]
 
 
 @pytest.mark.parametrize("tilt", range(-180, 180, 15))
@@ -301,8 +301,8 @@ def test_chuck_is_drawn_at_its_position(view: PathView) -> None:
         view.select_next_view()
     image = settled(view)
     assert view.part_player is not None
-    assert view.part_player.result is not None
-    stock = view.part_player.result.part_instant.stock
+    assert view.part_player.latest_result is not None
+    stock = view.part_player.latest_result.part_instant.stock
     assert stock is not None
     edge = -8.0 / INCH, (stock.max_radius_mm + 0.7) / INCH
     assert len(colour(view, image, *edge)) > 2  # a line, and hatching behind it

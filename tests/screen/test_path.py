@@ -16,7 +16,7 @@ from app.path.path_marks_view import (
     clip_line,
     count_button_columns,
     draw_buttons,
-    find_columns_width,
+    find_button_columns_width,
     move_box_inside,
 )
 from app.path.path_picture import ProgramPicture
@@ -25,22 +25,22 @@ from app.path.path_projection import (
     Projection,
     clip_chords,
     find_scale_length,
-    fit_mirrored,
-    project_progress,
-    project_runs,
+    fit_mirrored_projection,
+    project_block_progress,
+    project_strokes,
     rasterize_chords,
 )
 from app.path.path_view import PathView
-from app.path.polyline import Polyline, Stroke
+from app.path.polyline import Polyline, StrokeKind
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme
 from app.screen.window_layout import FINGERTIP_PX
 from tests.screen.colours import apart
 
-FRAME = Projection(z=0.0, x=0.0, pixels_per_mm=10.0, width_px=400, height_px=200)
+FRAME = Projection(center_z=0.0, center_x=0.0, pixels_per_mm=10.0, width_px=400, height_px=200)
 
 
-def picture(points: list[tuple[float, float, Stroke]], first: list[int]) -> ProgramPicture:
+def picture(points: list[tuple[float, float, StrokeKind]], first: list[int]) -> ProgramPicture:
     """A picture of (z, x, stroke) points and where blocks end."""
     z, x, stroke = (np.array(column) for column in zip(*points, strict=True))
     blocks = len(first) - 1
@@ -56,32 +56,33 @@ def picture(points: list[tuple[float, float, Stroke]], first: list[int]) -> Prog
 
 
 SHAFT = picture(
-    [(5, 8, Stroke.JUMP), (5, 4, Stroke.RAPID), (-10, 4, Stroke.TURN), (-10, 8, Stroke.TURN)], [0, 2, 3, 4]
+    [(5, 8, StrokeKind.JUMP), (5, 4, StrokeKind.RAPID), (-10, 4, StrokeKind.TURN), (-10, 8, StrokeKind.TURN)],
+    [0, 2, 3, 4],
 )
 
 
 def test_x_points_down_and_z_points_right() -> None:
-    assert FRAME.find_row(4.0) > FRAME.find_row(0.0)
-    assert FRAME.find_column(4.0) > FRAME.find_column(0.0)
-    assert (FRAME.find_column(0.0), FRAME.find_row(0.0)) == (200, 100)
+    assert FRAME.find_pixel_row(4.0) > FRAME.find_pixel_row(0.0)
+    assert FRAME.find_pixel_column(4.0) > FRAME.find_pixel_column(0.0)
+    assert (FRAME.find_pixel_column(0.0), FRAME.find_pixel_row(0.0)) == (200, 100)
 
 
 def test_fit_shows_both_sides_of_center_line() -> None:
-    frame = fit_mirrored((-10.0, 5.0, 0.0, 8.0), 400, 200, 10)
-    assert frame.find_row(8.0) <= 190
-    assert frame.find_row(-8.0) >= 10
-    assert frame.find_column(-10.0) >= 10
-    assert frame.find_column(5.0) <= 390
+    frame = fit_mirrored_projection((-10.0, 5.0, 0.0, 8.0), 400, 200, 10)
+    assert frame.find_pixel_row(8.0) <= 190
+    assert frame.find_pixel_row(-8.0) >= 10
+    assert frame.find_pixel_column(-10.0) >= 10
+    assert frame.find_pixel_column(5.0) <= 390
 
 
 def test_fit_of_empty_area_gives_valid_frame() -> None:
-    assert fit_mirrored((0.0, 0.0, 0.0, 0.0), 400, 200, 10).pixels_per_mm > 0
+    assert fit_mirrored_projection((0.0, 0.0, 0.0, 0.0), 400, 200, 10).pixels_per_mm > 0
 
 
 def test_zoom_leaves_point_under_pointer_in_place() -> None:
     near = FRAME.magnify(3.0, 300.0, 40.0)
-    assert near.find_column(10.0) == pytest.approx(300.0)  # z = 10 was at column 300
-    assert near.find_row(-6.0) == pytest.approx(40.0)
+    assert near.find_pixel_column(10.0) == pytest.approx(300.0)  # z = 10 was at column 300
+    assert near.find_pixel_row(-6.0) == pytest.approx(40.0)
     assert near.pixels_per_mm == pytest.approx(30.0)
 
 
@@ -91,33 +92,37 @@ def test_zoom_is_limited() -> None:
 
 
 def test_adjacent_strokes_of_same_kind_form_one_run() -> None:
-    found = list(project_runs(SHAFT, FRAME, 0, 4))
-    assert [run.stroke_kind for run in found] == [Stroke.RAPID, Stroke.TURN]
+    found = list(project_strokes(SHAFT, FRAME, 0, 4))
+    assert [run.stroke_kind for run in found] == [StrokeKind.RAPID, StrokeKind.TURN]
     assert found[1].columns.tolist() == [250, 100, 100]
     assert found[1].rows.tolist() == [140, 140, 180]
 
 
 def test_slices_join_without_a_gap() -> None:
-    assert [run.columns.tolist() for run in project_runs(SHAFT, FRAME, 2, 3)] == [[250, 100]]
+    assert [run.columns.tolist() for run in project_strokes(SHAFT, FRAME, 2, 3)] == [[250, 100]]
 
 
 def test_a_jump_is_not_drawn() -> None:
     jumps = picture(
-        [(0, 1, Stroke.JUMP), (1, 1, Stroke.TURN), (5, 5, Stroke.JUMP), (6, 5, Stroke.TURN)], [0, 2, 4]
+        [(0, 1, StrokeKind.JUMP), (1, 1, StrokeKind.TURN), (5, 5, StrokeKind.JUMP), (6, 5, StrokeKind.TURN)],
+        [0, 2, 4],
     )
-    assert [run.columns.tolist() for run in project_runs(jumps, FRAME, 0, 4)] == [[200, 210], [250, 260]]
+    assert [run.columns.tolist() for run in project_strokes(jumps, FRAME, 0, 4)] == [
+        [200, 210],
+        [250, 260],
+    ]
 
 
 def test_points_on_same_pixel_are_thinned_and_end_points_remain() -> None:
     z = np.linspace(0, 10, 100_001)
-    dense = picture([(float(k), 1.0, Stroke.TURN if k else Stroke.JUMP) for k in z], [0, 100_001])
-    (run,) = project_runs(dense, FRAME, 0, 100_001)
+    dense = picture([(float(k), 1.0, StrokeKind.TURN if k else StrokeKind.JUMP) for k in z], [0, 100_001])
+    (run,) = project_strokes(dense, FRAME, 0, 100_001)
     assert len(run.columns) < 500
     assert run.columns[-1] == 300
 
 
 def test_runs_outside_frame_are_left_out() -> None:
-    assert list(project_runs(SHAFT, FRAME.shift(5000, 0), 0, 4)) == []
+    assert list(project_strokes(SHAFT, FRAME.shift(5000, 0), 0, 4)) == []
 
 
 def test_polygon_contains_the_points() -> None:
@@ -126,11 +131,11 @@ def test_polygon_contains_the_points() -> None:
 
 
 def test_progress_ends_at_tip() -> None:
-    run = project_progress(SHAFT, FRAME, 2, -4.0, 4.0)
+    run = project_block_progress(SHAFT, FRAME, 2, -4.0, 4.0)
     assert run is not None
     assert (run.columns.tolist(), run.rows.tolist()) == ([250, 160], [140, 140])
-    assert project_progress(SHAFT, FRAME, 0, 0, 0) is None
-    assert project_progress(SHAFT, FRAME, 4, 0, 0) is None
+    assert project_block_progress(SHAFT, FRAME, 0, 0, 0) is None
+    assert project_block_progress(SHAFT, FRAME, 4, 0, 0) is None
 
 
 @pytest.mark.parametrize(
@@ -145,7 +150,7 @@ def test_scale_bar_is_a_round_length_that_fits(most: float, metric: bool, shown:
 
 def colour(image: QImage, z: float, x: float) -> str:
     """The palette's colour that a pixel is nearest to: smoothing mixes it with the ground."""
-    pixel = image.pixelColor(round(float(FRAME.find_column(z))), round(float(FRAME.find_row(x))))
+    pixel = image.pixelColor(round(float(FRAME.find_pixel_column(z))), round(float(FRAME.find_pixel_row(x))))
     candidates = (
         DARK_PALETTE.panel,
         DARK_PALETTE.todo,
@@ -157,7 +162,7 @@ def colour(image: QImage, z: float, x: float) -> str:
 
 
 def drawn(layers: PathLayers) -> QImage:
-    while layers.draw_slice():
+    while layers.continue_drawing():
         pass
     return layers.image
 
@@ -165,10 +170,10 @@ def drawn(layers: PathLayers) -> QImage:
 def test_executed_path_covers_remaining_path_and_new_cycle_clears_it() -> None:
     layers = PathLayers(ScreenTheme(DARK_PALETTE, 12.0), SHAFT, FRAME)
     assert colour(drawn(layers), -2.0, 4.0) == DARK_PALETTE.todo
-    layers.request_blocks(2)
+    layers.request_finished_blocks(2)
     assert colour(drawn(layers), -2.0, 4.0) == DARK_PALETTE.done
     assert colour(layers.image, -10.0, 6.0) == DARK_PALETTE.todo
-    layers.request_blocks(0)
+    layers.request_finished_blocks(0)
     assert colour(drawn(layers), -2.0, 4.0) == DARK_PALETTE.todo
 
 
@@ -180,10 +185,10 @@ def test_far_side_shows_turning_moves_and_no_rapids() -> None:
 
 def zigzag(blocks: int) -> ProgramPicture:
     """More strokes than are drawn smoothly: cuts and rapids by turns, along X = 4 and back along X = 6."""
-    made = [(0.0, 4.0, Stroke.JUMP)]
+    made = [(0.0, 4.0, StrokeKind.JUMP)]
     for k in range(blocks):
         z = -10 * (k + 1) / blocks
-        made.append((z, 4.0, Stroke.TURN) if k % 2 else (z, 6.0, Stroke.RAPID))
+        made.append((z, 4.0, StrokeKind.TURN) if k % 2 else (z, 6.0, StrokeKind.RAPID))
     return picture(made, list(range(1, blocks + 2)))
 
 
@@ -193,12 +198,12 @@ def test_path_with_many_strokes_is_drawn() -> None:
     seen = {colour(drawn(layers), -5.0, x) for x in np.linspace(4.2, 5.8, 33)}
     assert seen <= {DARK_PALETTE.todo, DARK_PALETTE.rapid}
     assert colour(layers.image, -5.0, -5.0) == DARK_PALETTE.ghost
-    layers.request_blocks(many.blocks)
+    layers.request_finished_blocks(many.blocks)
     assert DARK_PALETTE.done in {colour(drawn(layers), z, 5.0) for z in np.linspace(-9, -1, 60)}
 
 
 def test_long_strokes_are_drawn_in_small_slices(monkeypatch: pytest.MonkeyPatch) -> None:
-    there_and_back = [(-30.0 * (k % 2), 4.0, Stroke.TURN) for k in range(2 * MAX_SMOOTH_CHORDS)]
+    there_and_back = [(-30.0 * (k % 2), 4.0, StrokeKind.TURN) for k in range(2 * MAX_SMOOTH_CHORDS)]
     path = picture(there_and_back, list(range(1, len(there_and_back) + 1)))
     parts: list[tuple[int, int]] = []
     draw = PathLayers._draw_pixels
@@ -259,7 +264,9 @@ def test_all_buttons_are_touch_sized_in_low_view(high: float) -> None:
         assert room.contains(box)
         assert (
             box.x()
-            >= room.right() - find_columns_width(count_button_columns(look, room, 5), look) - look.unit_px
+            >= room.right()
+            - find_button_columns_width(count_button_columns(look, room, 5), look)
+            - look.unit_px
         )
     assert not any(one.intersects(other) for one, other in combinations(boxes, 2))
 

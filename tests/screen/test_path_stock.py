@@ -8,36 +8,38 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.path.path_aspects import ApproachLeg
-from app.path.path_stock_view import Blank, find_blank
+from app.path.path_stock_view import StockAndClamping, find_stock_and_clamping
 from app.path.path_view import FOOTER_HEIGHT, PathView
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme
-from core.part.stock import Clamping, Stock, make_bar
-from core.part.stock_spec import StockSpec, parse_specification
+from core.part.stock import Clamping, Stock, make_bar_stock
+from core.part.stock_spec import StockSpec, parse_stock_specification
 from core.proving.part_history import ProgramSteps
 from core.proving.program_tools import PartSettings
 from tests.path.test_part_player import SHAFT, picture
 from tests.screen.hands import LIMIT
 
 COLLET = Clamping(60.0, 30.0)
-BAR = make_bar(20.0, 0.0, -100.0)
+BAR = make_bar_stock(20.0, 0.0, -100.0)
 
 
 def setting(stock: Stock | StockSpec | None, clamping: Clamping | None) -> PartSettings:
     return PartSettings(stock=stock, clamping=clamping)
 
 
-def blank(stock: Stock | StockSpec | None, clamping: Clamping | None) -> Blank | None:
+def blank(stock: Stock | StockSpec | None, clamping: Clamping | None) -> StockAndClamping | None:
     """What the picture of the shaft shows of a stock and a clamping."""
     drawn = picture(SHAFT)
     assert drawn.part is not None
-    return find_blank(replace(drawn, part=ProgramSteps(drawn.part.block_groups, setting(stock, clamping))))
+    return find_stock_and_clamping(
+        replace(drawn, part=ProgramSteps(drawn.part.block_groups, setting(stock, clamping)))
+    )
 
 
 def test_no_blank_is_shown_for_unspecified_part() -> None:
     assert blank(None, None) is None
     assert blank(None, Clamping(0.0, 0.0, max_rpm=3000.0)) is None
-    assert find_blank(replace(picture(SHAFT), part=None)) is None
+    assert find_stock_and_clamping(replace(picture(SHAFT), part=None)) is None
 
 
 def test_unreadable_stock_shows_only_the_collet() -> None:
@@ -50,8 +52,8 @@ def test_unreadable_stock_shows_only_the_collet() -> None:
 
 def test_bar_length_comes_from_program_unless_specified() -> None:
     as_needed, given = (
-        blank(parse_specification("bar:1.0"), None),
-        blank(parse_specification("bar:1.0:3"), None),
+        blank(parse_stock_specification("bar:1.0"), None),
+        blank(parse_stock_specification("bar:1.0:3"), None),
     )
     assert as_needed is not None
     assert as_needed.stock is not None
@@ -63,18 +65,18 @@ def test_bar_length_comes_from_program_unless_specified() -> None:
 
 def test_distant_retract_does_not_shrink_part() -> None:
     """The stock is 30 mm long in front of the collet: 12 % of 30 + 20 mm are shown next to it."""
-    seen = Blank(BAR, BAR, COLLET).find_visible_area((-25.0, 200.0, 0.0, 150.0))
+    seen = StockAndClamping(BAR, BAR, COLLET).find_visible_area((-25.0, 200.0, 0.0, 150.0))
     assert seen == pytest.approx((-30.0, 6.0, 0.0, 16.0))
 
 
 def test_all_cuts_are_visible_without_a_stock() -> None:
     cuts = (-25.0, 200.0, -3.0, 150.0)
-    assert Blank(None, BAR, COLLET).find_visible_area(cuts) == cuts
+    assert StockAndClamping(None, BAR, COLLET).find_visible_area(cuts) == cuts
 
 
 def test_chuck_is_shown_up_to_a_fraction_of_stock_length() -> None:
-    assert Blank(BAR, BAR, COLLET).chuck_left_z_mm == pytest.approx(-30.0 - 12.0)
-    assert Blank(BAR, BAR, None).chuck_left_z_mm is None
+    assert StockAndClamping(BAR, BAR, COLLET).chuck_left_z_mm == pytest.approx(-30.0 - 12.0)
+    assert StockAndClamping(BAR, BAR, None).chuck_left_z_mm is None
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.late_presses import StartingAction
+from app.desk.late_presses import BlockedLateAction
 from app.desk.status.prompt_line import CHOOSE_FILE_TEXT, CONFIRM_CANCEL, MessageKind
 from app.screen.page_table import list_menu_entries
 from core.executor.commands import Reset
@@ -32,12 +32,12 @@ def test_n_key_rejects_and_closes_question(hands: Hands) -> None:
     hands.desk.ask_operator(CONFIRM_CANCEL, lambda: done.append("yes"))
     hands.window.refresh()
     hands.key(Key.Key_N)
-    assert (hands.desk.confirm_key, done) == ("", [])
+    assert (hands.desk.confirmation_key, done) == ("", [])
     assert not any(isinstance(each, Reset) for each in hands.machine.posted)
 
 
 def test_dropped_input_is_reported_regardless_of_next_key(hands: Hands) -> None:
-    hands.window.report_dropped(StartingAction.CYCLE)
+    hands.window.report_dropped_press(BlockedLateAction.CYCLE)
     hands.key(Key.Key_S)
     hands.key(Key.Key_O)
     assert hands.frame.prompt_line.message_text

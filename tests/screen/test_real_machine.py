@@ -99,7 +99,7 @@ def test_start_with_drives_off_is_rejected_with_reason(stage: Stage, window: Mai
     stage.tick(lambda: stage.clock.now() >= later)
     reaches(stage, MachineState.DISABLED)
     both_palms(window)
-    stage.tick(lambda: desk.read_snapshot().start_refusal != "", 2.0)
+    stage.tick(lambda: desk.read_snapshot().start_refusal_reason != "", 2.0)
     let_go(window)
     window.refresh()
     assert begins(desk.prompt_notice, "screen.no-start", why=pattern("screen.drives-off-reason"))

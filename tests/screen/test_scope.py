@@ -22,7 +22,7 @@ from app.scope.time_window import TriggerEvent
 from app.screen import page_table
 from app.screen.color_palettes import CURVE_COLORS
 from app.screen.window_layout import FINGERTIP_PX
-from app.special.special_view import SpecialPage
+from app.special.special_view import SpecialFunctionsPage
 from core.executor.commands import FeedHold
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import LogEvent, MachineState
@@ -101,7 +101,7 @@ def test_shift_f10_opens_scope_and_returns(hands: Hands) -> None:
 def test_f10_list_contains_scope(hands: Hands) -> None:
     hands.key(Key.Key_F10)
     page = hands.frame.current_page
-    assert isinstance(page, SpecialPage)
+    assert isinstance(page, SpecialFunctionsPage)
     number = [each.name for each in page.model.functions].index("SCOPE")
     for _ in range(number):
         hands.key(Key.Key_Down)
@@ -118,33 +118,35 @@ def test_curves_are_drawn_in_their_colors(hands: Hands) -> None:
 
 def test_frozen_curves_do_not_move(hands: Hands, played: PlayedSamples) -> None:
     page = frozen(hands)
-    before = page.scope_model.picture.zero_s
+    before = page.scope_model.picture.zero_time_s
     played.now += 5.0
     hands.qtbot.wait(50)
-    assert page.scope_model.picture.zero_s == before
+    assert page.scope_model.picture.zero_time_s == before
     hands.key(Key.Key_F2)
-    hands.sees(lambda: page.scope_model.picture.is_live and page.scope_model.picture.zero_s > before + 4.9)
+    hands.sees(
+        lambda: page.scope_model.picture.is_live and page.scope_model.picture.zero_time_s > before + 4.9
+    )
 
 
 def test_level_curves_are_not_redrawn_while_scrolling(hands: Hands, played: PlayedSamples) -> None:
     page, scope = opened(hands), hands.desk.page_registry.find_model(ScopeModel)
     assert scope is not None
     assert page.is_animating()  # they swing
-    scope.selected_keys = ("spindle command", "C actual")
+    scope.selected_signal_keys = ("spindle command", "C actual")
     hands.sees(lambda: not page.is_animating())
     chart = page.curve_area.chart
     assert chart is not None
     hands.sees(lambda: page._drawn is not None and chart.picture.constant_values == (0.0, 1000.0))
     seen = chart.picture
     played.now += 1.0
-    hands.sees(lambda: scope.picture.zero_s > played.now - 0.1)
+    hands.sees(lambda: scope.picture.zero_time_s > played.now - 0.1)
     assert chart.picture is seen
     played.now += 1.0
     hands.machine.now = replace(hands.machine.now, inputs=frozenset({"guard"}))  # something happens
     before = hands.desk.clock.read_seconds()
-    hands.sees(lambda: scope.picture.zero_s > played.now - 0.1)
+    hands.sees(lambda: scope.picture.zero_time_s > played.now - 0.1)
     hands.desk.clock.read_seconds = lambda: before  # no second passes any more
-    scope.selected_keys = ("spindle command", "C actual", "Z actual")
+    scope.selected_signal_keys = ("spindle command", "C actual", "Z actual")
 
     def three() -> bool:
         hands.window.refresh()  # on a clock that stands nothing grows old
@@ -156,11 +158,11 @@ def test_level_curves_are_not_redrawn_while_scrolling(hands: Hands, played: Play
 
 def test_the_wheel_zooms_about_the_pointer(hands: Hands) -> None:
     page = frozen(hands)
-    before = page.scope_model.time_window.begin_s + 0.25 * page.scope_model.time_window.span_s
+    before = page.scope_model.time_window.begin_s + 0.25 * page.scope_model.time_window.window_span_s
     wheel(page, 0.25, 1, Qt.KeyboardModifier.NoModifier)
     window = page.scope_model.time_window
-    assert window.span_s == pytest.approx(5.0)
-    assert window.begin_s + 0.25 * window.span_s == pytest.approx(before, abs=0.02)
+    assert window.window_span_s == pytest.approx(5.0)
+    assert window.begin_s + 0.25 * window.window_span_s == pytest.approx(before, abs=0.02)
 
 
 def test_shift_and_wheel_scale_lane(hands: Hands) -> None:
@@ -180,14 +182,14 @@ def test_shift_and_wheel_scale_lane(hands: Hands) -> None:
 def test_keys_zoom_pan_and_fit(hands: Hands) -> None:
     page = frozen(hands)
     hands.key(Key.Key_Z)
-    assert page.scope_model.time_window.span_s == pytest.approx(5.0)
+    assert page.scope_model.time_window.window_span_s == pytest.approx(5.0)
     end = page.scope_model.time_window.end_s
     hands.key(Key.Key_Left, CTRL)
     assert page.scope_model.time_window.end_s == pytest.approx(end - 0.5)
     hands.key(Key.Key_Z, SHIFT)
-    assert page.scope_model.time_window.span_s == pytest.approx(10.0)
+    assert page.scope_model.time_window.window_span_s == pytest.approx(10.0)
     hands.key(Key.Key_F6)
-    assert page.scope_model.time_window.span_s == pytest.approx(60.0, abs=0.01)
+    assert page.scope_model.time_window.window_span_s == pytest.approx(60.0, abs=0.01)
 
 
 def test_two_cursors_show_difference(hands: Hands) -> None:
@@ -197,10 +199,10 @@ def test_two_cursors_show_difference(hands: Hands) -> None:
     hands.sees(lambda: text("scope.following-error", axis="X") in scope.picture.cursor_values)
     first, second = scope.cursors.times_s
     hands.key(Key.Key_Right)
-    assert scope.cursors.times_s[0] == pytest.approx(first + 10.0 / scope.width_px)
+    assert scope.cursors.times_s[0] == pytest.approx(first + 10.0 / scope.chart_width_px)
     hands.key(Key.Key_Tab)
     hands.key(Key.Key_Left)
-    assert scope.cursors.times_s[1] == pytest.approx(second - 10.0 / scope.width_px)
+    assert scope.cursors.times_s[1] == pytest.approx(second - 10.0 / scope.chart_width_px)
     hands.key(Key.Key_Escape)
     assert not scope.cursors.shown
     assert hands.frame.current_page is page
@@ -257,9 +259,9 @@ def test_horizontal_two_finger_spread_zooms_time_about_its_center(hands: Hands) 
         )
     )
     x, y = round(chart.curve_area.center().x()), round(chart.curve_area.center().y())
-    span, middle = scope.time_window.span_s, chart.find_time(QPointF(x, y))
+    span, middle = scope.time_window.window_span_s, chart.find_time(QPointF(x, y))
     spread(page, (QPoint(x - 50, y), QPoint(x + 50, y)), (QPoint(x - 100, y), QPoint(x + 100, y)))
-    assert scope.time_window.span_s == pytest.approx(span / 2.0)
+    assert scope.time_window.window_span_s == pytest.approx(span / 2.0)
     assert (middle - scope.time_window.begin_s) / (span / 2.0) == pytest.approx(0.5, abs=0.02)
 
 
@@ -274,12 +276,12 @@ def test_vertical_two_finger_spread_scales_lane_between_touches(hands: Hands) ->
     quantity = chart.find_quantity(QPointF(x, y))
     assert quantity is not None
     low, high = scope.picture.lane_ranges[quantity]
-    span = scope.time_window.span_s
+    span = scope.time_window.window_span_s
     spread(page, (QPoint(x, y - 20), QPoint(x, y + 20)), (QPoint(x, y - 40), QPoint(x, y + 40)))
     hands.sees(lambda: scope.picture.lane_ranges[quantity] != (low, high))
     near = scope.picture.lane_ranges[quantity]
     assert near[1] - near[0] == pytest.approx((high - low) / 2.0, rel=0.01)
-    assert scope.time_window.span_s == span
+    assert scope.time_window.window_span_s == span
 
 
 def test_remaining_touch_after_spread_drags_nothing(hands: Hands) -> None:
@@ -302,7 +304,7 @@ def test_drag_scrolls_time(hands: Hands) -> None:
     QTest.mouseMove(page.curve_area, QPoint(300, y))
     QTest.mouseRelease(page.curve_area, Qt.MouseButton.LeftButton, pos=QPoint(300, y))
     assert page.scope_model.time_window.end_s == pytest.approx(
-        before - 100 * 5.0 / page.scope_model.width_px, rel=0.01
+        before - 100 * 5.0 / page.scope_model.chart_width_px, rel=0.01
     )
 
 
@@ -311,9 +313,9 @@ def test_curves_are_chosen_by_keys(hands: Hands) -> None:
     hands.key(Key.Key_F4)
     assert page.scope_model.side_panel is SidePanel.CURVES
     hands.key(Key.Key_Return)  # the first of the list: X commanded
-    assert "X demand" in page.scope_model.selected_keys
+    assert "X demand" in page.scope_model.selected_signal_keys
     hands.key(Key.Key_Return)
-    assert "X demand" not in page.scope_model.selected_keys
+    assert "X demand" not in page.scope_model.selected_signal_keys
     hands.key(Key.Key_Escape)
     assert page.scope_model.side_panel is SidePanel.READINGS
 
@@ -342,7 +344,9 @@ def test_trigger_uses_level_typed_while_waiting_for_edge(hands: Hands, played: P
     hands.sees(lambda: page.scope_model.frozen_curves is not None)
     assert page.scope_model.frozen_curves is not None
     # .01·cos t = .00762 on the way up, 0 at 105.24: 2πn − arccos(.762)
-    assert page.scope_model.frozen_curves.zero_s == pytest.approx(34.0 * np.pi - np.arccos(0.762), abs=0.002)
+    assert page.scope_model.frozen_curves.zero_time_s == pytest.approx(
+        34.0 * np.pi - np.arccos(0.762), abs=0.002
+    )
 
 
 def test_a_trigger_freezes_once(hands: Hands, played: PlayedSamples) -> None:
@@ -368,7 +372,9 @@ def test_a_trigger_freezes_once(hands: Hands, played: PlayedSamples) -> None:
     hands.sees(later)
     # .01·cos t = .00762 on the way up: 2πn − arccos(.762)
     assert scope.frozen_curves is not None
-    assert scope.frozen_curves.zero_s == pytest.approx(32.0 * np.pi + 2 * np.pi - np.arccos(0.762), abs=0.002)
+    assert scope.frozen_curves.zero_time_s == pytest.approx(
+        32.0 * np.pi + 2 * np.pi - np.arccos(0.762), abs=0.002
+    )
     assert scope.time_window.begin_s == pytest.approx(-5.0)
     assert scope.time_window.end_s == pytest.approx(5.0)
     assert not scope.is_armed
@@ -378,7 +384,9 @@ def test_a_trigger_freezes_once(hands: Hands, played: PlayedSamples) -> None:
     hands.key(Key.Key_F2)
     assert scope.is_armed
     hands.sees(later)
-    assert scope.frozen_curves.zero_s == pytest.approx(32.0 * np.pi + 6 * np.pi - np.arccos(0.762), abs=0.002)
+    assert scope.frozen_curves.zero_time_s == pytest.approx(
+        32.0 * np.pi + 6 * np.pi - np.arccos(0.762), abs=0.002
+    )
 
 
 def test_invalid_trigger_level_is_rejected(hands: Hands) -> None:
@@ -406,7 +414,7 @@ def test_frozen_curves_are_saved_and_opened_again(hands: Hands, tmp_path: Path) 
     assert (kept.values_by_channel["X actual"] == whole.values_by_channel["X actual"]).all()
     hands.key(Key.Key_F3)
     hands.sees(lambda: scope.recording_name == scope.recording_store.recording_files[0].path.name)
-    assert scope.time_window.span_s == pytest.approx(10.0)
+    assert scope.time_window.window_span_s == pytest.approx(10.0)
 
 
 def test_earlier_recording_is_overlaid(hands: Hands) -> None:
@@ -448,7 +456,7 @@ def test_recording_is_deleted_after_confirmation(hands: Hands, tmp_path: Path) -
     hands.key(Key.Key_F2)
     hands.sees(lambda: len(page.scope_model.recording_store.recording_files) == 1)
     hands.key(Key.Key_F8)
-    assert hands.desk.confirm_key
+    assert hands.desk.confirmation_key
     assert list((tmp_path / "records").glob("*.scope"))
     yes(hands.window)
     hands.sees(lambda: not page.scope_model.recording_store.recording_files)
@@ -516,7 +524,7 @@ def test_full_disk_is_reported(tmp_path: Path) -> None:
 
     shelf = RecordingStore(tmp_path, full, open_record, lambda _record, _write: None)
     with pytest.raises(RecordingFileError, match=r"scope .*: No space left on device"):
-        shelf.save_named(record_of(seconds(0.0, 1.0)))
+        shelf.save_dated_record(record_of(seconds(0.0, 1.0)))
     assert not list(tmp_path.iterdir())
 
 
@@ -549,7 +557,7 @@ def test_f7_opens_recording_of_alarm(hands: Hands, tmp_path: Path) -> None:
     assert hands.frame.current_page.NAME == page_table.SCOPE
     assert not hands.frame.alarm_list.isVisible()
     assert scope.frozen_curves is not None
-    assert scope.frozen_curves.zero_s == 100.0
+    assert scope.frozen_curves.zero_time_s == 100.0
     assert scope.time_window.begin_s == pytest.approx(-10.0)
 
 

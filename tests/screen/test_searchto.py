@@ -10,8 +10,8 @@ from app.desk.status.prompt_line import HOLD_HINT
 from app.screen import page_table
 from app.screen.panel import Panel
 from app.screen.window_layout import FINGERTIP_PX
-from app.searchto.searchto_model import SearchtoModel, SearchtoStage
-from app.searchto.searchto_view import SearchtoPage
+from app.searchto.searchto_model import RestartModel, RestartStage
+from app.searchto.searchto_view import RestartPage
 from core.executor.snapshot import MachineState, StartAction
 from tests.attached import attached
 from tests.screen.lathe import Key, Operator
@@ -19,14 +19,14 @@ from tests.screen.yes import twist_out
 from tests.texts import begins, pattern, text
 
 
-def model_of(operator: Operator) -> SearchtoModel:
-    return attached(operator.stage.desk, SearchtoModel)
+def model_of(operator: Operator) -> RestartModel:
+    return attached(operator.stage.desk, RestartModel)
 
 
-def page_of(operator: Operator) -> SearchtoPage:
+def page_of(operator: Operator) -> RestartPage:
     operator.window.refresh()
     page = operator.frame.current_page
-    assert isinstance(page, SearchtoPage)
+    assert isinstance(page, RestartPage)
     return page
 
 
@@ -47,7 +47,7 @@ def estop_and_recover(operator: Operator) -> None:
     operator.reaches(MachineState.IDLE)
 
 
-def found(operator: Operator) -> SearchtoPage:
+def found(operator: Operator) -> RestartPage:
     """Enter, and wait for the worker."""
     operator.key(Key.Key_Return)
     model_of(operator).restart_finder.worker.wait_for_results(60.0)
@@ -59,7 +59,7 @@ def confirmed(operator: Operator) -> None:
     operator.key(Key.Key_F10)
     model_of(operator).restart_finder.worker.wait_for_results(60.0)
     operator.pause(0.05)
-    assert model_of(operator).stage is SearchtoStage.READY
+    assert model_of(operator).stage is RestartStage.READY
 
 
 def test_part_is_finished_from_interrupted_line_after_estop(operator: Operator) -> None:
@@ -72,7 +72,7 @@ def test_part_is_finished_from_interrupted_line_after_estop(operator: Operator) 
     assert begins(operator.prompt(), "search.broke-off", line=18)
     page = found(operator)
     assert page.state_panel.content.title == text("search.state-at-line", line=18)
-    assert page.functions_panel.started_functions == ("SPINDLE FORWARD G97 1800 RPM", "COOLANT")
+    assert page.functions_panel.functions_to_start == ("SPINDLE FORWARD G97 1800 RPM", "COOLANT")
     assert [leg.label for leg in page.path_view.drawn_legs] == ["", "1 X", "2 Z", "3 Z", "4 X", "5 Z"]
     assert [leg.is_rapid for leg in page.path_view.drawn_legs[1:]] == [False, False, True, True, True]
     assert operator.shot.rpm_command == 0.0
@@ -97,8 +97,8 @@ def test_restart_page_marks_every_state_that_must_change(operator: Operator) -> 
     operator.type("7")
     page = found(operator)
     rows = {row.label: row for row in page.state_panel.content.state_rows}
-    assert (rows["X VALUES"].required_value, rows["X VALUES"].present_value) == ("G72 Ø", "G73 R")
-    assert (rows["SPINDLE"].required_value, rows["SPINDLE"].present_value) == ("M03", "M05")
+    assert (rows["X VALUES"].required_value, rows["X VALUES"].current_value) == ("G72 Ø", "G73 R")
+    assert (rows["SPINDLE"].required_value, rows["SPINDLE"].current_value) == ("M03", "M05")
     assert (rows[text("search.first-feed")].required_value, rows["FEED"].required_value) == (
         "300.00",
         "0.00600 in/rev",
@@ -161,7 +161,7 @@ def test_line_is_marked_or_its_number_typed_by_touch(operator: Operator) -> None
     press(page.program_listing, page.program_listing._places[place][0])  # on the marked one: its state again
     model_of(operator).restart_finder.worker.wait_for_results(60.0)
     page_of(operator)
-    assert model_of(operator).search_refusal is not None or model_of(operator).restart_plan is not None
+    assert model_of(operator).restart_refusal is not None or model_of(operator).restart_plan is not None
 
 
 def test_line_without_valid_restart_offers_neighboring_lines(operator: Operator) -> None:
@@ -173,7 +173,7 @@ def test_line_without_valid_restart_offers_neighboring_lines(operator: Operator)
     operator.type("8P9")
     page = found(operator)
     assert page.state_panel.content.refusal_reason == text("search.no-such-pass", line=8, count=5, wanted=9)
-    before, after = page.state_panel.content.nearest_lines
+    before, after = page.state_panel.content.nearest_valid_lines
     assert (before.key_name, after.key_name) == ("F8", "F9")
     operator.key(Key.Key_F10)
     assert operator.prompt() == text("search.good-line-first")
@@ -203,7 +203,7 @@ def test_leaving_page_cancels_ready_restart(operator: Operator) -> None:
     operator.key(Key.Key_F1, Key.Key_F2)
     operator.pause(0.05)
     assert operator.shot.starts is StartAction.PROGRAM
-    assert operator.shot.prepared_digest == ""
+    assert operator.shot.prepared_job_digest == ""
 
 
 def test_coolant_and_approach_are_selected_by_operator(operator: Operator) -> None:
@@ -211,19 +211,19 @@ def test_coolant_and_approach_are_selected_by_operator(operator: Operator) -> No
     operator.key(Key.Key_F6)
     operator.type("38")
     page = found(operator)
-    assert page.functions_panel.started_functions[-1] == "COOLANT"
+    assert page.functions_panel.functions_to_start[-1] == "COOLANT"
     assert page.functions_panel.option_texts == (text("search.with-coolant"),)
     operator.key(Key.Key_F5)
     page = page_of(operator)
-    assert page.functions_panel.started_functions == ("SPINDLE FORWARD G97 2200 RPM",)
+    assert page.functions_panel.functions_to_start == ("SPINDLE FORWARD G97 2200 RPM",)
     assert page.functions_panel.option_texts == (text("search.without-coolant"),)
     assert page.functions_panel.error_text == ""
     confirmed(operator)
     operator.key(Key.Key_F5)  # another start is not the one that was proved
-    assert model_of(operator).stage is SearchtoStage.PLAN_SHOWN
-    assert operator.shot.prepared_digest != ""
+    assert model_of(operator).stage is RestartStage.PLAN_SHOWN
+    assert operator.shot.prepared_job_digest != ""
     operator.pause(0.05)
-    assert operator.shot.prepared_digest == ""
+    assert operator.shot.prepared_job_digest == ""
 
 
 def test_collet_must_match_state_at_line(operator: Operator) -> None:
@@ -237,7 +237,7 @@ def test_collet_must_match_state_at_line(operator: Operator) -> None:
     assert begins(page.functions_panel.error_text, "search.collet-open")
     operator.key(Key.Key_F10)
     assert begins(operator.prompt(), "search.collet-open")
-    assert model_of(operator).stage is SearchtoStage.PLAN_SHOWN
+    assert model_of(operator).stage is RestartStage.PLAN_SHOWN
 
 
 def test_searchto_does_not_open_without_a_program_nor_while_one_runs(operator: Operator) -> None:
@@ -274,7 +274,7 @@ def test_reloaded_program_is_searched_again(operator: Operator) -> None:
     desk.program_loader.wait_until_loaded(30.0)
     operator.pause(0.1)
     page_of(operator)
-    assert model_of(operator).stage is SearchtoStage.CHOOSING
+    assert model_of(operator).stage is RestartStage.CHOOSING
     operator.palms()
     assert operator.shot.state is MachineState.IDLE
 
@@ -293,7 +293,7 @@ def test_esc_goes_back_one_step_at_a_time(operator: Operator) -> None:
     operator.type("7")
     found(operator)
     operator.key(Key.Key_Escape)
-    assert model_of(operator).stage is SearchtoStage.CHOOSING
+    assert model_of(operator).stage is RestartStage.CHOOSING
     operator.key(Key.Key_Escape)
     assert operator.frame.current_page is operator.frame.automatic_page
 
@@ -329,14 +329,16 @@ def test_loop_pass_is_selected_by_keys_and_by_touch(operator: Operator) -> None:
     )
     loop = page.state_panel.content.state_rows[0]
     assert loop.label == text("search.pass-of-lines", first=6, last=12)
-    assert (loop.required_value, loop.present_value) == ("3 OF 5", "—")
+    assert (loop.required_value, loop.current_value) == ("3 OF 5", "—")
     rows = {row.label: row.required_value for row in page.state_panel.content.state_rows}
     assert rows["X Ø"] == "0.37500"  # .54 and .055 in, .02 out and .02 in again, in each pass
     operator.key(Key.Key_Right)
     model_of(operator).restart_finder.worker.wait_for_results(60.0)
     assert page_of(operator).state_panel.content.pass_text == text("search.pass", number=4, count=5)
     page.state_panel.grab()  # draws, so that a finger finds its place
-    assert page.state_panel.press_at(QPointF(page.state_panel.width() * 0.1, page.state_panel.height() - 25))
+    assert page.state_panel.press_target_at(
+        QPointF(page.state_panel.width() * 0.1, page.state_panel.height() - 25)
+    )
     model_of(operator).restart_finder.worker.wait_for_results(60.0)
     assert page_of(operator).state_panel.content.pass_text == text("search.pass", number=3, count=5)
     operator.key(Key.Key_Left, Key.Key_Left)
@@ -356,7 +358,7 @@ def test_retract_alone_runs_after_confirmation_and_page_stays_open(operator: Ope
     page = page_of(operator)
     assert operator.prompt() == text("search.look-at-way-out")
     assert [leg.label for leg in page.path_view.drawn_legs] == ["", "1 X", "2 Z", "3 Z"]
-    assert page.functions_panel.started_functions == (text("search.only-slides"),)
+    assert page.functions_panel.functions_to_start == (text("search.only-slides"),)
     assert page.functions_panel.option_texts[0] == text("search.leaves-part", feed="20.00 in/min")
     operator.palms()
     assert operator.shot.state is MachineState.IDLE  # not before it is confirmed
@@ -416,8 +418,8 @@ def test_stock_is_shown_as_it_is_at_selected_line(operator: Operator) -> None:
     player.wait_for_result(60.0)
     page_of(operator)
     player.wait_for_result(60.0)
-    assert player.result is not None
-    assert player.result.part_instant.block_count == plan.restart_point.checkpoint.blocks
+    assert player.latest_result is not None
+    assert player.latest_result.part_instant.block_count == plan.restart_point.checkpoint.blocks
     picture = operator.stage.desk.program_loader.loaded_program.picture
     assert picture is not None
     assert 0 < plan.restart_point.checkpoint.blocks < len(picture.line)

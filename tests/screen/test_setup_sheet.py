@@ -9,13 +9,13 @@ import pytest
 
 from app.compose.program_proving import get_samples_folder
 from app.compose.runs.journal import Journal
-from app.compose.stored_offsets import read_offsets
+from app.compose.stored_offsets import read_offsets_file
 from app.desk.desk import Desk
 from app.desk.translation import get_language
 from app.programs.removable_media import UsbStick
 from app.report.pdf_file import PaperSize
 from app.special.setup_sheet_function import MOST_NOTES, SetupSheetFunction
-from app.special.special_view import SpecialPage
+from app.special.special_view import SpecialFunctionsPage
 from tests.pdf_text import Pdf
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
@@ -32,13 +32,13 @@ def desk(machine: FakeMachine, journal: Journal) -> Desk:
     return desk_on(machine, keep=journal)
 
 
-def opened(hands: Hands, program: str = "bushing") -> tuple[SpecialPage, SetupSheetFunction]:
+def opened(hands: Hands, program: str = "bushing") -> tuple[SpecialFunctionsPage, SetupSheetFunction]:
     if program:
         hands.desk.program_choice.load_by_name(program)
         hands.desk.program_loader.wait_until_loaded(60.0)
     hands.key(Key.Key_F10)
     page = hands.frame.current_page
-    assert isinstance(page, SpecialPage)
+    assert isinstance(page, SpecialFunctionsPage)
     names = [function.name for function in page.model.functions]
     page.model.open_function(names.index(SETUP))
     function = page.model.shown_function
@@ -49,7 +49,7 @@ def opened(hands: Hands, program: str = "bushing") -> tuple[SpecialPage, SetupSh
     return page, function
 
 
-def rows(page: SpecialPage) -> dict[str, str]:
+def rows(page: SpecialFunctionsPage) -> dict[str, str]:
     return {row.cells[0]: row.cells[1] for row in page.table_panel.table.rows}
 
 
@@ -62,14 +62,14 @@ def take_note(hands: Hands, text: str) -> None:
 def test_sheet_lists_tools_offsets_stock_and_stops(hands: Hands) -> None:
     page, _ = opened(hands)
     said = rows(page)
-    offset = read_offsets(get_samples_folder() / "offsets.toml").tool_offsets[2]
+    offset = read_offsets_file(get_samples_folder() / "offsets.toml").tool_offsets[2]
     assert f"X (radius) {offset.x / 25.4:.4f} in   Z {offset.z / 25.4:.4f} in" in said["T2"]
     assert said["T2"].startswith("BORING")
     assert "(assumed)" in said["T2"]
     assert "Ø 1." in said["STOCK"]
     assert "GAUGE THE OUTSIDE AND CORRECT D1" in said["M01"]
     assert {"TIME PER PART", "STICK-OUT", "T1", "T3", "D1"} <= set(said)
-    drawn = {row.cells[0] for row in page.table_panel.table.rows if row.outline is not None}
+    drawn = {row.cells[0] for row in page.table_panel.table.rows if row.tool_outline is not None}
     assert drawn == {"T1", "T2", "T3"}
 
 

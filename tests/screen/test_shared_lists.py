@@ -184,6 +184,6 @@ def test_executed_line_of_program_is_selected(above: QWidget, line: int, marked:
     panel.on_line_touched = lambda _line: None
     panel.resize(500, 300)
     panel.show_source([f"N{n}" for n in range(MANY)], {})
-    panel.show_run(line, "", "")
+    panel.show_run_position(line, "", "")
     panel.grab()
     assert selected(panel) == [place % panel.rows for place in marked]

@@ -14,11 +14,11 @@ from app.programs.removable_media import UsbStick
 from app.screen import page_table
 from app.special.backup_and_restore import RESTORE_REFUSAL, BackupFunction
 from app.special.inputs_outputs import SWITCH_REFUSAL
-from app.special.special_view import SpecialPage
+from app.special.special_view import SpecialFunctionsPage
 from core.access.access_table import AccessLevel, ProtectedChange
 from core.executor.commands import FeedHold, ForceOutput, SetSpindleLimit, SetSwitch
 from core.executor.snapshot import Alarm, LogEvent, MachineState
-from core.store.backup import BackupVerdict
+from core.store.backup import BackupCheckResult
 from core.store.store_errors import StoreError
 from core.store.user_records import UserRow
 from tests.screen.desks import desk_on
@@ -34,17 +34,17 @@ def desk(machine: FakeMachine, journal: Journal) -> Desk:
     return desk_on(machine, keep=journal, book=journal.book())
 
 
-def open_function(hands: Hands, number: int) -> SpecialPage:
+def open_function(hands: Hands, number: int) -> SpecialFunctionsPage:
     hands.key(Key.Key_F10)
     hands.type(str(number))
     hands.key(Key.Key_Return)
     page = hands.frame.current_page
-    assert isinstance(page, SpecialPage)
+    assert isinstance(page, SpecialFunctionsPage)
     hands.sees(lambda: page.model.inside and page.table_panel.table is not None)
     return page
 
 
-def cells(page: SpecialPage, row: int) -> tuple[str, ...]:
+def cells(page: SpecialFunctionsPage, row: int) -> tuple[str, ...]:
     return page.table_panel.table.rows[row].cells
 
 
@@ -52,7 +52,7 @@ def test_list_is_navigated_by_arrows_and_closed_by_esc(hands: Hands) -> None:
     hands.key(Key.Key_F10)
     assert hands.frame.title_line.page_title == page_table.SPECIAL
     page = hands.frame.current_page
-    assert isinstance(page, SpecialPage)
+    assert isinstance(page, SpecialFunctionsPage)
     hands.key(Key.Key_Down)
     assert page.model.shown_function.name == "PARTS COUNTER"
     hands.key(Key.Key_Return)
@@ -120,10 +120,10 @@ def test_reached_target_stops_cycle_repeat_and_is_reported(hands: Hands, journal
     assert begins(hands.prompt(), "screen.last-part-of-target")
     hands.machine.now = replace(hands.machine.now, parts=2, state=MachineState.IDLE)
     hands.sees(lambda: hands.prompt() == wording("screen.target-reached", count=2, target=2))
-    assert hands.desk.program_runs.part_counter.count_text == "2/2"
+    assert hands.desk.program_runs.part_counter.part_count_text == "2/2"
     hands.key(Key.Key_F4)
     yes(hands.window)
-    hands.sees(lambda: hands.desk.program_runs.part_counter.count_text == "0/2")
+    hands.sees(lambda: hands.desk.program_runs.part_counter.part_count_text == "0/2")
 
 
 def test_counter_without_program_is_rejected(hands: Hands) -> None:
@@ -305,7 +305,7 @@ def test_only_backup_on_stick_mentions_the_stick(hands: Hands, row: int, tmp_pat
 def test_backup_next_to_damaged_data_refers_to_restore_command(
     hands: Hands, journal: Journal, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def unreadable(_source: object) -> BackupVerdict:
+    def unreadable(_source: object) -> BackupCheckResult:
         raise StoreError("the file is damaged", "damaged")
 
     monkeypatch.setattr(journal, "check_backup", unreadable)
@@ -340,9 +340,9 @@ def test_restore_leaves_access_levels_on(hands: Hands, journal: Journal) -> None
     )
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Return)
-    assert hands.desk.prompt_notice == access.find_refusal(ProtectedChange.RESTORE) != ""
+    assert hands.desk.prompt_notice == access.find_refusal_reason(ProtectedChange.RESTORE) != ""
     access.user_name, access.access_level = "ANNA", AccessLevel.SERVICE
-    access.note_activity()
+    access.record_activity()
     hands.key(Key.Key_Return)
     yes(hands.window)
     hands.sees(lambda: shows(hands.desk.prompt_notice, "screen.restored"))
@@ -455,7 +455,7 @@ def test_list_rows_are_touch_sized_and_can_be_scrolled(hands: Hands) -> None:
     """At 600 lines not all fit: the foot leafs without opening anything, 0 is the tenth function."""
     hands.key(Key.Key_F10)
     page = hands.frame.current_page
-    assert isinstance(page, SpecialPage)
+    assert isinstance(page, SpecialFunctionsPage)
     items, count = page.function_list, len(page.model.functions)
     items.grab()  # drawn
     assert 1 < items.rows < count
@@ -495,7 +495,7 @@ def test_a_simulated_input_is_switched_and_one_of_the_station_is_not(hands: Hand
 def test_lamps_and_sound_share_one_table_and_are_off_by_default(hands: Hands) -> None:
     hands.key(Key.Key_F10)
     page = hands.frame.current_page
-    assert isinstance(page, SpecialPage)
+    assert isinstance(page, SpecialFunctionsPage)
     page._enter([each.name for each in page.model.functions].index("LAMPS AND SOUND"))
     assert (
         wording("screen.volume", volume="OFF")
@@ -519,7 +519,7 @@ def test_lamps_and_sound_share_one_table_and_are_off_by_default(hands: Hands) ->
 def test_every_function_is_opened_by_its_number_and_return(hands: Hands, number: int) -> None:
     hands.key(Key.Key_F10)
     page = hands.frame.current_page
-    assert isinstance(page, SpecialPage)
+    assert isinstance(page, SpecialFunctionsPage)
     if number > len(page.model.functions):
         pytest.skip("this desk has fewer functions")
     hands.type(str(number))
@@ -530,7 +530,7 @@ def test_every_function_is_opened_by_its_number_and_return(hands: Hands, number:
 def test_digits_of_function_number_are_not_typed_into_a_field(hands: Hands) -> None:
     hands.key(Key.Key_F10)
     page = hands.frame.current_page
-    assert isinstance(page, SpecialPage)
+    assert isinstance(page, SpecialFunctionsPage)
     for digit in "14" * 3 + "25":
         hands.type(digit)
         assert page.table_panel.table.text == ""
@@ -547,8 +547,8 @@ def test_next_digit_replaces_rejected_speed(hands: Hands) -> None:
     hands.type("199999999999")
     hands.key(Key.Key_Return)
     assert (
-        page.table_panel.table.is_rejected
-        or page.model.shown_function.make_table(hands.machine.now).is_rejected
+        page.table_panel.table.is_entry_rejected
+        or page.model.shown_function.make_table(hands.machine.now).is_entry_rejected
     )
     hands.type("2")
     assert page.model.shown_function.make_table(hands.machine.now).text == "2"

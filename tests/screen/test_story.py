@@ -133,7 +133,7 @@ def test_loss_of_keyboard_focus_releases_palm_button(hands: Hands) -> None:
     hands.load("pin")
     hands.down(Key.Key_F11)
     assert hands.machine.palms == {"left"}
-    hands.window.release_all()
+    hands.window.release_all_inputs()
     assert hands.machine.palms == set()
     hands.down(Key.Key_F12)
     assert CycleStart() not in hands.machine.posted

@@ -9,8 +9,13 @@ import pytest
 from app.screen import page_table
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme
-from app.screen.text_sizes import CAPITAL_HEIGHT_RATIO, PanelSize, TextRole, make_panel_size
-from app.screen.window_layout import LOW_WINDOW_HEIGHT_PX, find_unit_px, make_layout, make_low_layout
+from app.screen.text_sizes import CAPITAL_HEIGHT_RATIO, ScreenResolution, TextRole, make_screen_resolution
+from app.screen.window_layout import (
+    LOW_WINDOW_HEIGHT_PX,
+    find_unit_px,
+    make_automatic_layout,
+    make_compact_layout,
+)
 from tests.screen.lathe import Operator
 from tests.screen.text_heights import recorded
 
@@ -104,9 +109,9 @@ def test_minimum_text_height_follows_from_viewing_distance() -> None:
 
 @pytest.mark.parametrize(("name", "small"), [("7", True), ("10", False), ("21.5", False)])
 def test_a_panel_under_10_inches_is_small(name: str, small: bool) -> None:
-    size = make_panel_size(*PANELS[name])
+    size = make_screen_resolution(*PANELS[name])
     width, _, wide, _ = PANELS[name]
-    assert size.is_small is small
+    assert size.is_small_screen is small
     assert size.pixels_per_mm == pytest.approx(width / wide, rel=0.02)
 
 
@@ -121,14 +126,14 @@ def test_a_panel_under_10_inches_is_small(name: str, small: bool) -> None:
     ],
 )
 def test_implausible_panel_size_is_treated_as_96_dpi_monitor(reported: tuple[int, int]) -> None:
-    size = make_panel_size(1024, 600, *reported)
+    size = make_screen_resolution(1024, 600, *reported)
     assert size.pixels_per_mm == pytest.approx(96 / 25.4)
-    assert not size.is_small
+    assert not size.is_small_screen
 
 
 def test_a_text_grows_to_the_height_of_its_role_or_of_its_row() -> None:
     look = ScreenTheme(DARK_PALETTE, 8.0)
-    look.screen = PanelSize(5.0)  # A position has capitals of 58.2 pixels, and a table of 16.3 pixels.
+    look.screen = ScreenResolution(5.0)  # A position has capitals of 58.2 pixels, and a table of 16.3 pixels.
     needed = 58.18 / CAPITAL_HEIGHT_RATIO / 8.0
     assert look.find_em_height(5.0, TextRole.POSITION, 200.0) == pytest.approx(needed, rel=1e-3)
     assert look.find_em_height(5.0, TextRole.POSITION, 56.0) == pytest.approx(
@@ -139,7 +144,7 @@ def test_a_text_grows_to_the_height_of_its_role_or_of_its_row() -> None:
     assert look.find_em_height(2.0, TextRole.TABLE, 80.0) == pytest.approx(needed, rel=1e-3)
     assert look.find_em_height(1.5, TextRole.TABLE, 80.0) == pytest.approx(2.4)  # 1.6 times
     assert look.find_em_height(1.5, TextRole.TABLE, 12.8) == pytest.approx(1.5)
-    look.screen = PanelSize(2.0)
+    look.screen = ScreenResolution(2.0)
     assert look.find_em_height(2.0, TextRole.TABLE, 80.0) == 2.0  # A large screen needs no more.
 
 
@@ -147,14 +152,14 @@ def test_a_text_grows_to_the_height_of_its_role_or_of_its_row() -> None:
 @pytest.mark.parametrize("dock", [True, False])
 def test_large_position_readout_uses_2_8_units_of_page(size: tuple[int, int], dock: bool) -> None:
     low, moves, u = (
-        make_low_layout(*size, dock),
-        make_low_layout(*size, dock, has_axis_motion=True),
+        make_compact_layout(*size, dock),
+        make_compact_layout(*size, dock, has_axis_motion=True),
         find_unit_px(*size),
     )
     more = 2.8 * u if size[1] >= LOW_WINDOW_HEIGHT_PX else 0.0  # a lower window keeps the room for fingers
     assert moves.readout_line.h - low.readout_line.h == pytest.approx(more, abs=1)
     assert low.work_area.h - moves.work_area.h == moves.readout_line.h - low.readout_line.h
-    assert moves.work_area.bottom == low.work_area.bottom <= make_layout(*size, dock).prompt.y
+    assert moves.work_area.bottom == low.work_area.bottom <= make_automatic_layout(*size, dock).prompt.y
 
 
 @pytest.mark.parametrize("language", ["en", "es"])
@@ -162,7 +167,7 @@ def test_large_position_readout_uses_2_8_units_of_page(size: tuple[int, int], do
 def test_texts_on_all_pages_have_required_height(
     operator: Operator, monkeypatch: pytest.MonkeyPatch, name: str, language: str
 ) -> None:
-    size, lowest = make_panel_size(*PANELS[name]), dict[TextRole, tuple[float, str]]()
+    size, lowest = make_screen_resolution(*PANELS[name]), dict[TextRole, tuple[float, str]]()
     window, desk = operator.window, operator.stage.desk
     operator.stage.make_ready()
     window.resize(*PANELS[name][:2])
@@ -175,7 +180,9 @@ def test_texts_on_all_pages_have_required_height(
             window.grab()
     for each in texts:
         share = (
-            100 * each.capitals / (each.role.find_min_height_mm(is_small=size.is_small) * size.pixels_per_mm)
+            100
+            * each.capitals
+            / (each.role.find_min_height_mm(is_small=size.is_small_screen) * size.pixels_per_mm)
         )
         lowest[each.role] = min((share, f"{each.panel}: {each.text}"), lowest.get(each.role, (999.0, "")))
     assert set(lowest) == set(TextRole)
@@ -188,7 +195,7 @@ def test_texts_on_all_pages_have_required_height(
 def test_position_readout_is_large_where_axes_can_move(
     operator: Operator, monkeypatch: pytest.MonkeyPatch, name: str, page: str
 ) -> None:
-    size = make_panel_size(*PANELS[name])
+    size = make_screen_resolution(*PANELS[name])
     operator.stage.make_ready()
     operator.window.resize(*PANELS[name][:2])
     operator.window.theme.screen = size
@@ -197,7 +204,10 @@ def test_position_readout_is_large_where_axes_can_move(
     with recorded(monkeypatch) as texts:
         operator.frame.readout_line.grab()
     least = (
-        MOVING[name] / 100 * TextRole.POSITION.find_min_height_mm(is_small=size.is_small) * size.pixels_per_mm
+        MOVING[name]
+        / 100
+        * TextRole.POSITION.find_min_height_mm(is_small=size.is_small_screen)
+        * size.pixels_per_mm
     )
     heights = [each.capitals for each in texts if each.role is TextRole.POSITION]
     assert len(heights) == 3

@@ -17,7 +17,7 @@ from app.screen.panel import Panel
 from app.screen.window_layout import FINGERTIP_PX
 from core.executor.snapshot import MachineState
 from core.store.store import Store
-from core.store.store_rows import ShapeRow
+from core.store.store_rows import ToolShapeRow
 from tests.offset_store import use_store
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import yes
@@ -91,7 +91,9 @@ def test_new_shape_is_entered_by_keyboard_only(hands: Hands, store: Store) -> No
     hands.key(Key.Key_Return)
     hands.type("DCMT 11T304")
     hands.key(Key.Key_Return)
-    hands.sees(lambda: store.offsets.tool_shapes.read_rows()[2] == ShapeRow("turning", insert="DCMT 11T304"))
+    hands.sees(
+        lambda: store.offsets.tool_shapes.read_rows()[2] == ToolShapeRow("turning", insert="DCMT 11T304")
+    )
 
 
 def test_letters_in_open_text_field_are_not_commands(hands: Hands, store: Store) -> None:
@@ -113,12 +115,12 @@ def test_drill_shape_is_entered_by_touch_only(hands: Hands, store: Store) -> Non
     page = opened(hands, 2)
     enter, point, two, five = 19, 13, 9, 5  # places on the pad, row by row
     for _ in range(6):
-        touch(hands, page.table_panel, 0)
+        touch(hands, page.content_panel, 0)
     assert page.model.entered_text == "DRILL"
     touch(hands, page.number_pad, enter)
-    hands.sees(lambda: page.model.shape_row == ShapeRow("drill") and not page.model.offset_book.is_saving)
+    hands.sees(lambda: page.model.shape_row == ToolShapeRow("drill") and not page.model.offset_book.is_saving)
     hands.sees(lambda: len(page.model.field_names) == 7)
-    touch(hands, page.table_panel, 2)
+    touch(hands, page.content_panel, 2)
     for key in (point, two, five, enter):
         touch(hands, page.number_pad, key)
     hands.sees(lambda: store.offsets.tool_shapes.read_rows()[2].diameter == pytest.approx(6.35))
@@ -129,7 +131,7 @@ def test_every_field_is_touch_sized(hands: Hands, store: Store) -> None:
     hands.desk.offset_book.read_store()
     page = opened(hands)
     for place in reversed(range(1, len(page.model.field_names))):
-        touch(hands, page.table_panel, place)
+        touch(hands, page.content_panel, place)
         assert page.model.field_index == place
 
 
@@ -139,12 +141,12 @@ def test_outline_and_control_point_are_drawn(hands: Hands, store: Store, size: t
     page = opened(hands)
     hands.window.grab()
     look = hands.window.theme
-    drawn = colours(hands, page.table_panel)
+    drawn = colours(hands, page.content_panel)
     assert {look.get_color(name).name() for name in ("accent", "ghost", "tip")} <= drawn
     hands.key(Key.Key_PageDown)
     hands.sees(lambda: page.model.tool_number == 2)
     hands.window.refresh()
-    assert look.get_color("ghost").name() not in colours(hands, page.table_panel)
+    assert look.get_color("ghost").name() not in colours(hands, page.content_panel)
 
 
 def test_invalid_shape_is_reported_and_not_drawn(hands: Hands, store: Store) -> None:
@@ -153,8 +155,8 @@ def test_invalid_shape_is_reported_and_not_drawn(hands: Hands, store: Store) -> 
     page = opened(hands)
     hands.sees(lambda: hands.prompt().startswith(f"T1: {text('screen.tip-not-round', tip=3)}"))
     hands.window.refresh()
-    assert hands.window.theme.get_color("ghost").name() not in colours(hands, page.table_panel)
-    assert hands.window.theme.get_color("alarm").name() in colours(hands, page.table_panel)
+    assert hands.window.theme.get_color("ghost").name() not in colours(hands, page.content_panel)
+    assert hands.window.theme.get_color("alarm").name() in colours(hands, page.content_panel)
 
 
 def test_f3_asks_before_deleting_shape(hands: Hands, store: Store) -> None:
@@ -168,7 +170,7 @@ def test_f3_asks_before_deleting_shape(hands: Hands, store: Store) -> None:
     hands.sees(lambda: page.model.shape_row is None)
     hands.key(Key.Key_F4)
     yes(hands.window)
-    hands.sees(lambda: page.model.shape_row == ShapeRow("turning", insert="CNMG432"))
+    hands.sees(lambda: page.model.shape_row == ToolShapeRow("turning", insert="CNMG432"))
 
 
 def test_history_shows_changed_fields(hands: Hands, store: Store) -> None:

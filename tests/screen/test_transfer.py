@@ -13,8 +13,8 @@ from pytestqt.qtbot import QtBot
 
 from app.compose.runs.journal import Journal
 from app.desk.status.prompt_line import MessageKind
-from app.special.special_functions import SpecialFunctionList
-from app.special.special_view import SpecialPage
+from app.special.special_functions import SpecialFunctionsModel
+from app.special.special_view import SpecialFunctionsPage
 from app.transfer.line_transfer import ReceivedProgram
 from app.transfer.serial_transfer import SerialTransferFunction
 from core.executor.commands import FeedHold
@@ -36,11 +36,11 @@ WAIT = 60.0
 
 @dataclass(frozen=True)
 class Reach:
-    done_byte_count: int = 640
+    transferred_byte_count: int = 640
     total_byte_count: int = 1280
-    line_count: int = 20
+    transferred_line_count: int = 20
     wait_reason: str = "held"
-    received_text: str = ""
+    leading_text: str = ""
 
 
 class Script(Generic[T]):
@@ -99,7 +99,7 @@ def hands(
     """A desk whose machine has a line for programs."""
     desk = desk_on(machine, keep=journal)
     section = SerialTransferFunction(desk, journal, lines, DEFAULT, tmp_path / "own")
-    special = attached(desk, SpecialFunctionList)
+    special = attached(desk, SpecialFunctionsModel)
     functions = list(special.functions)
     (line,) = (number for number, each in enumerate(functions) if each.name == section.name)
     functions[line].close()
@@ -114,9 +114,9 @@ def hands(
         yield made
 
 
-def page(hands: Hands) -> SpecialPage:
+def page(hands: Hands) -> SpecialFunctionsPage:
     shown = hands.frame.current_page
-    assert isinstance(shown, SpecialPage)
+    assert isinstance(shown, SpecialFunctionsPage)
     return shown
 
 
@@ -149,7 +149,7 @@ def test_received_program_gets_new_name_and_starts_nothing(
     assert lines.job is not None
     posted = len(hands.machine.posted)
     lines.job.go.set()
-    hands.sees(lambda: page(hands).table_panel.table.question == text("screen.name-of-new-program"))
+    hands.sees(lambda: page(hands).table_panel.table.entry_prompt == text("screen.name-of-new-program"))
     assert page(hands).table_panel.table.text == "O77.nc"
     assert cells(hands)["PROVED"] == "NO ERRORS"
     hands.key(Key.Key_Delete)
@@ -177,7 +177,7 @@ def test_existing_name_is_rejected_and_received_program_remains(
     hands.key(Key.Key_Return)
     hands.sees(lambda: shows(hands.desk.prompt_notice, "screen.name-is-there"))
     assert old.read_bytes() == b"OLD\n"
-    assert page(hands).table_panel.table.question == text("screen.name-of-new-program")
+    assert page(hands).table_panel.table.entry_prompt == text("screen.name-of-new-program")
 
 
 def test_received_program_is_discarded_after_confirmation(
@@ -186,12 +186,12 @@ def test_received_program_is_discarded_after_confirmation(
     hands.key(Key.Key_F5)
     assert lines.job is not None
     lines.job.go.set()
-    hands.sees(lambda: page(hands).table_panel.table.question != "")
+    hands.sees(lambda: page(hands).table_panel.table.entry_prompt != "")
     hands.key(Key.Key_F6)
     hands.sees(lambda: shows(hands.desk.prompt_notice, "screen.throw-away-received"))
-    assert page(hands).table_panel.table.question != ""
+    assert page(hands).table_panel.table.entry_prompt != ""
     yes(hands.window)
-    hands.sees(lambda: page(hands).table_panel.table.question == "")
+    hands.sees(lambda: page(hands).table_panel.table.entry_prompt == "")
     assert not (tmp_path / "own").exists()
 
 
@@ -210,7 +210,7 @@ def test_transfer_error_is_reported(hands: Hands, lines: FakeLines) -> None:
     assert lines.job is not None
     lines.job.go.set()
     hands.sees(lambda: text("screen.nothing-kept", why="parity error in line 7") in hands.desk.prompt_notice)
-    assert hands.desk.prompt_answers.notice_kind is MessageKind.REFUSAL
+    assert hands.desk.prompt_line.notice_kind is MessageKind.REFUSAL
 
 
 def test_missing_serial_port_is_reported(hands: Hands) -> None:
@@ -239,7 +239,7 @@ def test_loaded_program_is_sent(hands: Hands, lines: FakeLines) -> None:
     assert lines.job is not None
     lines.job.go.set()
     hands.sees(lambda: text("screen.is-sent", name="pin.nc", count=1280) in hands.desk.prompt_notice)
-    assert hands.desk.prompt_answers.notice_kind is MessageKind.SUCCESS
+    assert hands.desk.prompt_line.notice_kind is MessageKind.SUCCESS
     (said,) = lines.said
     assert said[1] is not None
     assert said[1].name == "pin.nc"
@@ -256,7 +256,7 @@ def test_reception_continues_while_other_pages_are_open(hands: Hands, lines: Fak
     hands.key(Key.Key_F10)
     hands.type("9")
     hands.key(Key.Key_Return)
-    hands.sees(lambda: page(hands).table_panel.table.question != "")
+    hands.sees(lambda: page(hands).table_panel.table.entry_prompt != "")
 
 
 def test_letters_name_received_program_while_another_one_runs(
@@ -265,7 +265,7 @@ def test_letters_name_received_program_while_another_one_runs(
     hands.key(Key.Key_F5)
     assert lines.job is not None
     lines.job.go.set()
-    hands.sees(lambda: page(hands).table_panel.table.question != "")
+    hands.sees(lambda: page(hands).table_panel.table.entry_prompt != "")
     hands.machine.now = replace(hands.machine.now, state=MachineState.WAIT)
     hands.type("hec")
     assert FeedHold() not in hands.machine.posted

@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtWidgets import QApplication
 
 from app.desk.stop_keys.key_watcher_client import KeyWatcherClient
-from app.desk.stop_keys.stop_records import FocusRecord, StopKind, StopPress, make_press_number
+from app.desk.stop_keys.stop_records import FocusRecord, StopKeyPress, StopKind, make_press_number
 from app.screen import page_table
 from core.executor.commands import FeedHold
 from core.executor.snapshot import MachineState
@@ -23,22 +23,22 @@ AT = 10_000
 class Watched:
     """A watcher of which the test says what it has sent."""
 
-    sent: list[StopPress] = field(default_factory=list)
-    told: list[StopPress] = field(default_factory=list)
+    sent: list[StopKeyPress] = field(default_factory=list)
+    told: list[StopKeyPress] = field(default_factory=list)
     shown: list[FocusRecord] = field(default_factory=list)
 
     def send(self, kind: StopKind, key: int) -> None:
-        self.sent.append(StopPress(kind, make_press_number(key, AT)))
+        self.sent.append(StopKeyPress(kind, make_press_number(key, AT)))
         self.told.append(self.sent[-1])
 
     def send_focus(self, focus: FocusRecord) -> None:
         self.shown.append(focus)
 
-    def read_stops(self) -> list[StopPress]:
+    def read_sent_stops(self) -> list[StopKeyPress]:
         told, self.told = self.told, []
         return told
 
-    def was_sent(self, press: int) -> bool:
+    def was_press_sent(self, press: int) -> bool:
         return press in {each.press_number for each in self.sent}
 
 

@@ -12,7 +12,7 @@ from app.offsets.cell_table_view import ZeroOffsetsPage
 from app.screen import page_table
 from core.executor.snapshot import MachineState
 from core.store.store import Store
-from core.store.store_rows import ZeroRow
+from core.store.store_rows import ZeroOffsetRow
 from tests.offset_store import use_store
 from tests.screen.hands import Hands, Key
 from tests.screen.yes import yes
@@ -46,19 +46,19 @@ def test_values_are_overwritten_and_saved(hands: Hands, store: Store) -> None:
     page = opened(hands)
     hands.sees(lambda: page.entry_panel.entry_texts.question_text == f"G54  {wording('screen.x-radius')}")
     enter(hands, "1.5-.25")
-    hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {54: ZeroRow(x=1.25)})
+    hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {54: ZeroOffsetRow(x=1.25)})
     hands.sees(lambda: hands.prompt() == wording("screen.saved", names="G54"))
     hands.key(Key.Key_Tab)
     hands.key(Key.Key_Tab)
     hands.sees(lambda: page.entry_panel.entry_texts.question_text == f"G54  {wording('screen.c-degrees')}")
     hands.type("-15")
-    hands.sees(lambda: page.entry_panel.entry_texts.change_text == "G54 C   +0.000  →  −15.000")
+    hands.sees(lambda: page.entry_panel.entry_texts.change_description == "G54 C   +0.000  →  −15.000")
     hands.key(Key.Key_Return)
-    hands.sees(lambda: page.table_panel.stored_rows == {54: ZeroRow(x=1.25, c=-15.0)})
+    hands.sees(lambda: page.content_panel.stored_rows == {54: ZeroOffsetRow(x=1.25, c=-15.0)})
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Left)
     enter(hands, "33")
-    hands.sees(lambda: store.offsets.zero_offsets.read_rows().get(55) == ZeroRow(z=33.0))
+    hands.sees(lambda: store.offsets.zero_offsets.read_rows().get(55) == ZeroOffsetRow(z=33.0))
 
 
 def test_rejected_entry_is_explained_and_remains_for_correction(hands: Hands, store: Store) -> None:
@@ -88,23 +88,23 @@ def test_return_without_entry_moves_on_and_changes_nothing(hands: Hands, store: 
 def test_offset_is_cleared_restored_by_undo_and_listed_in_history(hands: Hands, store: Store) -> None:
     page = opened(hands)
     enter(hands, "7")
-    hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {54: ZeroRow(x=7.0)})
+    hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {54: ZeroOffsetRow(x=7.0)})
     hands.sees(lambda: hands.prompt() == wording("screen.saved", names="G54"))
     hands.key(Key.Key_C)
     assert begins(hands.prompt(), "screen.clear-zero")
     yes(hands.window)
     hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {})
-    hands.sees(lambda: not page.model.offset_book.is_saving and page.table_panel.stored_rows == {})
+    hands.sees(lambda: not page.model.offset_book.is_saving and page.content_panel.stored_rows == {})
     hands.key(Key.Key_F4)
     yes(hands.window)
-    hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {54: ZeroRow(x=7.0)})
+    hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {54: ZeroOffsetRow(x=7.0)})
     hands.sees(lambda: hands.prompt() == wording("screen.taken-back", names="G54"))
     hands.key(Key.Key_F5)
     hands.sees(page.history_list.isVisible)
     assert [entry[1] for entry in page.history_list.history_entries] == ["G54", "G54", "G54"]
     assert page.history_list.history_entries[-1][2] == "not set  →  X +7.000  Z +0.000  C +0.000"
     hands.key(Key.Key_Escape)
-    hands.sees(page.table_panel.isVisible)
+    hands.sees(page.content_panel.isVisible)
 
 
 def test_zero_offset_cannot_be_changed_while_program_runs(hands: Hands, store: Store) -> None:
@@ -141,7 +141,7 @@ def test_change_without_store_shows_reason(hands: Hands) -> None:
     page = opened(hands)
     enter(hands, "3")
     hands.sees(lambda: hands.prompt() == wording("screen.no-offsets-kept"))
-    assert page.table_panel.stored_rows == {}
+    assert page.content_panel.stored_rows == {}
 
 
 def test_program_is_reloaded_when_offset_changes(hands: Hands, store: Store) -> None:
@@ -164,11 +164,11 @@ def test_zero_is_set_so_that_current_position_reads_typed_value(hands: Hands, st
     hands.key(Key.Key_Tab)
     hands.type("1.5")
     hands.key(Key.Key_F2)
-    hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {54: ZeroRow(z=-85.0)})
+    hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {54: ZeroOffsetRow(z=-85.0)})
     hands.sees(lambda: hands.prompt() == wording("screen.saved", names="G54"))
     hands.key(Key.Key_Tab)
     hands.key(Key.Key_F2)
-    hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {54: ZeroRow(z=-85.0, c=15.0)})
+    hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {54: ZeroOffsetRow(z=-85.0, c=15.0)})
     assert store.offsets.zero_offsets.read_history()[1].why == "Z position set to 1.5"
     assert page.model.text == ""
 

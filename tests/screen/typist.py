@@ -28,12 +28,12 @@ from core.executor.commands import (
     ConfirmStart,
     DeselectHandwheel,
     LoadJob,
-    PrepareStart,
-    ReplaceClearances,
+    PrepareCycleStart,
+    ReplaceStartClearances,
     SetPartCount,
     SetSwitch,
-    SupplyProof,
-    UseOffsets,
+    SupplyJobProof,
+    UseOffsetTables,
 )
 from core.executor.executor import Executor
 from core.executor.snapshot import MachineState
@@ -48,13 +48,13 @@ NONE, SHIFT, CTRL = (
 )
 STATION = ("press_estop", "release_estop", "press_hold", "set_spindle_auto", "press_left", "press_right")
 QUIET = (
-    ReplaceClearances,
-    SupplyProof,
+    ReplaceStartClearances,
+    SupplyJobProof,
     LoadJob,
     SetPartCount,
-    PrepareStart,
+    PrepareCycleStart,
     ChangeOffsets,
-    UseOffsets,
+    UseOffsetTables,
     DeselectHandwheel,
 )  # of pages and workers
 UNCHANGING = frozenset({"events"})  # tables that only log
@@ -116,7 +116,7 @@ class Typist:
             "feed_pot": desk.station_controls.feed_pot.wanted,
             "spindle_pot": desk.station_controls.spindle_pot.wanted,
             "counter": desk.program_runs.part_counter.part_count,
-            "loaded program": (loaded.path, loaded.has_block_delete, loaded.source),
+            "loaded program": (loaded.path, loaded.is_block_delete_on, loaded.source),
             "snapshot": self.day.shot,
         }
         return told | self._store() | _files(find_data_folder())
@@ -157,7 +157,7 @@ class Typist:
             frame.open_page(page_table.AUTOMATIC)
         frame.alarm_list.hide()
         frame.automatic_page.file_prompt.close_prompt()
-        frame.automatic_page.path_view.set_measuring(is_on=False)
+        frame.automatic_page.path_view.switch_measuring(is_on=False)
         opened = frame.current_page.NAME == page_table.AUTOMATIC and frame.open_page(name)
         self._workers_end()
         self.day.window.refresh()
@@ -171,7 +171,7 @@ class Typist:
         page = self.day.frame.current_page
         if isinstance(page, EditorPage):
             page.editor.clear_message()
-        self.day.desk.prompt_answers.is_lasting = False
+        self.day.desk.prompt_line.is_lasting_message = False
         self.day.desk.clear_prompt_line()
 
     def _leaves_editor(self, page: EditorPage) -> None:
@@ -180,7 +180,7 @@ class Typist:
         def left() -> bool:
             editor = page.editor
             if editor.stage is EditorStage.OFFERED:
-                editor.cancel_offer()
+                editor.cancel_document_offer()
             elif editor.stage is EditorStage.NAMING:
                 editor.cancel_naming()
             elif editor.stage is EditorStage.OPEN:
@@ -263,7 +263,7 @@ def _is_again(loader: object, path: object = None, block_delete: object = False)
     """Whether the same program is loaded in the same way: with offsets that were changed."""
     if not isinstance(loader, ProgramLoader):
         return False
-    return (path, block_delete) == (loader.loaded_program.path, loader.loaded_program.has_block_delete)
+    return (path, block_delete) == (loader.loaded_program.path, loader.loaded_program.is_block_delete_on)
 
 
 def _named(name: str, *values: object) -> str:

@@ -21,8 +21,8 @@ def yes(window: MainWindow, key: Qt.Key = Qt.Key.Key_Y) -> None:
 
 def read(desk: Desk) -> None:
     """Time enough has passed for reading the question that stands."""
-    assert desk.confirm_key, f"nothing is asked: {desk.prompt_notice}"
-    desk.prompt_answers._since = NEVER
+    assert desk.confirmation_key, f"nothing is asked: {desk.prompt_notice}"
+    desk.prompt_line._since = NEVER
 
 
 def twist_out(window: MainWindow) -> None:

@@ -6,11 +6,11 @@ import threading
 
 import pytest
 
-from app.compose.program_proving import create_search
+from app.compose.program_proving import create_restart_search
 from app.desk.programs.program_loading import ProvedJob
 from app.searchto.restart_finder import LineCursor, RestartFinder
 from core.executor.job import Job, Proof, make_job
-from core.interpreter.restart.restart_point import RestartPoint, RestartRefusal
+from core.interpreter.restart.restart_point import RestartPoint, RestartRejection
 from core.language.source import ProgramSource
 from tests.interpreter.programs import setup
 
@@ -26,10 +26,10 @@ def typed(text: str, line: int = 1) -> LineCursor:
 
 
 def test_digits_are_a_line_number_and_quoted_digits_a_text() -> None:
-    assert typed("12").entered_number == 12
-    assert typed('"12').entered_number is None
+    assert typed("12").entered_line_number == 12
+    assert typed('"12').entered_line_number is None
     assert typed('"12').search_text == "12"
-    assert typed("x1").entered_number is None
+    assert typed("x1").entered_line_number is None
 
 
 def test_search_wraps_around_and_ignores_case() -> None:
@@ -78,7 +78,10 @@ ANSWERS: list[object] = []
 def finder() -> RestartFinder:
     ANSWERS.clear()
     return RestartFinder(
-        create_search, lambda job, _watch: ProvedJob(Proof(job.digest, ())), ANSWERS.append, ANSWERS.append
+        create_restart_search,
+        lambda job, _watch: ProvedJob(Proof(job.digest, ())),
+        ANSWERS.append,
+        ANSWERS.append,
     )
 
 
@@ -91,11 +94,11 @@ def answer(finder: RestartFinder) -> object:
 
 def test_lines_are_found_one_after_the_other(finder: RestartFinder) -> None:
     part = job("\n".join(LINES) + "\n")
-    finder.find_line(part, 4)
+    finder.find_restart_line(part, 4)
     assert isinstance(answer(finder), RestartPoint)
-    finder.find_line(part, 2)
-    assert isinstance(answer(finder), RestartRefusal)
-    finder.find_line(part, 5)
+    finder.find_restart_line(part, 2)
+    assert isinstance(answer(finder), RestartRejection)
+    finder.find_restart_line(part, 5)
     found = answer(finder)
     assert isinstance(found, RestartPoint)
     assert found.line_number == 5
@@ -104,9 +107,9 @@ def test_lines_are_found_one_after_the_other(finder: RestartFinder) -> None:
 
 def test_canceled_search_returns_nothing_and_next_line_is_found(finder: RestartFinder) -> None:
     long = job("G90G94F300\nX1Z1\nLS90000\nX1\nX2\nLF\nX1\nM30\n")
-    finder.find_line(long, 7)
+    finder.find_restart_line(long, 7)
     finder.worker.cancel_request()
-    finder.find_line(long, 3)
+    finder.find_restart_line(long, 3)
     found = answer(finder)
     assert isinstance(found, RestartPoint)
     assert found.line_number == 3

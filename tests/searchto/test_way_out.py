@@ -9,9 +9,13 @@ import pytest
 from app.searchto.restart_plan import describe_manual_retract, plan_retract
 from core.executor.job import make_job
 from core.executor.snapshot import POWER_LOST_REASON, InterruptedJob, Snapshot
-from core.interpreter.restart.restart_approach import OperatorChoices, PresentState, plan_retract_from_part
+from core.interpreter.restart.restart_approach import (
+    CurrentMachineState,
+    OperatorChoices,
+    plan_retract_from_part,
+)
 from core.interpreter.restart.restart_point import Interruption
-from core.interpreter.restart.state_rebuild import OmniturnSearch
+from core.interpreter.restart.state_rebuild import OmniturnRestartSearch
 from core.interpreter.restart.tool_retract import Retract, RetractLeg, ToolSituation
 from core.interpreter.shared.modal_state import ModalState
 from core.language.source import ProgramSource
@@ -55,17 +59,17 @@ PART = ProgramSource("PART", "G90G94F300\nT1\nX.75Z1\nZ-.3\nM19\nCA30\nG94F5X.5\
 
 
 def test_cross_hole_retract_is_known_only_at_unchanged_c_angle() -> None:
-    cut = OmniturnSearch(PART, setup(), lambda _count: None).cut_record
+    cut = OmniturnRestartSearch(PART, setup(), lambda _count: None).cut_record
     row = next(
-        n for n, line in zip(cut.block_number.tolist(), cut.line_number.tolist(), strict=True) if line == 7
+        n for n, line in zip(cut.block_numbers.tolist(), cut.line_numbers.tolist(), strict=True) if line == 7
     )
     at = (0.6 * INCH, -0.3 * INCH, 30.0)
     broken = Interruption(row, 1, at, row)
-    assert plan_retract_from_part(cut, PresentState(at, ModalState(), broken))[0].is_known
-    assert plan_retract_from_part(cut, PresentState((*at[:2], 390.2), ModalState(), broken))[
+    assert plan_retract_from_part(cut, CurrentMachineState(at, ModalState(), broken))[0].is_known
+    assert plan_retract_from_part(cut, CurrentMachineState((*at[:2], 390.2), ModalState(), broken))[
         0
     ].is_known  # a whole turn, as C counts
-    found, tool = plan_retract_from_part(cut, PresentState((*at[:2], 35.0), ModalState(), broken))
+    found, tool = plan_retract_from_part(cut, CurrentMachineState((*at[:2], 35.0), ModalState(), broken))
     assert not found.is_known
     assert begins(describe_manual_retract(found, tool), "search.c-has-turned", tool=1)
 
@@ -81,9 +85,9 @@ def interrupted(block: int, **changes: object) -> tuple[Snapshot, InterruptedJob
 
 
 def test_retract_states_feed_and_uses_frame_of_active_tool() -> None:
-    cut = OmniturnSearch(PART, setup(), lambda _count: None).cut_record
+    cut = OmniturnRestartSearch(PART, setup(), lambda _count: None).cut_record
     row = next(
-        n for n, line in zip(cut.block_number.tolist(), cut.line_number.tolist(), strict=True) if line == 7
+        n for n, line in zip(cut.block_numbers.tolist(), cut.line_numbers.tolist(), strict=True) if line == 7
     )
     snapshot, _ = interrupted(row)
     out = plan_retract(cut, snapshot, make_job(PART, setup()), OperatorChoices())
@@ -97,7 +101,7 @@ def test_retract_states_feed_and_uses_frame_of_active_tool() -> None:
 
 
 def test_changed_axis_position_is_tolerated_only_after_power_loss() -> None:
-    cut = OmniturnSearch(PART, setup(), lambda _count: None).cut_record
+    cut = OmniturnRestartSearch(PART, setup(), lambda _count: None).cut_record
     before, _ = interrupted(3, why=POWER_LOST_REASON, where=(0.75 * INCH, -0.1 * INCH, 30.0))
     assert plan_retract(cut, before, make_job(PART, setup()), OperatorChoices()).error_text == ""
     moved, _ = interrupted(3, where=(0.75 * INCH, -0.1 * INCH, 30.0))

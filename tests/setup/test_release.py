@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.actions.desktop_entry import format_entry
+from app.cli.actions.desktop_entry import format_desktop_entry
 from app.cli.main import list_commands
 from resources.setup import release, release_check
 from resources.setup.bundle import BundleError
@@ -168,7 +168,7 @@ def test_special_characters_of_the_manual_are_escaped(text: str, expected: str) 
 
 
 def test_menu_entry_starts_the_command(tmp_path: Path) -> None:
-    assert "Exec=/usr/bin/turndesk %f" in format_entry("/usr/bin/turndesk %f")
+    assert "Exec=/usr/bin/turndesk %f" in format_desktop_entry("/usr/bin/turndesk %f")
 
 
 def test_release_sbom_is_reproducible() -> None:

@@ -34,7 +34,7 @@ def test_status_json_keys_are_documented(tmp_path: Path) -> None:
     for number, shot in enumerate(shots()):
         path = tmp_path / f"{number}.json"
         StatusFileWriter(path, lambda: "2026-11-23T08:00:00Z").write_status(
-            make_status("GT-75", reader.read_snapshot(shot))
+            make_status("GT-75", reader.make_reading(shot))
         )
         values.append(json.loads(path.read_text("utf-8")))
     declared_alone(values, FILE_KEYS)

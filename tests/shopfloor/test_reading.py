@@ -45,7 +45,7 @@ AT = Snapshot(
 
 
 def values_of(snapshot: Snapshot, machine: Machine = LATHE) -> Mapping[str, ReadingValue]:
-    return MachineReader(machine, lambda: 0.0).read_snapshot(snapshot).values
+    return MachineReader(machine, lambda: 0.0).make_reading(snapshot).values
 
 
 def test_running_machine_gives_expected_values() -> None:
@@ -130,20 +130,20 @@ def test_chuck_interlock_is_active_while_spindle_turns(rpm: float, told: str) ->
 def test_nothing_is_known_of_silent_control() -> None:
     now = 100.0
     reader = MachineReader(LATHE, lambda: now)
-    assert reader.read_snapshot(AT).is_available
+    assert reader.make_reading(AT).is_available
     now += 0.9
-    assert reader.read_snapshot(AT).is_available
+    assert reader.make_reading(AT).is_available
     now += 0.2
-    reading = reader.read_snapshot(AT)
+    reading = reader.make_reading(AT)
     assert (reading.values, reading.conditions) == ({"avail": "UNAVAILABLE"}, {})
-    assert reader.read_snapshot(replace(AT, t=2.0)).is_available  # it speaks again
+    assert reader.make_reading(replace(AT, t=2.0)).is_available  # it speaks again
 
 
 # --- conditions ------------------------------------------------------------------------------------------
 
 
 def active(snapshot: Snapshot) -> dict[str, tuple[tuple[str, str, str], ...]]:
-    reading = MachineReader(LATHE, lambda: 0.0).read_snapshot(snapshot)
+    reading = MachineReader(LATHE, lambda: 0.0).make_reading(snapshot)
     assert set(reading.conditions) == KEYS
     return {key: found for key, found in reading.conditions.items() if found}
 

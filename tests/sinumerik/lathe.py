@@ -7,10 +7,10 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from app.compose.machine.machine_files import load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.dialects import interpret_program
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.shared.job_setup import Setup, ZeroOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ZeroOffset
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, ProgramSource
 from core.machine.machine_model import Machine
@@ -45,32 +45,36 @@ def setup(
     machine: Machine = MODULO,
     start: tuple[float, float, float] = START,
     zero: Mapping[int, ZeroOffset] | None = None,
-) -> Setup:
+) -> InterpreterSetup:
     """Circumstances on this machine."""
-    return replace(create_setup(machine, tool_offsets={}, secondary_offsets={}), start=start, zero=zero or {})
+    return replace(
+        create_power_up_setup(machine, tool_offsets={}, secondary_offsets={}), start=start, zero=zero or {}
+    )
 
 
-def run(text: str | ProgramSource, around: Setup | None = None) -> Passed:
+def run(text: str | ProgramSource, around: InterpreterSetup | None = None) -> Passed:
     """The blocks of a program and all findings."""
     program = interpret_program(text if isinstance(text, ProgramSource) else source(text), around or setup())
     blocks = list(program.generate_blocks())
     return Passed(blocks, list(program.diagnostics))
 
 
-def good(text: str | ProgramSource, around: Setup | None = None) -> list[Block]:
+def good(text: str | ProgramSource, around: InterpreterSetup | None = None) -> list[Block]:
     """The moving blocks of a program without findings."""
     passed = run(text, around)
     assert passed.found == []
     return passed.moves
 
 
-def refused(text: str | ProgramSource, around: Setup | None = None) -> Diagnostic:
+def refused(text: str | ProgramSource, around: InterpreterSetup | None = None) -> Diagnostic:
     """The one error of a program."""
     (error,) = run(text, around).errors
     return error
 
 
-def times(text: str, machine: Machine = MODULO, around: Setup | None = None) -> list[tuple[Block, float]]:
+def times(
+    text: str, machine: Machine = MODULO, around: InterpreterSetup | None = None
+) -> list[tuple[Block, float]]:
     """Every block with the seconds that it takes by feeds and limits alone."""
     timeline = Timeline.from_program(source(text), around or setup(machine), machine, is_ideal=True)
     found = [(block, t1 - t0) for block, t0, t1 in iter_timed_blocks(timeline)]

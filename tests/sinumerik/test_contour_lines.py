@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from core.interpreter.shared.elementary_blocks import BlockKind
-from core.interpreter.shared.job_setup import Setup, ToolOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset
 from core.language.diagnostics import Severity
 from core.language.source import Dialect, ProgramSource
 from tests.sinumerik.lathe import Passed, good, refused, run, setup, source
@@ -118,5 +118,5 @@ def test_contour_after_a_tool_change_cannot_begin_with_a_distance() -> None:
     assert refused(text, with_tool()).code == "distance-behind-tool"
 
 
-def with_tool() -> Setup:
+def with_tool() -> InterpreterSetup:
     return replace(setup(), tools={1: ToolOffset(x=5.0, z=3.0, quadrant=3)})

@@ -10,7 +10,7 @@ import pytest
 from app.compose.machine.machine_files import load_shipped_machine, parse_machine
 from app.compose.machine.machine_setup import get_control_limits
 from core.interpreter.dialects import get_code_book
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.language.sinumerik.control_differences import CONTROL_NAMES, MISSING_FUNCTIONS
 from core.language.source import Dialect
 from core.table_schema import MachineFileError
@@ -20,7 +20,7 @@ from tests.sinumerik.lathe import refused, run, setup
 PAGE = Path(__file__).parents[2] / "docs" / "sinumerik-controls.md"
 
 
-def of(control: str) -> Setup:
+def of(control: str) -> InterpreterSetup:
     return replace(setup(), limits=replace(setup().limits, control_model=control))
 
 

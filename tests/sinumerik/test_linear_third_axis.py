@@ -112,5 +112,5 @@ def test_transmit_is_rejected_with_linear_third_axis(lathe: Machine) -> None:
 def test_program_with_linear_axis_is_proved(lathe: Machine) -> None:
     report = prove(source("G94\nG0 X20 Z0 Y0\nG1 Y50 F100\nG0 Y60\nM30\n"), setup(lathe), lathe)
     assert report.errors == ()
-    assert report.ranges.c_range == pytest.approx((0.0, 60.0))
+    assert report.program_ranges.c_range == pytest.approx((0.0, 60.0))
     assert report.machine_final_position[2] == pytest.approx(60.0)

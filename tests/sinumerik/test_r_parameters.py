@@ -13,7 +13,7 @@ from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import create_setup_with_offsets, read_store_offsets, read_stored_offsets
 from app.offsets.active_offsets import R_PARAMETERS_SETTING, parse_r_parameters
 from app.special.operator_settings import RParametersFunction
-from app.special.special_functions import SpecialFunctionList
+from app.special.special_functions import SpecialFunctionsModel
 from core.executor.job import make_job
 from core.language.diagnostics import Severity
 from core.store.store import Store
@@ -75,7 +75,7 @@ def page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[RParameter
     clock, journal = ManualClock(), Journal.open_default()
     desk, executor = create_desk_and_executor(str(file), read_stored_offsets, clock, journal)
     executor.run_tick()
-    functions = desk.page_registry.find_model(SpecialFunctionList)
+    functions = desk.page_registry.find_model(SpecialFunctionsModel)
     assert functions is not None
     (found,) = [each for each in functions.functions if isinstance(each, RParametersFunction)]
     yield found

@@ -12,13 +12,13 @@ import pytest
 
 from core.interpreter.shared.contour_stage import make_element
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.shared.job_setup import Setup, ToolOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset
 from tests.sinumerik.lathe import good, refused, run, setup
 
 R = 0.8
 
 
-def with_tool(quadrant: int = 3, radius: float = R) -> Setup:
+def with_tool(quadrant: int = 3, radius: float = R) -> InterpreterSetup:
     tools = {1: ToolOffset(0.0, 0.0, radius, quadrant, "FINISHER")}
     return replace(setup(), tools=tools, start=(50.0, 50.0, 0.0))
 

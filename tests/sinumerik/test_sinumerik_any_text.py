@@ -118,7 +118,7 @@ def test_any_text_gives_blocks_or_findings(machine: Machine) -> None:
         if passed.moves:
             ran += 1
             path = build_path(passed.moves, limits, rpm_max=machine.spindle.max_rpm)
-            end = path.positions_at(path.joint_distances[-1:])[0]
+            end = path.compute_positions(path.joint_distances[-1:])[0]
             assert end == pytest.approx(passed.moves[-1].machine_end, abs=1e-4), program
             assert np.isfinite(end).all()
         assert [block.n for block in passed.blocks] == list(range(1, len(passed.blocks) + 1))

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.compose.machine.machine_files import load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.code_book_page import render_code_book
 from core.interpreter.dialects import get_code_book
 from core.interpreter.shared.job_setup import ToolOffset
@@ -20,7 +20,7 @@ from core.language.sinumerik.word_table import GROUP_BY_FUNCTION, INEFFECTIVE_WO
 from core.language.source import Dialect, ProgramSource
 from core.machine.machine_model import Machine
 from core.proving.prove_program import prove
-from core.tool_edges import make_row_number
+from core.tool_edges import make_edge_row_number
 from tests.sinumerik.lathe import MODULO
 
 BOOK = get_code_book(Dialect.SINUMERIK)
@@ -28,13 +28,13 @@ ENTRIES = {entry.head: entry for entry in BOOK.entries}
 LIVE = load_shipped_machine("sinumerik-live")
 """Its spindle is C."""
 
-TOOLS = {1: ToolOffset(name="ROUGHER", quadrant=3), make_row_number(1, 2): ToolOffset(z=-3.0)}
+TOOLS = {1: ToolOffset(name="ROUGHER", quadrant=3), make_edge_row_number(1, 2): ToolOffset(z=-3.0)}
 
 
 def errors_of(entry: CodeBookEntry, lines: str, machine: Machine = MODULO) -> list[Diagnostic]:
     text = lines if entry.whole else f"{BOOK.head}{lines}\n{BOOK.lines_after_example}{entry.behind}"
     files = tuple(ProgramSource(name, each) for name, each in entry.files)
-    setup = create_setup(machine, tool_offsets=TOOLS, secondary_offsets={})
+    setup = create_power_up_setup(machine, tool_offsets=TOOLS, secondary_offsets={})
     report = prove(ProgramSource("EXAMPLE.MPF", text, subprograms=files), setup, machine)
     return [each for each in report.diagnostics if each.severity is Severity.ERROR]
 

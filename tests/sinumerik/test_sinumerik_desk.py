@@ -13,7 +13,7 @@ from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import read_stored_offsets
 from app.desk.desk import Desk
 from app.desk.programs.program_loading import LoadingPhase
-from app.desk.status.machine_status import make_status
+from app.desk.status.machine_status import make_machine_status
 from app.desk.status.readouts import ReadoutKind
 from app.editor.editor_model import EditorModel
 from core.executor.executor import Executor
@@ -80,7 +80,7 @@ class Bench:
 
     def c(self) -> str:
         return (
-            make_status(self.desk.read_snapshot(), ReadoutKind.POSITION, has_c_axis=True)
+            make_machine_status(self.desk.read_snapshot(), ReadoutKind.POSITION, has_c_axis=True)
             .position.axes[2]
             .value
         )
@@ -102,7 +102,7 @@ def test_program_runs_to_end_and_c_is_shown_modulo_360(bench: Bench) -> None:
     bench.started()
     over = bench.until(lambda s: s.line == 4 and s.actual[2] > 500)
     assert 0.0 <= float(bench.c()) < 360.0
-    view = make_status(over, ReadoutKind.POSITION, has_c_axis=True)
+    view = make_machine_status(over, ReadoutKind.POSITION, has_c_axis=True)
     assert (view.feed.programmed_value, view.feed.programmed_unit) == ("3000.0", "°/min")
     end = bench.until(lambda s: s.state is MachineState.IDLE)
     assert (end.parts, end.alarms) == (1, ())
@@ -143,7 +143,7 @@ def test_c_offset_rotates_part(bench: Bench) -> None:
         bench.desk.update()
     bench.started()
     turned = bench.until(lambda s: s.line == 5)
-    assert make_status(turned, ReadoutKind.POSITION, has_c_axis=True).tool_text == "G54"
+    assert make_machine_status(turned, ReadoutKind.POSITION, has_c_axis=True).tool_text == "G54"
     bench.until(lambda s: s.line == 5 and bench.c() == "0.00")
     end = bench.until(lambda s: s.state is MachineState.IDLE and s.parts == 1)
     assert end.actual[1] == pytest.approx(-15.0, abs=0.01)
@@ -161,7 +161,9 @@ def test_missing_subprogram_is_reported_before_any_motion(bench: Bench, tmp_path
 
 
 def shown(bench: Bench) -> str:
-    return make_status(bench.desk.read_snapshot(), ReadoutKind.POSITION, has_c_axis=True).position.unit
+    return make_machine_status(
+        bench.desk.read_snapshot(), ReadoutKind.POSITION, has_c_axis=True
+    ).position.unit
 
 
 def test_metric_lathe_displays_mm_before_during_and_after_a_program(bench: Bench) -> None:
@@ -181,8 +183,8 @@ def test_metric_lathe_displays_mm_after_inch_or_canceled_program(bench: Bench, t
     bench.desk.start_feed_hold()
     bench.until(lambda s: s.state is MachineState.HOLD)
     bench.desk.reset_control()
-    bench.desk.prompt_answers._since = float("-inf")  # the question has been read
-    bench.desk.confirm_if_unchanged()
+    bench.desk.prompt_line._since = float("-inf")  # the question has been read
+    bench.desk.confirm_question_if_unchanged()
     bench.until(lambda s: s.state is MachineState.IDLE)
     assert shown(bench) == "MM"
 

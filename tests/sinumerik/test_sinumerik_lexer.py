@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.language.formulas import Parameter
-from core.language.sinumerik import PositionForm, lex_line
+from core.language.sinumerik import PositionMode, lex_line
 from core.language.sinumerik.sinumerik_colors import color_line
 from core.language.syntax_colors import SyntaxKind
 
@@ -41,12 +41,12 @@ def test_words_without_value_do_not_accept_equal_signs(text: str) -> None:
 @pytest.mark.parametrize("form", ["AC", "IC", "DC", "ACP", "ACN"])
 def test_target_forms_are_read(form: str) -> None:
     (word,) = lex_line(1, f"C = {form}( -7.25 )").words
-    assert (word.position_form, word.value, word.text) == (PositionForm(form), -7.25, f"C={form}(-7.25)")
+    assert (word.position_mode, word.value, word.text) == (PositionMode(form), -7.25, f"C={form}(-7.25)")
 
 
 def test_r_parameters_are_accepted_as_values() -> None:
     (word,) = lex_line(1, "C=DC(R12)").words
-    assert (word.position_form, word.value, word.formula) == (PositionForm.DC, None, Parameter("R", 12, 6))
+    assert (word.position_mode, word.value, word.formula) == (PositionMode.DC, None, Parameter("R", 12, 6))
     assert lex_line(1, "X=R3").words[0].formula == Parameter("R", 3, 3)
     assert lex_line(1, "X=-2.5").words[0].value == -2.5
     assert words("R3=17.5 R4=-2") == [("R3", 17.5), ("R4", -2)]

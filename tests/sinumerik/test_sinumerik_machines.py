@@ -38,14 +38,14 @@ def test_the_shipped_lathes_have_the_limits_of_the_specification() -> None:
         x, z, c = machine.axes
         assert [x.max_speed * 60, z.max_speed * 60, c.max_speed * 60] == pytest.approx([8000, 10000, 7200])
         assert get_control_limits(machine).max_axis_speeds == (x.max_speed, z.max_speed, c.max_speed)
-        assert machine.has_c_own_drive
+        assert machine.has_separate_c_drive
         assert not machine.is_spindle_c_axis
-    assert (MODULO.is_c_modulo, MODULO.axes[2].travel) == (True, None)
-    assert (LINEAR.is_c_modulo, LINEAR.axes[2].travel) == (False, (-360.0, 360.0))
+    assert (MODULO.is_c_axis_modulo, MODULO.axes[2].travel) == (True, None)
+    assert (LINEAR.is_c_axis_modulo, LINEAR.axes[2].travel) == (False, (-360.0, 360.0))
 
 
 def test_shipped_gang_lathe_uses_spindle_as_c_axis() -> None:
-    assert GT75.is_c_modulo
+    assert GT75.is_c_axis_modulo
     assert GT75.is_spindle_c_axis
 
 

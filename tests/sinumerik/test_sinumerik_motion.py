@@ -81,7 +81,7 @@ def test_c_and_linear_axes_start_and_end_together_in_every_block(machine: Machin
     for stretch in found:
         for block, t0, t1 in stretch.iter_block_times():
             times = np.linspace(t0, t1, 23) - stretch.start_time_s
-            at = stretch.chunk.profile.positions_at(times)
+            at = stretch.planned_chunk.profile.compute_positions(times)
             shares = _shares(block, at)
             for share in shares:
                 assert share[0] == pytest.approx(0.0, abs=1e-6)
@@ -119,10 +119,12 @@ def test_setpoints_do_not_jump(machine: Machine) -> None:
     _, found = stretches(machine)
     last = np.array(HOME)
     for stretch in found:
-        at = stretch.chunk.profile.positions_at(np.arange(0.0, stretch.chunk.profile.duration_s, 0.001))
+        at = stretch.planned_chunk.profile.compute_positions(
+            np.arange(0.0, stretch.planned_chunk.profile.duration_s, 0.001)
+        )
         speeds = np.abs(np.diff(np.vstack([last, at]), axis=0)) / 0.001
         assert (speeds <= np.array([axis.max_speed for axis in machine.axes]) * 1.001).all()
-        last = stretch.chunk.profile.positions_at(stretch.chunk.profile.duration_s)[0]
+        last = stretch.planned_chunk.profile.compute_positions(stretch.planned_chunk.profile.duration_s)[0]
 
 
 def test_modulo_axis_position_continues_past_360_in_machine() -> None:

@@ -6,16 +6,16 @@ from dataclasses import replace
 
 import pytest
 
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.language.diagnostics import Severity
 from tests.sinumerik.lathe import LINEAR, MODULO, good, refused, run, setup
 
 
-def without_c() -> Setup:
+def without_c() -> InterpreterSetup:
     return setup(replace(MODULO, is_c_enabled=False))
 
 
-def one_speed() -> Setup:
+def one_speed() -> InterpreterSetup:
     return setup(replace(MODULO, spindle=replace(MODULO.spindle, controlled=False)))
 
 

@@ -8,7 +8,7 @@ from math import radians, tan
 import pytest
 
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
-from core.interpreter.shared.job_setup import Setup, ToolOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset
 from core.language.diagnostics import Severity
 from tests.sinumerik.lathe import good, run, setup
 
@@ -18,7 +18,7 @@ RUN = 5.0 * tan(radians(10.0))
 """10 degrees over 5 mm of depth: 0.882 mm."""
 
 
-def grooving() -> Setup:
+def grooving() -> InterpreterSetup:
     """T3 with D1 its right corner and D2 the left one, 3 mm from it."""
     return replace(setup(), tools={3: ToolOffset(), 200_003: ToolOffset(0.0, WIDTH)})
 

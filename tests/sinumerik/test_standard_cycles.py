@@ -13,7 +13,7 @@ from core.geometry.lines_and_arcs import Arc, compute_distance_to_point
 from core.interpreter.shared.actions import Dwell
 from core.interpreter.shared.contour_stage import make_element
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
-from core.interpreter.shared.job_setup import Setup, ToolOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset
 from core.language.source import Dialect, ProgramSource
 from tests.sinumerik.lathe import good, refused, run, setup, source
 
@@ -22,7 +22,7 @@ CUT = "S1000 M3 G95 F0.2\nG0 X60 Z5\n"
 THREAD = "S500 M3\nG0 X60 Z5\n"
 
 
-def places(text: str | ProgramSource, around: Setup | None = None) -> list[tuple[float, float]]:
+def places(text: str | ProgramSource, around: InterpreterSetup | None = None) -> list[tuple[float, float]]:
     """Ø and Z of the ends of a cycle's moves, behind the two lines before it."""
     return [(round(b.x * 2, 4), round(b.z, 4)) for b in good(text, around) if b.line > 2]
 
@@ -147,7 +147,7 @@ def test_invalid_assignment_in_a_contour_is_rejected(line: str, code: str) -> No
     assert refused(contour_with(line, "G1 X7 Z2", "X20 Z0")).code == code
 
 
-def with_nose(radius: float, quadrant: int) -> Setup:
+def with_nose(radius: float, quadrant: int) -> InterpreterSetup:
     return replace(setup(), tools={1: ToolOffset(quadrant=quadrant, nose_radius=radius)})
 
 
@@ -294,7 +294,7 @@ def test_nominal_size_sets_coarse_lead() -> None:
     assert cut.feed == 3  # M24
 
 
-def grooving() -> Setup:
+def grooving() -> InterpreterSetup:
     """T3 is 3 mm wide: D1 its corner towards plus Z, D2 that towards the chuck."""
     return replace(setup(), tools={3: ToolOffset(0.0, 0.0), 200_003: ToolOffset(0.0, 3.0)})
 

@@ -9,14 +9,14 @@ import pytest
 from app.compose.machine.machine_files import load_shipped_machine
 from core.interpreter.shared.actions import ProgramStop, SpindleLock, SpindleRun, SpindleStop
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from tests.sinumerik.lathe import run, setup
 
 LIVE = load_shipped_machine("sinumerik-live")
 HOLE = "S300 M3 G94 F100 G17\nG0 X0 Z5\n"
 
 
-def around() -> Setup:
+def around() -> InterpreterSetup:
     return replace(setup(LIVE, start=(0.0, 5.0, 0.0)), tools={})
 
 

@@ -8,12 +8,12 @@ import pytest
 
 from core.interpreter.sinumerik.motion import third_axis
 from core.interpreter.sinumerik.motion.third_axis import (
-    TargetError,
+    AxisTargetError,
     check_axis_range,
     compute_linear_travel,
     compute_modulo_travel,
 )
-from core.language.sinumerik.sinumerik_words import PositionForm
+from core.language.sinumerik.sinumerik_words import PositionMode
 from tests.coded import raises_code
 from tests.sinumerik.lathe import LINEAR, good, refused, setup
 
@@ -34,7 +34,7 @@ TABLE = [  # start, target, AC, DC, ACP, ACN
     (-30, 350, +20, +20, +20, -340),
     (725, 0, -5, -5, +355, -5),
 ]
-FORMS = (PositionForm.AC, PositionForm.DC, PositionForm.ACP, PositionForm.ACN)
+FORMS = (PositionMode.AC, PositionMode.DC, PositionMode.ACP, PositionMode.ACN)
 
 
 @pytest.mark.parametrize("row", TABLE, ids=lambda row: f"{row[0]}-{row[1]}")
@@ -84,13 +84,13 @@ def test_random_20_000_moves_end_at_their_targets() -> None:
             off = (at + way - target) % 360
             assert min(off, 360 - off) < 1e-6
         assert (
-            abs(ways[PositionForm.DC]) <= min(abs(ways[PositionForm.ACP]), abs(ways[PositionForm.ACN])) + 1e-9
+            abs(ways[PositionMode.DC]) <= min(abs(ways[PositionMode.ACP]), abs(ways[PositionMode.ACN])) + 1e-9
         )
-        assert abs(ways[PositionForm.DC]) <= 180 + 1e-9
-        assert 0 <= ways[PositionForm.ACP] < 360
-        assert -360 < ways[PositionForm.ACN] <= 0
-        form = dice.choice([*FORMS, PositionForm.IC])
-        at += dice.uniform(-2000, 2000) if form is PositionForm.IC else ways[form]
+        assert abs(ways[PositionMode.DC]) <= 180 + 1e-9
+        assert 0 <= ways[PositionMode.ACP] < 360
+        assert -360 < ways[PositionMode.ACN] <= 0
+        form = dice.choice([*FORMS, PositionMode.IC])
+        at += dice.uniform(-2000, 2000) if form is PositionMode.IC else ways[form]
 
 
 def test_random_20_000_program_moves_end_at_their_targets() -> None:
@@ -104,8 +104,8 @@ def test_random_20_000_program_moves_end_at_their_targets() -> None:
         assert block.c0 == pytest.approx(at, abs=1e-9)
         off = (block.mc - value) % 360
         assert min(off, 360 - off) < 1e-6
-        assert form is not PositionForm.ACP or block.c >= block.c0
-        assert form is not PositionForm.ACN or block.c <= block.c0
+        assert form is not PositionMode.ACP or block.c >= block.c0
+        assert form is not PositionMode.ACN or block.c <= block.c0
         at = block.c
 
 
@@ -115,14 +115,14 @@ def test_rounding_noise_causes_no_extra_revolution(noise: float) -> None:
     for form in FORMS:
         assert compute_modulo_travel(form, 0.0, noise) == pytest.approx(0, abs=1e-9)
         assert compute_modulo_travel(form, 0.0, 720 + noise) == pytest.approx(0, abs=1e-9)
-    assert compute_modulo_travel(PositionForm.DC, 180.0, noise) == pytest.approx(180, abs=1e-8)
-    assert compute_modulo_travel(PositionForm.AC, 10.0, 360 + noise) == pytest.approx(10, abs=1e-8)
+    assert compute_modulo_travel(PositionMode.DC, 180.0, noise) == pytest.approx(180, abs=1e-8)
+    assert compute_modulo_travel(PositionMode.AC, 10.0, 360 + noise) == pytest.approx(10, abs=1e-8)
 
 
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("value", [-1.0, 360.0, 400.0, -0.001])
-def test_modulo_axis_targets_are_limited_to_0_to_below_360(form: PositionForm, value: float) -> None:
-    with pytest.raises(TargetError) as told:
+def test_modulo_axis_targets_are_limited_to_0_to_below_360(form: PositionMode, value: float) -> None:
+    with pytest.raises(AxisTargetError) as told:
         compute_modulo_travel(form, value, 0.0)
     assert told.value.alarm_number == 16830
 
@@ -166,12 +166,12 @@ def test_offset_within_linear_axis_range_is_accepted() -> None:
 @pytest.mark.parametrize(("form", "alarm"), [("DC", "16800"), ("ACP", "16810"), ("ACN", "16820")])
 def test_rotary_target_forms_are_rejected_for_linear_axis(form: str, alarm: str) -> None:
     assert refused(f"G0 C={form}(10)", setup(LINEAR)).code == alarm
-    with pytest.raises(TargetError):
-        compute_linear_travel(PositionForm(form), 10.0, 0.0)
+    with pytest.raises(AxisTargetError):
+        compute_linear_travel(PositionMode(form), 10.0, 0.0)
 
 
 def test_range_limit_itself_is_within_range() -> None:
     check_axis_range(360.0)
     check_axis_range(-360.0)
-    with raises_code(TargetError, "10720"):
+    with raises_code(AxisTargetError, "10720"):
         check_axis_range(360.01)

@@ -12,7 +12,7 @@ from app.desk.status.readouts import ReadoutKind, make_position_readout
 from app.jog.held_jog import make_jog_directions
 from core.executor.snapshot import Snapshot
 from core.interpreter.shared.checkpoint import Checkpoint, PassStart
-from core.interpreter.shared.job_setup import Setup, ZeroOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ZeroOffset
 from core.language.sinumerik import lex_line
 from core.machine.machine_model import Machine
 from core.table_schema import MachineFileError
@@ -26,7 +26,7 @@ def of(name: str) -> Machine:
     return parse_machine(TEXT.replace("[axis.C]", f'[axis.C]\nname = "{name}"'), "t")
 
 
-def around(name: str) -> Setup:
+def around(name: str) -> InterpreterSetup:
     return setup(of(name))
 
 
@@ -94,6 +94,9 @@ def test_axis_name_is_specified_in_machine_file() -> None:
 
 def test_readout_shows_the_axis_name() -> None:
     machine = of("Q1")
-    assert [way.displayed_axis for way in make_jog_directions(machine) if way.axis == "C"] == ["Q1", "Q1"]
+    assert [way.displayed_axis_name for way in make_jog_directions(machine) if way.axis_name == "C"] == [
+        "Q1",
+        "Q1",
+    ]
     shown = make_position_readout(Snapshot(), ReadoutKind.POSITION, True, True, machine.third_axis_name)
     assert [axis.name for axis in shown.axes] == ["X", "Z", "Q1"]

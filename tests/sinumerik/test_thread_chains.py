@@ -45,7 +45,7 @@ def test_position_under_growing_lead_matches_formula() -> None:
     curve = build_thread_curve([grown], LIMITS)
     assert curve.length_mm == pytest.approx(10.0)  # turns, the first lead being 1
     for turns in np.linspace(0.0, 10.0, 101):
-        assert curve.evaluate_at(turns)[1] == pytest.approx(5.0 - turns - 0.1 * turns * turns, abs=2e-4)
+        assert curve.evaluate_curve(turns)[1] == pytest.approx(5.0 - turns - 0.1 * turns * turns, abs=2e-4)
 
 
 def test_thread_chain_is_followed_within_axis_limits() -> None:

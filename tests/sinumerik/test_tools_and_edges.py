@@ -8,19 +8,19 @@ import pytest
 
 from core.interpreter.dialects import interpret_program
 from core.interpreter.shared.actions import ToolChange
-from core.interpreter.shared.job_setup import Setup, ToolOffset, ZeroOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset, ZeroOffset
 from core.language.diagnostics import Severity
-from core.tool_edges import make_row_number
+from core.tool_edges import make_edge_row_number
 from tests.sinumerik.lathe import good, refused, run, setup, source
 
 TOOLS = {
     1: ToolOffset(30.0, 40.0, 0.8, 3, "ROUGHER"),
-    make_row_number(1, 2): ToolOffset(31.0, 36.0, 0.2, 4),
+    make_edge_row_number(1, 2): ToolOffset(31.0, 36.0, 0.2, 4),
     2: ToolOffset(-5.0, 12.5, 0.4, 2, "Bore 12"),
 }
 
 
-def around(zero: ZeroOffset | None = None) -> Setup:
+def around(zero: ZeroOffset | None = None) -> InterpreterSetup:
     return replace(setup(zero={54: zero or ZeroOffset(0.0, -200.0)}), tools=TOOLS, start=(100.0, 100.0, 0.0))
 
 
@@ -58,11 +58,11 @@ def test_t0_cancels_the_tool() -> None:
 def test_used_cutting_edges_are_listed() -> None:
     passed = run("T1\nG0 X20\nD2\nX22\nT2 D1", around())
     assert [block.action.tool for block in passed.blocks if isinstance(block.action, ToolChange)] == [
-        1, make_row_number(1, 2), 2,
+        1, make_edge_row_number(1, 2), 2,
     ]  # fmt: skip
     program = interpret_program(source("T1\nD2\nT2"), around())
     list(program.generate_blocks())
-    assert program.used_tools == [1, make_row_number(1, 2), 2]
+    assert program.used_tools == [1, make_edge_row_number(1, 2), 2]
 
 
 @pytest.mark.parametrize("word", ["T7", 'T="NOBODY"'])
@@ -127,7 +127,7 @@ def test_incremental_move_after_absolute_move_is_accepted() -> None:
     ],
 )
 def test_program_reads_tool_data(text: str, value: float) -> None:
-    tools = {3: ToolOffset(nose_radius=0.4), make_row_number(3, 2): ToolOffset(nose_radius=0.8)}
+    tools = {3: ToolOffset(nose_radius=0.4), make_edge_row_number(3, 2): ToolOffset(nose_radius=0.8)}
     ran = run(f"{text}\nG0 Z=R1", replace(setup(), tools=tools))
     assert ran.found == []
     assert ran.moves[-1].z == value

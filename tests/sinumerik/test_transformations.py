@@ -11,7 +11,7 @@ import pytest
 from app.compose.machine.machine_files import load_shipped_machine
 from core.interpreter.shared.actions import OutputSwitch, SpindleLock
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
-from core.interpreter.shared.job_setup import Setup, ToolOffset, ZeroOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset, ZeroOffset
 from core.interpreter.sinumerik.sinumerik_interpreter import Interpreter
 from core.language.diagnostics import Severity
 from core.part.ray_cuts import make_plane_path
@@ -23,7 +23,7 @@ FACE = "T1 D1\nG0 DIAMOF G17 X40 Z2\nSPOS=0\nTRANSMIT\nG94 F600\n"
 SIDE = "T1 D1\nG0 DIAMOF G19 X40 Z0\nSPOS=0\nTRACYL(80)\nG94 F600\n"
 
 
-def around(radius: float = 0.0, zero: dict[int, ZeroOffset] | None = None) -> Setup:
+def around(radius: float = 0.0, zero: dict[int, ZeroOffset] | None = None) -> InterpreterSetup:
     tools = {1: ToolOffset(nose_radius=radius), 2: ToolOffset(x=5.0, z=3.0)}
     return replace(setup(LIVE, start=(40.0, 50.0, 0.0), zero=zero), tools=tools)
 
@@ -60,7 +60,7 @@ def test_rejected_frame_does_not_change_later_diameters() -> None:
     program = Interpreter(source(text), around())
     list(program.generate_blocks())
     assert [each.code for each in program.diagnostics if each.severity is Severity.ERROR] == ["16800"]
-    assert program.modal.diameter
+    assert program.modal_state.diameter
 
 
 def test_off_center_circle_is_converted_to_polar_coordinates() -> None:

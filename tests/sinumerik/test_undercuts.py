@@ -10,7 +10,7 @@ import pytest
 from core.geometry.lines_and_arcs import Point, compute_distance_to_point
 from core.interpreter.shared.contour_stage import make_element
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
-from core.interpreter.shared.job_setup import Setup, ToolOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset
 from core.tool_edges import TIP_DIRECTIONS
 from tests.sinumerik.lathe import good, refused, run, setup
 
@@ -19,11 +19,11 @@ INSIDE = "S900 M3 G95 F0.1\nT1 D1\nG0 X6 Z50\n"
 SLOPE_15, SLOPE_30 = tan(radians(15.0)), tan(radians(30.0))
 
 
-def with_tool(quadrant: int, nose: float = 0.0) -> Setup:
+def with_tool(quadrant: int, nose: float = 0.0) -> InterpreterSetup:
     return replace(setup(), tools={1: ToolOffset(quadrant=quadrant, nose_radius=nose)})
 
 
-def cuts(text: str, around: Setup) -> list[Block]:
+def cuts(text: str, around: InterpreterSetup) -> list[Block]:
     """What the cycle cuts, behind the three lines before it and its way to the first point."""
     return [b for b in good(text, around) if b.line > 3 and b.kind is not BlockKind.RAPID][1:]
 
@@ -81,7 +81,7 @@ def test_undercut_profile_does_not_depend_on_nose_radius(nose: float, form: str)
         assert _nearest_nose(blocks, around, point) == pytest.approx(0.0, abs=2e-3)
 
 
-def _nearest_nose(blocks: list[Block], around: Setup, point: Point) -> float:
+def _nearest_nose(blocks: list[Block], around: InterpreterSetup, point: Point) -> float:
     """How near the nose comes to a point of the profile: the centre is the tip moved by the nose radius."""
     edge = around.tools[1]
     z, x = TIP_DIRECTIONS[edge.quadrant]

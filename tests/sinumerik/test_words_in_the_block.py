@@ -11,7 +11,7 @@ import pytest
 from app.compose.machine.machine_files import load_machine
 from core.interpreter.shared.actions import Dwell, OutputSwitch, SpindleLock
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
-from core.interpreter.shared.job_setup import Setup, ToolOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset
 from core.language.diagnostics import Severity
 from tests.sinumerik.lathe import good, refused, run, setup
 
@@ -331,7 +331,7 @@ def test_other_spindle_numbers_are_rejected(text: str) -> None:
     assert "one spindle" in error.message
 
 
-def of_gt75() -> Setup:
+def of_gt75() -> InterpreterSetup:
     return replace(setup(GT75), start=(10.0, 50.0, 0.0))
 
 
@@ -359,8 +359,8 @@ def test_m70_switches_to_axis_mode_and_m3_back_to_spindle_mode() -> None:
 # --- M functions of the machine file
 
 
-def with_outputs() -> Setup:
-    limits = replace(setup().limits, m_outputs={25: ("steady", True), 26: ("steady", False)})
+def with_outputs() -> InterpreterSetup:
+    limits = replace(setup().limits, m_code_outputs={25: ("steady", True), 26: ("steady", False)})
     return replace(setup(), limits=replace(limits, disabled_m_codes=frozenset({27})))
 
 

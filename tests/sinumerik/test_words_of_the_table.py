@@ -9,7 +9,7 @@ import pytest
 from app.compose.machine.machine_files import load_shipped_machine
 from core.interpreter.dialects import get_code_book
 from core.interpreter.shared.elementary_blocks import BlockKind
-from core.interpreter.shared.job_setup import Setup, ToolOffset, ZeroOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset, ZeroOffset
 from core.language.diagnostics import Severity
 from core.language.sinumerik.unsupported_words import UNSUPPORTED_WORDS
 from core.language.sinumerik.word_table import GROUP_BY_FUNCTION, INEFFECTIVE_WORDS, M_FUNCTIONS, VALUE_WORDS
@@ -28,7 +28,7 @@ LIVE = load_shipped_machine("sinumerik-live")
 NEED_C = frozenset({"G331", "G332", "SPOS", "SPOSA", "M19", "M70"})
 
 
-def around(machine: Machine = MODULO) -> Setup:
+def around(machine: Machine = MODULO) -> InterpreterSetup:
     tools = {1: ToolOffset(1.0, 2.0, 0.4, 3, "ROUGHER")}
     return replace(setup(machine), tools=tools, start=(60.0, 80.0, 0.0))
 

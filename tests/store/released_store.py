@@ -19,7 +19,7 @@ from typing import Any
 from app import VERSION
 from core.store.production import measured_parts, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
-from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.production.part_cycles import CycleRow, ProductionStopRow
 from core.store.store import Store
 from core.store.store_file import STORE_FILE_NAME
 from core.store.user_records import UserRow
@@ -36,14 +36,14 @@ def fill(store: Store) -> None:
     reading = ReadingRow(0, of, 1, 12.69, "in", AT, "gauge", "mic")
     waiting: list[Future[Any]] = [
         store.write(partial(measured_parts.add_reading, row=reading)),
-        store.write(partial(tool_lives.save_limits, row=tool_lives.ToolLifeRow(1, 50))),
+        store.write(partial(tool_lives.save_tool_life_limits, row=tool_lives.ToolLifeRow(1, 50))),
         store.offsets.tool_offsets.change_row(1, "first", {"x": 1.25, "z": -0.5}),
         store.offsets.tool_offsets.change_row(1, "wear", {"wear_x": -0.004}),
         store.programs.save_version("peg.nc", b"G90\nX1.25\nM30\n", "saved"),
-        store.runs.record_start("peg.nc"),
+        store.runs.record_run_start("peg.nc"),
         store.runs.add_parts("peg.nc"),
         store.cycles.record_row(CycleRow("c1", "peg.nc", 1, AT, AT, 50.0, "COMPLETE")),
-        store.cycles.record_row(StopRow("s1", "c1", "peg.nc", AT, 4.0, "FEED HOLD", 7)),
+        store.cycles.record_row(ProductionStopRow("s1", "c1", "peg.nc", AT, 4.0, "FEED HOLD", 7)),
         store.jobs.add_job("peg.nc", 3),
         store.events.log_event("start", "peg.nc"),
         store.settings.save_setting("theme", "dark"),

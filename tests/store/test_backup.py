@@ -16,7 +16,7 @@ from core.store import backup, store_export
 from core.store.offsets.offset_tables import ChangeReason
 from core.store.store import Store, StoreError
 from core.store.store_file import STORE_FILE_NAME
-from core.store.store_rows import OffsetKind, SecondaryRow, ToolRow
+from core.store.store_rows import OffsetKind, SecondaryOffsetRow, ToolOffsetRow
 from tests.coded import raises_code
 
 
@@ -34,7 +34,7 @@ def test_backup_of_a_store_in_use_restores_elsewhere(store: Store, folder: Path,
     store.offsets.tool_offsets.change_row(1, "later", {"x": 1.0}).result()
     assert backup.restore_store(tmp_path / "other", target) is None
     with Store.open(tmp_path / "other") as other:
-        assert other.offsets.tool_offsets.read_rows() == {1: ToolRow(31.75, -12.7, 0.381)}
+        assert other.offsets.tool_offsets.read_rows() == {1: ToolOffsetRow(31.75, -12.7, 0.381)}
         assert other.programs.load_version("PIN.nc") == b"G90\r\nM30\r\n"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["b.db", "home", "other"]
 
@@ -145,7 +145,7 @@ def test_backup_replaces_an_older_backup(store: Store, folder: Path, tmp_path: P
     store.offsets.tool_offsets.change_row(2, "x", {"x": 1.0}).result()
     backup.back_up_store(folder, target)
     assert sha256(target.read_bytes()).digest() != first
-    assert backup.find_problems(target) == ()
+    assert backup.find_store_problems(target) == ()
 
 
 def test_export_is_plain_files(store: Store, tmp_path: Path) -> None:
@@ -168,7 +168,7 @@ def test_exported_programs_can_be_imported(store: Store, tmp_path: Path) -> None
     fill(store)
     store_export.export_store(store, tmp_path / "out")
     with Store.open(tmp_path / "other") as other:
-        rows = {4: SecondaryRow(-0.0127, 0.0, 0.0)}
+        rows = {4: SecondaryOffsetRow(-0.0127, 0.0, 0.0)}
         programs = store_export.read_exported_programs(tmp_path / "out")
         values = {OffsetKind.SECONDARY: {number: row._asdict() for number, row in rows.items()}}
         other.write(
@@ -195,12 +195,12 @@ def test_verify_finds_damaged_text_and_orphaned_rows(folder: Path) -> None:
     with Store.open(folder) as store:
         fill(store)
     path = folder / STORE_FILE_NAME
-    assert backup.find_problems(path) == ()
+    assert backup.find_store_problems(path) == ()
     with sqlite3.connect(path) as connection:
         connection.execute("UPDATE program_versions SET text = X'58'")
         connection.execute("INSERT INTO program_versions VALUES (9, 77, 1, X'', '', '', '', '')")
     connection.close()
-    told = " ".join(backup.find_problems(path))
+    told = " ".join(backup.find_store_problems(path))
     assert "'PIN.nc' version 1 " in told
     assert " program_versions " in told
 

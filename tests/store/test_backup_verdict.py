@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 
 from core.store import backup, store_connection
-from core.store.backup import BackupVerdict, check_backup
+from core.store.backup import BackupCheckResult, check_backup
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from tests.coded import raises_code
 
 
-def judged(folder: Path, path: Path) -> BackupVerdict:
+def judged(folder: Path, path: Path) -> BackupCheckResult:
     with closing(store_connection.connect_store(folder / "turndesk.db", is_read_only=True)) as now:
         return check_backup(now, path)
 
@@ -35,7 +35,7 @@ def kept(store: Store, folder: Path, tmp_path: Path) -> Path:
 
 
 def test_identical_backup_has_no_problem_or_difference(folder: Path, kept: Path) -> None:
-    assert judged(folder, kept) == BackupVerdict()
+    assert judged(folder, kept) == BackupCheckResult()
 
 
 def test_changed_missing_and_new_entries_are_counted(store: Store, folder: Path, kept: Path) -> None:
@@ -53,13 +53,13 @@ def test_changed_missing_and_new_entries_are_counted(store: Store, folder: Path,
 def test_value_restored_by_hand_is_not_a_difference(store: Store, folder: Path, kept: Path) -> None:
     store.offsets.tool_offsets.change_row(1, "x", {"x": 1.5})
     store.offsets.tool_offsets.change_row(1, "back", {"x": 1.0}).result()
-    assert judged(folder, kept) == BackupVerdict()
+    assert judged(folder, kept) == BackupCheckResult()
 
 
 def test_damaged_backup_is_reported_and_not_compared(folder: Path, kept: Path) -> None:
     kept.write_bytes(kept.read_bytes().replace(b"M30\n", b"M31\n"))
     found = judged(folder, kept)
-    assert found.first_problem == backup.find_problems(kept)[0]
+    assert found.first_problem == backup.find_store_problems(kept)[0]
     assert found.difference_counts == ()
 
 
@@ -72,15 +72,15 @@ def test_file_that_is_not_a_backup_is_reported(
     assert str(tmp_path / "b.db") in judged(folder, tmp_path / "b.db").first_problem
     assert str(tmp_path / "gone.db") in judged(folder, tmp_path / "gone.db").first_problem
     with raises_code(StoreError, "not-a-database"):
-        backup.find_problems(tmp_path / "b.db")
+        backup.find_store_problems(tmp_path / "b.db")
     with raises_code(StoreError, "not-found"):
-        backup.find_problems(tmp_path / "gone.db")
+        backup.find_store_problems(tmp_path / "gone.db")
 
 
 def test_programs_of_older_backup_are_compared(folder: Path, kept: Path) -> None:
     with closing(sqlite3.connect(kept)) as connection:
         connection.execute("PRAGMA user_version = 10")
-    assert judged(folder, kept) == BackupVerdict(is_older=True)
+    assert judged(folder, kept) == BackupCheckResult(has_older_version=True)
 
 
 def test_verdict_writes_nothing(folder: Path, kept: Path) -> None:

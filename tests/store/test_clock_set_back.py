@@ -70,5 +70,7 @@ def test_changes_of_older_store_are_numbered_by_time(folder: Path, monkeypatch: 
             for _ in range(3):
                 store.offsets.tool_offsets.undo_last_step().result()
         assert store.offsets.tool_offsets.read_rows() == {}
-    assert backup.find_all_problems(folder / STORE_FILE_NAME) == ()
-    assert database.check_file(folder / STORE_FILE_NAME, is_thorough=True) == len(database.load_migrations())
+    assert backup.find_all_store_problems(folder / STORE_FILE_NAME) == ()
+    assert database.check_store_file(folder / STORE_FILE_NAME, is_thorough=True) == len(
+        database.load_migrations()
+    )

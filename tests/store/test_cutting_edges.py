@@ -17,16 +17,16 @@ from core.store.offsets.touch_off import TouchPosition
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_export import export_store
-from core.store.store_rows import FieldValue, OffsetKind, ToolRow, replace_fields
-from core.tool_edges import format_edge_name, get_edge_number, get_tool_number, make_row_number
+from core.store.store_rows import FieldValue, OffsetKind, ToolOffsetRow, replace_fields
+from core.tool_edges import format_edge_name, get_edge_number, get_tool_number, make_edge_row_number
 from tests.coded import raises_code
 
 WHY = {"why": "test", "who": "test"}
-T3_D2 = make_row_number(3, 2)
+T3_D2 = make_edge_row_number(3, 2)
 
 
 def test_row_number_encodes_tool_and_edge() -> None:
-    assert (make_row_number(3, 1), T3_D2) == (3, 200_003)
+    assert (make_edge_row_number(3, 1), T3_D2) == (3, 200_003)
     assert (get_tool_number(T3_D2), get_edge_number(T3_D2), format_edge_name(T3_D2)) == (3, 2, "T3 D2")
     assert (get_tool_number(3), get_edge_number(3), format_edge_name(3)) == (3, 1, "T3")
 
@@ -37,7 +37,7 @@ def test_edge_is_saved_undone_and_exported(tmp_path: Path) -> None:
         row = store.offsets.tool_offsets.change_row(
             T3_D2, values={"x": 10.0, "z": 17.0, "quadrant": 4}, **WHY
         ).result()
-        assert row == ToolRow(10.0, 17.0, quadrant=4)
+        assert row == ToolOffsetRow(10.0, 17.0, quadrant=4)
         assert set(store.offsets.tool_offsets.read_rows()) == {3, T3_D2}
         export_store(store, tmp_path / "out")
         tools, _, _ = read_offset_rows(tmp_path / "out" / "offsets.toml")
@@ -50,8 +50,8 @@ def test_edge_is_saved_undone_and_exported(tmp_path: Path) -> None:
     ("number", "values", "code", "value"),
     [
         (T3_D2, {"x": 1.0, "z": 1.0}, "never-set", "T3 D2"),
-        (make_row_number(33, 2), {"x": 1.0}, "unknown-number", make_row_number(33, 2)),
-        (make_row_number(3, 10), {"x": 1.0}, "unknown-number", make_row_number(3, 10)),
+        (make_edge_row_number(33, 2), {"x": 1.0}, "unknown-number", make_edge_row_number(33, 2)),
+        (make_edge_row_number(3, 10), {"x": 1.0}, "unknown-number", make_edge_row_number(3, 10)),
         (100_003, {"x": 1.0}, "unknown-number", 100_003),
     ],
 )
@@ -86,7 +86,7 @@ def test_migration_retains_every_field() -> None:
             " (7, 'turning', 'right', 'DNMG', '', 0, 0, 0, 0, 0, 0, 0, 93, 0, '')"
         )
         database.upgrade_tables(connection, scripts)
-        assert offset_tables.read_tool_offsets(connection)[7] == ToolRow(
+        assert offset_tables.read_tool_offsets(connection)[7] == ToolOffsetRow(
             1.5, -2.5, 0.4, 0.01, -0.02, 3, "FINISHER", True
         )
         (shape,) = offset_tables.read_current_rows(connection, OffsetKind.SHAPE).values()
@@ -108,7 +108,7 @@ def test_touch_off_of_an_edge_needs_its_tool(tmp_path: Path) -> None:
         assert store.offsets.tool_offsets.read_rows() == {}
         store.offsets.tool_offsets.change_row(3, values={"x": 1.0, "z": 1.0}, **WHY).result()
         store.offsets.tool_offsets.set_touched_offset(T3_D2, TouchPosition(1.0, 2.0), "touched").result()
-        assert store.offsets.tool_offsets.read_rows()[T3_D2] == ToolRow(1.0, 2.0)
+        assert store.offsets.tool_offsets.read_rows()[T3_D2] == ToolOffsetRow(1.0, 2.0)
 
 
 def change_rows(store: Store, kind: OffsetKind, rows: Mapping[int, Mapping[str, FieldValue]]) -> int:
@@ -161,6 +161,6 @@ def test_new_master_of_several_rows_replaces_the_old_one(tmp_path: Path) -> None
 
 
 def test_unknown_field_of_a_row_is_rejected_in_every_python() -> None:
-    assert replace_fields(ToolRow(1.0, 2.0), {"z": 3.0}) == ToolRow(1.0, 3.0)
-    with pytest.raises(ValueError, match="ToolRow has no field width"):
-        replace_fields(ToolRow(1.0, 2.0), {"z": 3.0, "width": 1.0})
+    assert replace_fields(ToolOffsetRow(1.0, 2.0), {"z": 3.0}) == ToolOffsetRow(1.0, 3.0)
+    with pytest.raises(ValueError, match="ToolOffsetRow has no field width"):
+        replace_fields(ToolOffsetRow(1.0, 2.0), {"z": 3.0, "width": 1.0})

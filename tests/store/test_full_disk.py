@@ -15,7 +15,7 @@ from app.compose.runs.journal import Journal
 from core.executor.snapshot import LogEvent
 from core.store import store_writer
 from core.store.store import Store, StoreError
-from core.store.store_errors import StoreErrorCause, find_cause
+from core.store.store_errors import StoreErrorCause, find_store_error_cause
 from core.store.store_file import STORE_FILE_NAME
 from core.store.store_rows import EventRow
 from core.store.store_writer import UnwrittenEntries
@@ -73,7 +73,7 @@ def test_parts_and_events_are_written_when_disk_has_room_again(disk: Disk) -> No
         told = [event.text for event in reversed(store.events.read_events(limit=1000))]
         assert told[0] == "before"
         assert told[-34:] == [*(f"part {number}" for number in range(33)), "after"]
-        (run,) = store.runs.read_records()
+        (run,) = store.runs.read_run_records()
         assert (run.cycles, run.best, run.latest) == (33, 3.0, 35.0)
         assert store.settings.read_setting("theme") == "light"
 
@@ -200,7 +200,7 @@ def test_store_without_write_permission_is_rejected(tmp_path: Path) -> None:
     with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as connection:
         with pytest.raises(sqlite3.Error) as caught:
             connection.execute("DELETE FROM settings")
-        assert find_cause(path, caught.value) is StoreErrorCause.FORBIDDEN
+        assert find_store_error_cause(path, caught.value) is StoreErrorCause.FORBIDDEN
     error = StoreErrorCause.FORBIDDEN.make_error(path, caught.value)
     assert error.code == "forbidden"
     assert str(path) in str(error)
@@ -215,7 +215,7 @@ def test_system_error_is_mapped_to_store_error_cause(tmp_path: Path) -> None:
         30: StoreErrorCause.FORBIDDEN,
     }
     causes |= {5: StoreErrorCause.FAILING, 2: StoreErrorCause.MISSING, 40: StoreErrorCause.OTHER}
-    assert {number: find_cause(tmp_path, OSError(number, "x")) for number in causes} == causes
+    assert {number: find_store_error_cause(tmp_path, OSError(number, "x")) for number in causes} == causes
 
 
 # --- what is held does not grow, and one bad entry holds nothing up ----------------------------------------

@@ -98,7 +98,7 @@ def test_jobs_are_moved_changed_removed_and_cleared(store: Store) -> None:
     store.write(lambda con: job_queue.move_job(con, c, 1)).result()
     store.write(lambda con: job_queue.move_job(con, a, 99)).result()
     assert [row.program for row in store.jobs.read_jobs()] == ["c.nc", "b.nc", "a.nc"]
-    store.write(lambda con: job_queue.change_job(con, b, 7, "blue")).result()
+    store.write(lambda con: job_queue.edit_job(con, b, 7, "blue")).result()
     store.write(lambda con: job_queue.remove_job(con, c)).result()
     begun(store, a)
     count(store, "a.nc", 1)
@@ -140,7 +140,7 @@ def test_missing_job_is_reported(store: Store) -> None:
         lambda c: job_queue.activate_job(c, 7),
         lambda c: job_queue.move_job(c, 7, 1),
         lambda c: job_queue.remove_job(c, 7),
-        lambda c: job_queue.change_job(c, 7, 1, ""),
+        lambda c: job_queue.edit_job(c, 7, 1, ""),
     ):
         with raises_code(StoreError, "job-gone"):
             store.write(operation).result()

@@ -53,7 +53,7 @@ def _write_and_kill(folder: Path) -> int:
 def test_killed_writer_loses_no_acknowledged_change(folder: Path) -> None:
     for _ in range(KILLS):
         last = _write_and_kill(folder)
-        assert backup.find_problems(folder / STORE_FILE_NAME) == ()
+        assert backup.find_store_problems(folder / STORE_FILE_NAME) == ()
         with Store.open(folder, read_only=True) as store:
             versions = store.programs.list_versions("part")
             assert [row.number for row in versions] == list(range(len(versions), 0, -1))

@@ -56,7 +56,7 @@ def left_beside(found: Path) -> list[str]:
 
 def test_a_whole_log_is_read_to_its_end(killed: Path) -> None:
     assert len(commits(killed)) == 4
-    assert backup.find_problems(killed / STORE_FILE_NAME) == ()
+    assert backup.find_store_problems(killed / STORE_FILE_NAME) == ()
     with Store.open(killed) as store:
         assert (store.offsets.tool_offsets.read_rows()[3].wear_x, store.repair_messages) == (-0.04, ())
     assert left_beside(killed) == []
@@ -79,7 +79,7 @@ def test_flipped_bit_in_log_reverts_nothing_without_a_report(killed: Path, at: i
     flip(killed, at)
     content = (killed / LOG).read_bytes()
     with raises_code(StoreError, "damaged-log", text("log.lost-changes", count=4)):
-        backup.find_problems(killed / STORE_FILE_NAME)
+        backup.find_store_problems(killed / STORE_FILE_NAME)
     with raises_code(StoreError, "damaged-log"):
         Store.open(killed, read_only=True)
     with Store.open(killed) as store:
@@ -105,7 +105,7 @@ def test_log_damage_is_reported_once(killed: Path) -> None:
         store.offsets.tool_offsets.change_row(3, "worn", {"wear_x": -0.05}).result()
     with Store.open(killed) as store:
         assert (store.repair_messages, store.offsets.tool_offsets.read_rows()[3].wear_x) == ((), -0.05)
-    assert backup.find_problems(killed / STORE_FILE_NAME) == ()
+    assert backup.find_store_problems(killed / STORE_FILE_NAME) == ()
     assert len(left_beside(killed)) == 1
 
 
@@ -148,7 +148,7 @@ def test_missing_sectors_of_last_change_are_not_damage(
     """It was reported as a damaged log with a lost change, and nobody was told that the change is kept."""
     places = range(last_change(killed).start, last_change(killed).stop, FRAME)
     torn(killed, places[frame] + FRAME - 1400, sectors, with_what)  # cells are at the end of a page
-    assert backup.find_problems(killed / STORE_FILE_NAME) == ()
+    assert backup.find_store_problems(killed / STORE_FILE_NAME) == ()
     with Store.open(killed, read_only=True) as store:
         assert store.offsets.tool_offsets.read_rows()[3].wear_x == -0.03
     with Store.open(killed) as store:
@@ -181,7 +181,7 @@ def test_missing_sectors_of_earlier_change_are_damage(killed: Path) -> None:
     """A change is acknowledged before the next one is written."""
     torn(killed, commits(killed)[1] + 600, 2, b"o")
     with raises_code(StoreError, "damaged-log", text("log.lost-changes", count=3)):
-        backup.find_problems(killed / STORE_FILE_NAME)
+        backup.find_store_problems(killed / STORE_FILE_NAME)
 
 
 def test_log_with_header_only_has_lost_nothing(killed: Path) -> None:
@@ -218,7 +218,7 @@ def test_log_that_cannot_be_read_is_an_error_of_the_store(
 
     monkeypatch.setattr(log_damage, "count_lost_changes", fail)
     with raises_code(StoreError, code):
-        backup.find_problems(killed / STORE_FILE_NAME)
+        backup.find_store_problems(killed / STORE_FILE_NAME)
     with raises_code(StoreError, code):
         Store.open(killed, read_only=True)
     with raises_code(StoreError, code):
@@ -232,7 +232,7 @@ def test_log_that_its_writer_removes_meanwhile_has_lost_nothing(
         raise FileNotFoundError(errno.ENOENT, "No such file or directory")
 
     monkeypatch.setattr(log_damage, "count_lost_changes", fail)
-    assert backup.find_problems(killed / STORE_FILE_NAME) == ()
+    assert backup.find_store_problems(killed / STORE_FILE_NAME) == ()
 
 
 @pytest.mark.parametrize("size", [0, 16, 19])

@@ -14,7 +14,7 @@ import pytest
 from core.store import backup, database, store_connection
 from core.store.production import measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
-from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.production.part_cycles import CycleRow, ProductionStopRow
 from core.store.production.tool_lives import ToolLifeRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
@@ -137,7 +137,7 @@ def test_corrections_are_listed_between_the_parts(store: Store) -> None:
 def test_cycles_and_stops_are_stored(store: Store) -> None:
     cycle(store, "1", 0)
     cycle(store, "1", 1, ended="2026-01-01T00:02:00Z", seconds=58.5, outcome="COMPLETE")
-    stop = StopRow("s1", "1", "pin.nc", "2026-01-01T00:01:30Z", 4.5, "FEED HOLD", 7)
+    stop = ProductionStopRow("s1", "1", "pin.nc", "2026-01-01T00:01:30Z", 4.5, "FEED HOLD", 7)
     store.write(lambda c: part_cycles.save_stop(c, stop)).result(60)
     with store.read() as connection:
         (row,) = part_cycles.read_cycles(connection, "pin.nc", 10)
@@ -159,8 +159,10 @@ def test_cycles_of_a_day_include_all_programs(store: Store) -> None:
 
 
 def test_insert_change_is_stored_with_parts_made(store: Store) -> None:
-    store.write(lambda c: tool_lives.save_limits(c, ToolLifeRow(3, 50, 1800.0, 0.8, True))).result(60)
-    store.write(lambda c: tool_lives.save_use(c, 3, 50, 1200.5)).result(60)
+    store.write(lambda c: tool_lives.save_tool_life_limits(c, ToolLifeRow(3, 50, 1800.0, 0.8, True))).result(
+        60
+    )
+    store.write(lambda c: tool_lives.save_insert_use(c, 3, 50, 1200.5)).result(60)
     with store.read() as connection:
         assert tool_lives.read_tool_lives(connection) == {
             3: ToolLifeRow(3, 50, 1800.0, 0.8, True, 50, 1200.5)
@@ -179,7 +181,7 @@ def test_insert_change_is_stored_with_parts_made(store: Store) -> None:
 @pytest.mark.parametrize("number", [0, 33])
 def test_tool_life_of_unknown_tool_is_rejected(store: Store, number: int) -> None:
     for operation in (
-        lambda c: tool_lives.save_limits(c, ToolLifeRow(number, 5)),
+        lambda c: tool_lives.save_tool_life_limits(c, ToolLifeRow(number, 5)),
         lambda c: tool_lives.record_insert_change(c, number, ""),
     ):
         with raises_code(StoreError, "unknown-tool", f"T{number}"):
@@ -212,7 +214,7 @@ def test_export_and_backup_contain_measurements(store: Store, folder: Path, tmp_
     assert (row["part"], row["value"], row["source"]) == ("7", "12.7", "typed")
     assert (tmp_path / "out" / "tool_lives.csv").read_text(encoding="utf-8").startswith("number,limit_parts,")
     backup.back_up_store(folder, tmp_path / "copy.db")
-    assert backup.find_problems(tmp_path / "copy.db") == ()
+    assert backup.find_store_problems(tmp_path / "copy.db") == ()
 
 
 def test_reading_without_its_feature_is_reported(store: Store, folder: Path) -> None:
@@ -221,7 +223,7 @@ def test_reading_without_its_feature_is_reported(store: Store, folder: Path) -> 
     with store_connection.connect_store(folder / STORE_FILE_NAME, is_read_only=False) as connection:
         connection.execute("PRAGMA foreign_keys = OFF")
         connection.execute("DELETE FROM part_features")
-    assert any("part_readings" in problem for problem in backup.find_problems(folder / STORE_FILE_NAME))
+    assert any("part_readings" in problem for problem in backup.find_store_problems(folder / STORE_FILE_NAME))
 
 
 def test_gap_in_migration_numbers_is_rejected(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -264,7 +266,7 @@ def test_kill_loses_no_acknowledged_reading(folder: Path) -> None:
         process.kill()
         told += process.stdout.read().splitlines(keepends=True)
     last = int([line for line in told if line.endswith(b"\n")][-1])
-    assert backup.find_problems(folder / STORE_FILE_NAME) == ()
+    assert backup.find_store_problems(folder / STORE_FILE_NAME) == ()
     with Store.open(folder, read_only=True) as store:
         kept = readings(store, limit=10**6)
         assert len(kept) in (last, last + 1)

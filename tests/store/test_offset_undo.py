@@ -10,7 +10,7 @@ import pytest
 from core.store.offsets.touch_off import TouchPosition
 from core.store.store import Store
 from core.store.store_errors import StoreError
-from core.tool_edges import make_row_number
+from core.tool_edges import make_edge_row_number
 from tests.coded import raises_code
 
 
@@ -65,7 +65,7 @@ def test_undo_of_step_that_is_not_the_last_is_rejected(store: Store) -> None:
 
 
 def test_undo_does_not_remove_tool_with_another_edge(store: Store) -> None:
-    store.offsets.tool_offsets.change_row(make_row_number(2, 2), "edge", {"x": 1.0, "z": 1.0}).result()
+    store.offsets.tool_offsets.change_row(make_edge_row_number(2, 2), "edge", {"x": 1.0, "z": 1.0}).result()
     with raises_code(StoreError, "has-further-edges"):
         undo(store, 2)
     assert 2 in store.offsets.tool_offsets.read_rows()

@@ -7,7 +7,7 @@ from math import inf, nan
 import pytest
 
 from core.store.store import Store, StoreError
-from core.store.store_rows import OffsetKind, SecondaryRow, ToolRow, convert_to_inches
+from core.store.store_rows import OffsetKind, SecondaryOffsetRow, ToolOffsetRow, convert_to_inches
 from tests.coded import raises_code
 
 
@@ -21,17 +21,17 @@ def test_setting_one_value_leaves_the_others_unchanged(store: Store) -> None:
     store.offsets.tool_offsets.change_row(
         3, "touched off", {"x": 31.75, "z": -12.7, "nose_radius": 0.381}
     ).result()
-    assert store.offsets.tool_offsets.change_row(3, "again", {"z": -12.5}).result() == ToolRow(
+    assert store.offsets.tool_offsets.change_row(3, "again", {"z": -12.5}).result() == ToolOffsetRow(
         31.75, -12.5, 0.381
     )
-    assert store.offsets.tool_offsets.read_rows() == {3: ToolRow(31.75, -12.5, 0.381)}
+    assert store.offsets.tool_offsets.read_rows() == {3: ToolOffsetRow(31.75, -12.5, 0.381)}
 
 
 def test_tool_and_secondary_offsets_are_separate(store: Store) -> None:
     store.offsets.tool_offsets.change_row(4, "tool", {"x": 1.0})
     store.offsets.secondary_offsets.change_row(4, "wear", {"x": -0.0127}).result()
-    assert store.offsets.tool_offsets.read_rows() == {4: ToolRow(1.0, 0.0, 0.0)}
-    assert store.offsets.secondary_offsets.read_rows() == {4: SecondaryRow(-0.0127, 0.0, 0.0)}
+    assert store.offsets.tool_offsets.read_rows() == {4: ToolOffsetRow(1.0, 0.0, 0.0)}
+    assert store.offsets.secondary_offsets.read_rows() == {4: SecondaryOffsetRow(-0.0127, 0.0, 0.0)}
 
 
 def test_history_lists_old_and_new_value_reason_and_user(store: Store) -> None:
@@ -70,10 +70,10 @@ def test_clear_is_one_step_and_undo_restores_all(store: Store) -> None:
     assert store.offsets.secondary_offsets.read_rows() == {}
     assert len(store.offsets.undo_last_step().result()) == 2
     assert store.offsets.secondary_offsets.read_rows() == {
-        1: SecondaryRow(1.0, 0.0, 0.0),
-        2: SecondaryRow(0.0, 0.0, 0.5),
+        1: SecondaryOffsetRow(1.0, 0.0, 0.0),
+        2: SecondaryOffsetRow(0.0, 0.0, 0.5),
     }
-    assert store.offsets.tool_offsets.read_rows() == {1: ToolRow(9.0, 0.0, 0.0)}
+    assert store.offsets.tool_offsets.read_rows() == {1: ToolOffsetRow(9.0, 0.0, 0.0)}
 
 
 def test_undo_goes_back_one_more_step_each_time(store: Store) -> None:

@@ -19,7 +19,7 @@ from core.store.store import Store, StoreError
 from core.store.store_connection import WriterLock, is_open_for_writing
 from core.store.store_errors import StoreErrorCause
 from core.store.store_file import STORE_FILE_NAME
-from core.store.store_rows import ToolRow
+from core.store.store_rows import ToolOffsetRow
 from tests.coded import raises_code
 
 
@@ -38,7 +38,7 @@ def closed(folder: Path) -> Path:
 
 def test_saved_values_exist_after_reopening(closed: Path) -> None:
     with Store.open(closed.parent) as store:
-        assert store.offsets.tool_offsets.read_rows() == {1: ToolRow(1.0, 0.0, 0.0)}
+        assert store.offsets.tool_offsets.read_rows() == {1: ToolOffsetRow(1.0, 0.0, 0.0)}
 
 
 def test_file_has_application_id_and_commits_are_synced(closed: Path) -> None:
@@ -59,7 +59,7 @@ def test_second_writer_is_refused_and_a_reader_is_not(store: Store, folder: Path
     with raises_code(StoreError, "in-use", f"process {os.getpid()}"):
         Store.open(folder)
     with Store.open(folder, read_only=True) as reader:
-        assert reader.offsets.tool_offsets.read_rows() == {2: ToolRow(3.0, 0.0, 0.0)}
+        assert reader.offsets.tool_offsets.read_rows() == {2: ToolOffsetRow(3.0, 0.0, 0.0)}
         with raises_code(StoreError, "read-only"):
             reader.offsets.tool_offsets.change_row(2, "x", {"x": 4.0})
     store.offsets.tool_offsets.change_row(2, "x", {"x": 5.0}).result()
@@ -222,10 +222,10 @@ def test_older_store_is_migrated_and_a_copy_is_saved(closed: Path, monkeypatch: 
     with raises_code(StoreError, "older-version"):
         Store.open(closed.parent, read_only=True)
     with Store.open(closed.parent) as store:
-        assert store.offsets.tool_offsets.read_rows() == {1: ToolRow(1.0, 0.0, 0.0)}
-    assert database.check_file(closed, is_thorough=True) == len(newer)
+        assert store.offsets.tool_offsets.read_rows() == {1: ToolOffsetRow(1.0, 0.0, 0.0)}
+    assert database.check_store_file(closed, is_thorough=True) == len(newer)
     kept = closed.with_name(f"turndesk-version-{len(newer) - 1}.db")
-    assert database.check_file(kept, is_thorough=True) == len(newer) - 1
+    assert database.check_store_file(kept, is_thorough=True) == len(newer) - 1
 
 
 @contextmanager
@@ -244,11 +244,11 @@ def test_folder_without_read_permission_is_reported(closed: Path) -> None:
     """Not a traceback, and not that there is no store."""
     folder = closed.parent
     folder.chmod(0o700)
-    backup.find_all_problems(closed)  # whatever is imported late is there
+    backup.find_all_store_problems(closed)  # whatever is imported late is there
     tried: list[tuple[Callable[[], object], str]] = [
         (lambda: Store.open(folder, read_only=True), "forbidden"),
         (lambda: Store.open(folder), "cannot-make-folder"),
-        (lambda: backup.find_all_problems(closed), "forbidden"),
+        (lambda: backup.find_all_store_problems(closed), "forbidden"),
         (lambda: backup.back_up_store(folder, folder / "b.db"), "cannot-write"),
         (lambda: backup.restore_store(folder, folder / "b.db"), "forbidden"),
     ]
@@ -288,7 +288,7 @@ def test_open_store_retains_its_sqlite_locks(folder: Path, tmp_path: Path, look:
         if look == "backup":
             backup.back_up_store(folder, tmp_path / "b.db")
         elif look == "verify":
-            assert backup.find_problems(path) == ()
+            assert backup.find_store_problems(path) == ()
         elif look == "read":
             Store.open(folder, read_only=True).close()
         else:

@@ -12,7 +12,7 @@ import pytest
 
 from app.desk.background_work import LatestRequestWorker
 from app.editor.edited_document import Document, DraftStore
-from app.editor.version_history import NullArchive
+from app.editor.version_history import NullVersionArchive
 from app.programs.atomic_files import FileOperationError, copy_to_medium, write_new_file, write_program_file
 from app.shopfloor.status_file import StatusFileWriter
 from core.file_replacement import write_atomically
@@ -35,7 +35,7 @@ class _Busy(LatestRequestWorker):
 
 
 def _draft(path: Path, data: bytes) -> None:
-    drafts = DraftStore(path.parent, NullArchive(), worker=_Busy("editing-drafts"))
+    drafts = DraftStore(path.parent, NullVersionArchive(), worker=_Busy("editing-drafts"))
     drafts.set_text(Document(path.parent / path.stem, ""), data.decode())
     drafts.close()
 

@@ -118,10 +118,10 @@ def test_records_stored_by_name_are_assigned_to_the_proved_text(
         store.programs.save_version("pin.nc", GOOD.encode(), "loaded to run").result(60)
         store.runs.add_parts("pin.nc")
         store.runs.record_proof("pin.nc", "PROVED", 9.0).result(60)
-        assert [row.program for row in store.runs.read_records()] == ["pin.nc"]
+        assert [row.program for row in store.runs.read_run_records()] == ["pin.nc"]
         store.programs.save_version("pin.nc", BAD.encode(), "saved in the editor").result(60)
         store.programs.save_loaded_version("pin.nc", BAD.encode(), "loaded to run").result(60)
         assert store.runs.read_part_count("pin.nc") == 0
         store.programs.save_loaded_version("pin.nc", GOOD.encode(), "loaded to run").result(60)
-        (row,) = store.runs.read_records()
+        (row,) = store.runs.read_run_records()
         assert (row.program, row.parts, row.proof) == ("pin.nc", 1, "PROVED")

@@ -19,7 +19,7 @@ def test_every_save_is_a_version(store: Store) -> None:
     assert store.programs.load_version("PIN.nc", 1) == b"G90\r\n"
     newest, first = store.programs.list_versions("PIN.nc")
     assert (newest.number, newest.why, first.number, first.size) == (2, "wrong mode", 1, 5)
-    assert [(row.name, row.version) for row in store.programs.list_programs()] == [("PIN.nc", 2)]
+    assert [(row.name, row.newest_version) for row in store.programs.list_programs()] == [("PIN.nc", 2)]
 
 
 def test_identical_text_creates_no_new_version(store: Store) -> None:

@@ -16,7 +16,7 @@ from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_file import STORE_FILE_NAME
-from core.store.store_rows import RunRow, ToolRow
+from core.store.store_rows import RunRow, ToolOffsetRow
 from tests.coded import raises_code
 
 PIN = FeatureRow(0, "pin.nc", "OD", "diameter", 12.0, -0.01, 0.02, "tool", 3, 1, 5, 3)
@@ -66,7 +66,7 @@ def spoil_page(folder: Path, root: str, before: bytes, after: bytes) -> None:
 def test_damaged_index_is_rebuilt_and_hides_nothing(kept: Path) -> None:
     spoil_page(kept, "sqlite_autoindex_settings_1", b"units", b"unitr")
     spoil_page(kept, "sqlite_autoindex_part_counts_1", b"pin.nc", b"pin.nb")
-    assert "missing from index" in backup.find_problems(kept / STORE_FILE_NAME)[0]
+    assert "missing from index" in backup.find_store_problems(kept / STORE_FILE_NAME)[0]
     with Store.open(kept, read_only=True) as store:
         assert (store.settings.read_setting("units"), store.runs.read_part_count("pin.nc")) == ("metric", 40)
     with Store.open(kept) as store:
@@ -78,7 +78,7 @@ def test_damaged_index_is_rebuilt_and_hides_nothing(kept: Path) -> None:
             store.runs.read_part_count("pin.nc"),
             store.find_damaged_rows(),
         ) == ("metric", 41, ())
-    assert backup.find_all_problems(kept / STORE_FILE_NAME) == ()
+    assert backup.find_all_store_problems(kept / STORE_FILE_NAME) == ()
 
 
 def test_duplicate_keys_under_an_index_are_file_damage(kept: Path) -> None:
@@ -107,20 +107,22 @@ def test_duplicate_keys_under_an_index_are_file_damage(kept: Path) -> None:
 )
 def test_damaged_history_entry_undoes_nothing(kept: Path, damage: str) -> None:
     spoil(kept, f"UPDATE offset_changes SET {damage} WHERE id = 2")
-    assert backup.find_problems(kept / STORE_FILE_NAME) == ()
-    [told] = backup.find_all_problems(kept / STORE_FILE_NAME)
+    assert backup.find_store_problems(kept / STORE_FILE_NAME) == ()
+    [told] = backup.find_all_store_problems(kept / STORE_FILE_NAME)
     assert told.startswith(make_row_label("offset_changes", 2))
     with Store.open(kept) as store:
         with raises_code(StoreError, "damaged-history", "entry 2"):
             store.offsets.tool_offsets.undo_last_step().result()
         assert store.offsets.tool_offsets.read_rows() == {
-            3: ToolRow(x=-12.7, z=-2.5, wear_x=-0.02, remark="FINISHER")
+            3: ToolOffsetRow(x=-12.7, z=-2.5, wear_x=-0.02, remark="FINISHER")
         }
 
 
 def test_deleted_history_entry_is_detected(kept: Path) -> None:
     spoil(kept, "DELETE FROM offset_changes WHERE id = 2")
-    assert backup.find_all_problems(kept / STORE_FILE_NAME)[0].startswith(make_row_label("offset_changes", 2))
+    assert backup.find_all_store_problems(kept / STORE_FILE_NAME)[0].startswith(
+        make_row_label("offset_changes", 2)
+    )
     with Store.open(kept) as store, raises_code(StoreError, "damaged-history", "entry 2"):
         store.offsets.tool_offsets.undo_last_step().result()
 
@@ -130,13 +132,13 @@ def test_history_is_usable_after_a_damaged_entry(kept: Path, tmp_path: Path) -> 
     with Store.open(kept) as store:
         store.offsets.tool_offsets.change_row(3, "worn", {"wear_x": -0.03}).result()
         assert [row.new for row in store.offsets.tool_offsets.undo_last_step().result()] == [
-            ToolRow(x=-12.7, z=-2.5, wear_x=-0.02, remark="FINISHER")
+            ToolOffsetRow(x=-12.7, z=-2.5, wear_x=-0.02, remark="FINISHER")
         ]
         assert [row.id for row in store.offsets.tool_offsets.read_history(limit=2)] == [4, 3]
         with raises_code(StoreError, "damaged-history", "entry 2"):
             store.offsets.tool_offsets.read_history()
         backup.back_up_store(kept, tmp_path / "still.db")  # it makes no backup worthless
-    assert backup.find_problems(tmp_path / "still.db") == ()
+    assert backup.find_store_problems(tmp_path / "still.db") == ()
 
 
 # --- counts of runs, features, readings --------------------------------------------------------------------
@@ -145,7 +147,7 @@ def test_history_is_usable_after_a_damaged_entry(kept: Path, tmp_path: Path) -> 
 def test_damaged_part_count_is_not_shown(kept: Path) -> None:
     spoil(kept, "UPDATE part_counts SET count = 168")
     with Store.open(kept) as store:
-        assert [(row.program, row.parts, row.cycles) for row in store.runs.read_records()] == [
+        assert [(row.program, row.parts, row.cycles) for row in store.runs.read_run_records()] == [
             ("pin.nc", 0, 1)
         ]
         assert store.runs.read_part_count("pin.nc") == 0
@@ -156,13 +158,13 @@ def test_damaged_part_count_is_not_shown(kept: Path) -> None:
 def test_damaged_run_record_is_restarted(kept: Path) -> None:
     spoil(kept, "UPDATE runs SET best = 1.25")
     with Store.open(kept, read_only=True) as store:
-        assert store.runs.read_records() == (RunRow("pin.nc", 40),)
+        assert store.runs.read_run_records() == (RunRow("pin.nc", 40),)
     with Store.open(kept) as store:
         [told] = store.repair_messages
         assert told.startswith(make_row_label("runs", "pin.nc"))
         store.runs.record_cycle("pin.nc", 34.0).result()
-        assert [(row.cycles, row.best) for row in store.runs.read_records()] == [(1, 34.0)]
-    assert backup.find_all_problems(kept / STORE_FILE_NAME) == ()
+        assert [(row.cycles, row.best) for row in store.runs.read_run_records()] == [(1, 34.0)]
+    assert backup.find_all_store_problems(kept / STORE_FILE_NAME) == ()
 
 
 @pytest.mark.parametrize(
@@ -171,7 +173,7 @@ def test_damaged_run_record_is_restarted(kept: Path) -> None:
 )
 def test_damaged_feature_proposes_no_wear(kept: Path, damage: str, readings: int) -> None:
     spoil(kept, f"UPDATE part_features SET {damage}")
-    assert backup.find_problems(kept / STORE_FILE_NAME)
+    assert backup.find_store_problems(kept / STORE_FILE_NAME)
     with Store.open(kept) as store:
         [told] = store.repair_messages
         assert told.startswith(make_row_label("part_features", "pin.nc OD"))
@@ -181,7 +183,7 @@ def test_damaged_feature_proposes_no_wear(kept: Path, damage: str, readings: int
         with store.read() as connection:
             assert [row.id for row in measured_parts.read_features(connection)] == [again]
             assert len(measured_parts.read_readings_between(connection, "0", "9")) == readings
-    assert backup.find_all_problems(kept / STORE_FILE_NAME) == ()
+    assert backup.find_all_store_problems(kept / STORE_FILE_NAME) == ()
 
 
 def test_damaged_reading_is_not_counted(kept: Path) -> None:
@@ -189,7 +191,7 @@ def test_damaged_reading_is_not_counted(kept: Path) -> None:
     with Store.open(kept) as store, store.read() as connection:
         assert [row.value for row in measured_parts.read_readings(connection, "pin.nc", 9)] == [12.001]
         assert len(measured_parts.read_readings_between(connection, "0", "9")) == 1
-    [told] = backup.find_all_problems(kept / STORE_FILE_NAME)
+    [told] = backup.find_all_store_problems(kept / STORE_FILE_NAME)
     assert told.startswith(make_row_label("part_readings", 2))
 
 
@@ -207,14 +209,14 @@ def test_text_with_damaged_type_is_not_used(kept: Path) -> None:
 def test_checksum_with_damaged_key_type_is_reported(kept: Path) -> None:
     """The setting read as never set, and nobody said so."""
     spoil(kept, "UPDATE row_sums SET key = CAST(key AS BLOB) WHERE tbl = 'settings'")
-    assert len(backup.find_problems(kept / STORE_FILE_NAME)) == 2
+    assert len(backup.find_store_problems(kept / STORE_FILE_NAME)) == 2
     with Store.open(kept) as store:
         [told] = store.find_damaged_rows()
         assert told.startswith(make_row_label("settings", "units"))
         assert store.settings.read_setting("units") is None
         store.settings.save_setting("units", "metric").result()
         assert (store.settings.read_setting("units"), store.find_damaged_rows()) == ("metric", ())
-    assert backup.find_all_problems(kept / STORE_FILE_NAME) == ()
+    assert backup.find_all_store_problems(kept / STORE_FILE_NAME) == ()
 
 
 def test_rows_swapped_with_their_checksums_are_not_used(kept: Path) -> None:
@@ -252,7 +254,7 @@ def told_of(kept: Path) -> Path:
         ).result()
         store.write(lambda c: c.execute(cycle)).result()
         store.write(lambda c: c.execute(stop)).result()
-    assert backup.find_all_problems(kept / STORE_FILE_NAME) == ()
+    assert backup.find_all_store_problems(kept / STORE_FILE_NAME) == ()
     return kept
 
 
@@ -282,15 +284,15 @@ def test_verify_reports_damage_in_any_table(told_of: Path, table: str, damage: s
         key = connection.execute(
             f"SELECT max({row_checksums.CHECKSUMMED_TABLES[table]}) FROM {table}"
         ).fetchone()[0]
-    assert backup.find_problems(told_of / STORE_FILE_NAME) == ()  # it makes no backup worthless
-    [told] = backup.find_all_problems(told_of / STORE_FILE_NAME)
+    assert backup.find_store_problems(told_of / STORE_FILE_NAME) == ()  # it makes no backup worthless
+    [told] = backup.find_all_store_problems(told_of / STORE_FILE_NAME)
     assert told.startswith(make_row_label(table, key))
 
 
 @pytest.mark.parametrize("table", ["events", "programs", "part_cycles", "shared_here"])
 def test_deleted_row_is_detected(told_of: Path, table: str) -> None:
     spoil(told_of, f"DELETE FROM {table} WHERE rowid = (SELECT max(rowid) FROM {table})")
-    assert backup.find_all_problems(told_of / STORE_FILE_NAME)
+    assert backup.find_all_store_problems(told_of / STORE_FILE_NAME)
 
 
 def test_every_table_has_checksums(folder: Path) -> None:
@@ -309,7 +311,7 @@ def test_damaged_default_value_of_column_is_reported(kept: Path) -> None:
     content = (kept / STORE_FILE_NAME).read_bytes()
     assert content.count(b"DEFAULT 0.9 ") == 1
     (kept / STORE_FILE_NAME).write_bytes(content.replace(b"DEFAULT 0.9 ", b"DEFAULT 0.1 "))
-    [told] = backup.find_all_problems(kept / STORE_FILE_NAME)
+    [told] = backup.find_all_store_problems(kept / STORE_FILE_NAME)
     assert told == SCHEMA_CHANGED_MESSAGE
 
 
@@ -332,9 +334,11 @@ def test_older_store_gets_checksums_for_its_histories(kept: Path, monkeypatch: p
         assert store.repair_messages == ()
         [told] = store.find_damaged_rows()
         assert told.startswith(make_row_label("part_counts", "pin.nc"))
-        assert [row.best for row in store.runs.read_records()] == [1.25]
+        assert [row.best for row in store.runs.read_run_records()] == [1.25]
         assert len(store.offsets.tool_offsets.read_history()) == 2
     spoil(kept, "UPDATE offset_changes SET old_x = 7 WHERE id = 2")
     spoil(kept, "UPDATE part_counts SET count = 40")
-    assert len(backup.find_all_problems(kept / STORE_FILE_NAME)) == 1
-    assert database.check_file(kept / STORE_FILE_NAME, is_thorough=True) == len(database.load_migrations())
+    assert len(backup.find_all_store_problems(kept / STORE_FILE_NAME)) == 1
+    assert database.check_store_file(kept / STORE_FILE_NAME, is_thorough=True) == len(
+        database.load_migrations()
+    )

@@ -33,7 +33,9 @@ def test_a_released_store_upgrades_without_a_loss(file: Path, folder: Path) -> N
         assert store.settings.read_setting("theme") == "dark"
         assert [person.name for person in store.people.read_users().rows] == ["ANNA"]
         assert store.find_damaged_rows() == ()
-    assert database.check_file(folder / "turndesk.db", is_thorough=True) == len(database.load_migrations())
+    assert database.check_store_file(folder / "turndesk.db", is_thorough=True) == len(
+        database.load_migrations()
+    )
 
 
 @each_release

@@ -9,7 +9,7 @@ import pytest
 
 from app.desk.persistence import NullRunRecords, Persistence
 from core.store.offsets.touch_off import TouchPosition
-from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.production.part_cycles import CycleRow, ProductionStopRow
 from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_rows import FieldValue, OffsetKind
@@ -23,10 +23,10 @@ WRITES: dict[str, Callable[[Store], object]] = {
     "touch": lambda store: store.offsets.tool_offsets.set_touched_offset(1, TouchPosition(1.0, 1.0), "touch"),
     "undo": lambda store: store.offsets.undo_last_step(),
     "programs": lambda store: store.programs.save_version("a.nc", b"M30", "saved"),
-    "runs": lambda store: store.runs.record_start("a.nc"),
+    "runs": lambda store: store.runs.record_run_start("a.nc"),
     "parts": lambda store: store.runs.add_parts("a.nc"),
     "cycles": lambda store: store.cycles.record_row(CycleRow("1", "a.nc", 1, AT)),
-    "stops": lambda store: store.cycles.record_row(StopRow("1", "", "a.nc", AT, 2.0, "held")),
+    "stops": lambda store: store.cycles.record_row(ProductionStopRow("1", "", "a.nc", AT, 2.0, "held")),
     "jobs": lambda store: store.jobs.add_job("a.nc", 3),
     "events": lambda store: store.events.log_event("start", "a.nc"),
     "settings": lambda store: store.settings.save_setting("theme", "dark"),

@@ -14,10 +14,10 @@ from app.compose.stored_offsets import read_stored_offsets
 from app.desk.command_errors import CommandError
 from core.store import backup, database, program_records, row_checksums
 from core.store.damaged_rows import make_row_label
-from core.store.production.tool_lives import ToolLifeRow, read_tool_lives, save_use
+from core.store.production.tool_lives import ToolLifeRow, read_tool_lives, save_insert_use
 from core.store.store import Store
 from core.store.store_file import STORE_FILE_NAME, make_stock_setting_key
-from core.store.store_rows import ToolRow
+from core.store.store_rows import ToolOffsetRow
 from tests.coded import raises_code
 
 FILE = STORE_FILE_NAME
@@ -35,7 +35,7 @@ def kept(folder: Path) -> Path:
         store.settings.save_setting("units", "metric").result()
         store.runs.add_parts("pin.nc").result()
         store.runs.add_parts("pin.nc").result()
-        store.write(lambda c: save_use(c, 3, 40, 120.5)).result()
+        store.write(lambda c: save_insert_use(c, 3, 40, 120.5)).result()
     return folder
 
 
@@ -60,7 +60,7 @@ def flip(folder: Path, table: str, column: str, where: str) -> None:
 
 
 def test_undamaged_store_has_no_problems(kept: Path) -> None:
-    assert backup.find_problems(kept / FILE) == ()
+    assert backup.find_store_problems(kept / FILE) == ()
     with Store.open(kept) as store:
         assert (store.repair_messages, store.find_damaged_rows()) == ((), ())
 
@@ -71,13 +71,13 @@ def test_flipped_bit_is_not_used_as_an_offset(kept: Path) -> None:
         assert set(store.offsets.tool_offsets.read_rows()) == {1}
         [told] = store.find_damaged_rows()
         assert told.startswith("T3 ")
-    assert backup.find_problems(kept / FILE)[0].startswith("T3 ")
+    assert backup.find_store_problems(kept / FILE)[0].startswith("T3 ")
 
 
 def test_history_repairs_offset_when_store_opens(kept: Path) -> None:
     flip(kept, "tool_offsets", "z", "number = 3")
     with Store.open(kept) as store:
-        assert store.offsets.tool_offsets.read_rows()[3] == ToolRow(-12.7, -2.5, remark="FINISHER")
+        assert store.offsets.tool_offsets.read_rows()[3] == ToolOffsetRow(-12.7, -2.5, remark="FINISHER")
         [told] = store.repair_messages
         assert told.startswith("T3 ")
         assert store.events.read_events(told)[0].kind == "warning"
@@ -89,7 +89,7 @@ def test_deleted_row_is_restored(kept: Path) -> None:
     with outside(kept) as connection:
         connection.execute("DELETE FROM tool_offsets WHERE number = 1")
     with Store.open(kept) as store:
-        assert store.offsets.tool_offsets.read_rows()[1] == ToolRow(1.0, 2.0)
+        assert store.offsets.tool_offsets.read_rows()[1] == ToolOffsetRow(1.0, 2.0)
 
 
 def test_damaged_checksum_loses_nothing(kept: Path) -> None:
@@ -136,7 +136,7 @@ def test_value_of_wrong_type_rejects_only_its_own_row(kept: Path, damage: str) -
         connection.execute("PRAGMA ignore_check_constraints = ON")
         connection.execute(f"UPDATE tool_offsets SET x = coalesce({damage}, '') WHERE number = 3")
     with Store.open(kept, read_only=True) as store:
-        assert store.offsets.tool_offsets.read_rows() == {1: ToolRow(1.0, 2.0)}
+        assert store.offsets.tool_offsets.read_rows() == {1: ToolOffsetRow(1.0, 2.0)}
 
 
 def test_text_of_wrong_type_hides_no_other_row(kept: Path) -> None:
@@ -144,7 +144,7 @@ def test_text_of_wrong_type_hides_no_other_row(kept: Path) -> None:
         connection.execute("UPDATE tool_offsets SET remark = CAST(x'46ff4e' AS TEXT) WHERE number = 3")
         connection.execute("UPDATE settings SET value = CAST(x'22ff22' AS TEXT) WHERE key = 'units'")
     with Store.open(kept, read_only=True) as store:
-        assert store.offsets.tool_offsets.read_rows() == {1: ToolRow(1.0, 2.0)}
+        assert store.offsets.tool_offsets.read_rows() == {1: ToolOffsetRow(1.0, 2.0)}
         assert store.settings.read_setting("units") is None
     with Store.open(kept) as store:
         assert store.offsets.tool_offsets.read_rows()[3].remark == "FINISHER"
@@ -166,7 +166,7 @@ def test_damaged_settings_counts_and_tool_lives_are_not_used(kept: Path) -> None
         assert [each.startswith(row) for each, row in zip(told, rows, strict=True)] == [True] * 3
         store.settings.save_setting("units", "metric").result()
         store.runs.reset_parts("pin.nc").result()
-        store.write(lambda c: save_use(c, 3, 40, 120.5)).result()
+        store.write(lambda c: save_insert_use(c, 3, 40, 120.5)).result()
         assert store.find_damaged_rows() == ()
         assert (store.settings.read_setting("units"), store.runs.read_part_count("pin.nc")) == ("metric", 0)
 
@@ -226,7 +226,7 @@ def test_damage_before_migration_remains_detected(kept: Path) -> None:
     with closing(sqlite3.connect(kept / FILE, isolation_level=None)) as connection:
         database.upgrade_tables(connection, newer)
         assert row_checksums.find_all_broken_rows(connection) == {("tool_lives", 3)}
-        save_use(connection, 3, 40, 1.0)
+        save_insert_use(connection, 3, 40, 1.0)
         assert row_checksums.find_all_broken_rows(connection) == frozenset()
 
 

@@ -26,15 +26,15 @@ def test_cycle_time_of_zero_is_not_the_best(store: Store) -> None:
     """As older versions kept it of parts that a restart had finished."""
     for seconds in (0.0, 31.5, 32.0):
         store.runs.record_cycle("pin.nc", seconds).result()
-    assert store.runs.read_records()[0].best == 31.5
+    assert store.runs.read_run_records()[0].best == 31.5
 
 
 def test_best_and_latest_cycle_are_recorded(store: Store) -> None:
     for seconds in (31.5, 29.25, 30.0):
         store.runs.record_cycle("pin.nc", seconds)
-    store.runs.record_start("pin.nc")
-    store.runs.record_end("pin.nc", "COMPLETE").result(60)
-    (row,) = store.runs.read_records()
+    store.runs.record_run_start("pin.nc")
+    store.runs.record_run_end("pin.nc", "COMPLETE").result(60)
+    (row,) = store.runs.read_run_records()
     assert (row.cycles, row.best, row.latest, row.outcome) == (3, 29.25, 30.0, "COMPLETE")
     assert row.started is not None
 
@@ -42,7 +42,7 @@ def test_best_and_latest_cycle_are_recorded(store: Store) -> None:
 def test_program_that_was_only_counted_or_proved_is_listed(store: Store) -> None:
     store.runs.add_parts("counted.nc")
     store.runs.record_proof("proved.nc", "PROVED", 12.5).result(60)
-    rows = {row.program: row for row in store.runs.read_records()}
+    rows = {row.program: row for row in store.runs.read_run_records()}
     assert (rows["counted.nc"].parts, rows["counted.nc"].best) == (1, None)
     assert (rows["proved.nc"].proof, rows["proved.nc"].planned) == ("PROVED", 12.5)
 
@@ -52,7 +52,7 @@ def test_renamed_program_retains_its_data(store: Store) -> None:
     store.runs.add_parts("old.nc")
     store.runs.record_cycle("old.nc", 10.0)
     store.programs.rename_program("old.nc", "new.nc").result(60)
-    assert [row.program for row in store.runs.read_records()] == ["new.nc"]
+    assert [row.program for row in store.runs.read_run_records()] == ["new.nc"]
     assert store.runs.read_part_count("new.nc") == 1
     assert store.programs.load_version("new.nc") == b"M30"
     assert store.programs.list_versions("old.nc") == ()
@@ -84,9 +84,9 @@ def test_events_are_filtered_by_kind(store: Store) -> None:
 
 
 def test_export_contains_runs_as_csv(store: Store, tmp_path: Path) -> None:
-    store.runs.record_start("pin.nc")
+    store.runs.record_run_start("pin.nc")
     store.runs.record_cycle("pin.nc", 30.5)
-    store.runs.record_end("pin.nc", 'ALARM 102, "X"')
+    store.runs.record_run_end("pin.nc", 'ALARM 102, "X"')
     store.runs.add_parts("pin.nc")
     store.runs.record_proof("ring.nc", "2 ERRORS: line 4", None).result(60)
     export_store(store, tmp_path / "out")
@@ -130,7 +130,7 @@ def test_stock_of_program_is_saved_renamed_and_deleted(tmp_path: Path) -> None:
 def test_part_settings_follow_renamed_program(tmp_path: Path) -> None:
     with Store.open(tmp_path) as store:
         said = StoredPart("bar:1", 20.0, {"cuts-air": "it waits there"})
-        for key, value in said.make_settings("PIN").items():
+        for key, value in said.make_stored_settings("PIN").items():
             store.settings.save_setting(key, value).result()
         store.programs.rename_program("PIN", "KNOB").result()
         assert load_stored_part(store.settings.read_setting, "PIN") == StoredPart()

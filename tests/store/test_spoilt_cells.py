@@ -13,7 +13,7 @@ from core.store.damaged_rows import make_row_label
 from core.store.store import Store, StoreError
 from core.store.store_export import export_store
 from core.store.store_file import STORE_FILE_NAME
-from core.store.store_rows import ToolRow
+from core.store.store_rows import ToolOffsetRow
 from tests.coded import raises_code
 
 
@@ -42,14 +42,14 @@ def test_history_entry_that_is_not_a_number_is_reported_and_not_undone(kept: Pat
             store.offsets.tool_offsets.read_history()
         with raises_code(StoreError, "damaged-history", "entry 2"):
             store.offsets.undo_last_step().result()
-        assert store.offsets.tool_offsets.read_rows() == {1: ToolRow(x=2.0)}
+        assert store.offsets.tool_offsets.read_rows() == {1: ToolOffsetRow(x=2.0)}
         store.offsets.tool_offsets.change_row(1, "worn", {"x": 3.0}).result()  # the table itself is whole
-        assert store.offsets.tool_offsets.read_rows() == {1: ToolRow(x=3.0)}
+        assert store.offsets.tool_offsets.read_rows() == {1: ToolOffsetRow(x=3.0)}
 
 
 def test_program_text_that_is_not_bytes_is_damaged(kept: Path) -> None:
     spoil(kept, "UPDATE program_versions SET text = ?", "G90\nM30\n")
-    [problem] = backup.find_problems(kept / STORE_FILE_NAME)
+    [problem] = backup.find_store_problems(kept / STORE_FILE_NAME)
     assert problem.startswith("'pin.nc' version 1 ")
     with Store.open(kept) as store, raises_code(StoreError, "damaged-version", "version 1"):
         store.programs.load_version("pin.nc")
@@ -95,7 +95,7 @@ def test_program_name_with_a_path_is_not_exported(kept: Path, tmp_path: Path, na
 
 def test_version_number_with_line_break_stays_on_one_line_of_message(kept: Path) -> None:
     spoil(kept, "UPDATE program_versions SET number = ?, text = ?", "a\nb", b"M30\n")
-    assert backup.find_problems(kept / STORE_FILE_NAME)[0].startswith("'pin.nc' version a b ")
+    assert backup.find_store_problems(kept / STORE_FILE_NAME)[0].startswith("'pin.nc' version a b ")
     with Store.open(kept) as store, raises_code(StoreError, "damaged-version", "version a b"):
         store.programs.load_version("pin.nc")
 
@@ -105,7 +105,7 @@ def test_offset_can_be_changed_after_damaged_history_step(kept: Path, step: obje
     spoil(kept, "UPDATE offset_changes SET step = ? WHERE id = 2", step)
     with Store.open(kept) as store:
         store.offsets.tool_offsets.change_row(1, "worn", {"x": 3.0}).result()
-        assert store.offsets.tool_offsets.read_rows() == {1: ToolRow(x=3.0)}
+        assert store.offsets.tool_offsets.read_rows() == {1: ToolOffsetRow(x=3.0)}
     with closing(sqlite3.connect(kept / STORE_FILE_NAME)) as connection:
         assert connection.execute("SELECT step FROM offset_changes WHERE id = 3").fetchone() == (2,)
 

@@ -61,7 +61,7 @@ def test_invalid_store_file_is_rejected_by_name_and_unchanged(
         lambda: Store.open(folder, read_only=True),
         lambda: backup.back_up_store(folder, folder / "b.db"),
         lambda: backup.restore_store(folder, good),
-        lambda: backup.find_problems(path),
+        lambda: backup.find_store_problems(path),
         lambda: backup.back_up_store(good.parent / "other", path),
     ):
         with raises_code(StoreError, code, path):

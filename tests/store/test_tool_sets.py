@@ -13,14 +13,14 @@ from core.store import database
 from core.store.offsets import offset_history, offset_tables, touch_off
 from core.store.offsets.offset_tables import ChangeReason
 from core.store.offsets.touch_off import TouchPosition
-from core.store.store_rows import OffsetKind, ToolRow
+from core.store.store_rows import OffsetKind, ToolOffsetRow
 
 WHY = ChangeReason("try", "test")
 START = {
-    1: ToolRow(-12.7, -76.2, wear_x=0.05),
-    2: ToolRow(6.35, -63.5, wear_z=-0.1),
-    3: ToolRow(-25.4, -81.28),
-    4: ToolRow(0.0, 0.0),
+    1: ToolOffsetRow(-12.7, -76.2, wear_x=0.05),
+    2: ToolOffsetRow(6.35, -63.5, wear_z=-0.1),
+    3: ToolOffsetRow(-25.4, -81.28),
+    4: ToolOffsetRow(0.0, 0.0),
 }
 place = st.floats(-200.0, 200.0).map(lambda mm: round(mm, 4))
 touches = st.tuples(st.integers(1, 4), st.none() | place, st.none() | place, st.booleans())
@@ -34,7 +34,7 @@ STEPS = st.lists(
 )
 
 
-def distances(rows: dict[int, ToolRow]) -> dict[tuple[int, int], tuple[float, float]]:
+def distances(rows: dict[int, ToolOffsetRow]) -> dict[tuple[int, int], tuple[float, float]]:
     """How far every tip stands from every other."""
     return {
         (a, b): (rows[a].offset[0] - rows[b].offset[0], rows[a].offset[1] - rows[b].offset[1])
@@ -63,11 +63,13 @@ def step(connection: sqlite3.Connection, what: str, values: object) -> None:
         touched(before, offset_tables.read_tool_offsets(connection), number, TouchPosition(x, z, alone))
 
 
-def touched(before: dict[int, ToolRow], after: dict[int, ToolRow], number: int, touch: TouchPosition) -> None:
+def touched(
+    before: dict[int, ToolOffsetRow], after: dict[int, ToolOffsetRow], number: int, touch: TouchPosition
+) -> None:
     """The tip stands where it was touched; who follows, and who stays."""
     for place_, value in zip((touch.x, touch.z), after[number].offset, strict=True):
         assert place_ is None or value == pytest.approx(place_)
-    if before[number].master and not touch.moves_only_this_tool:
+    if before[number].master and not touch.applies_to_this_tool_only:
         for pair, apart in distances(before).items():
             assert distances(after)[pair] == pytest.approx(apart, abs=1e-9)
     else:

@@ -13,7 +13,7 @@ from core.store import database
 from core.store.offsets.touch_off import TouchPosition
 from core.store.store import Store, StoreError
 from core.store.store_file import STORE_FILE_NAME
-from core.store.store_rows import SecondaryRow, ToolRow
+from core.store.store_rows import SecondaryOffsetRow, ToolOffsetRow
 from tests.coded import raises_code
 
 
@@ -47,18 +47,18 @@ def test_old_store_opens_with_all_its_data(folder: Path) -> None:
     old_store(folder)
     with Store.open(folder) as store:
         assert store.offsets.tool_offsets.read_rows() == {
-            3: ToolRow(31.75, -12.7, 0.381, 0.0, 0.0, 0, "", False)
+            3: ToolOffsetRow(31.75, -12.7, 0.381, 0.0, 0.0, 0, "", False)
         }
-        assert store.offsets.secondary_offsets.read_rows() == {4: SecondaryRow(-0.0127, 0.0, 0.0)}
+        assert store.offsets.secondary_offsets.read_rows() == {4: SecondaryOffsetRow(-0.0127, 0.0, 0.0)}
         second, first = store.offsets.tool_offsets.read_history()
-        assert (first.old, first.new) == (None, ToolRow(30.0, -12.7, 0.381))
-        assert second.old == ToolRow(30.0, -12.7, 0.381)
+        assert (first.old, first.new) == (None, ToolOffsetRow(30.0, -12.7, 0.381))
+        assert second.old == ToolOffsetRow(30.0, -12.7, 0.381)
         store.offsets.tool_offsets.change_row(3, "worn", {"wear_x": -0.0127, "remark": "rough"}).result()
         store.offsets.tool_offsets.undo_last_step().result()
         store.offsets.tool_offsets.undo_last_step().result()
-        assert store.offsets.tool_offsets.read_rows() == {3: ToolRow(30.0, -12.7, 0.381)}
+        assert store.offsets.tool_offsets.read_rows() == {3: ToolOffsetRow(30.0, -12.7, 0.381)}
     kept = folder / "turndesk-version-1.db"
-    assert database.check_file(kept, is_thorough=True) == 1
+    assert database.check_store_file(kept, is_thorough=True) == 1
 
 
 def test_every_field_is_saved_with_its_history(store: Store) -> None:
@@ -66,7 +66,7 @@ def test_every_field_is_saved_with_its_history(store: Store) -> None:
         2, "set", {"x": 1.0, "z": 2.0, "nose_radius": 0.4, "quadrant": 3, "remark": "DNMG finish"}
     ).result()
     store.offsets.tool_offsets.change_row(2, "worn", {"wear_x": -0.01, "wear_z": 0.02}).result()
-    row = ToolRow(1.0, 2.0, 0.4, -0.01, 0.02, 3, "DNMG finish")
+    row = ToolOffsetRow(1.0, 2.0, 0.4, -0.01, 0.02, 3, "DNMG finish")
     assert store.offsets.tool_offsets.read_rows() == {2: row}
     assert row.offset == pytest.approx((0.99, 2.02))
     newest = store.offsets.read_history()[0]
@@ -105,7 +105,7 @@ def test_touch_sets_geometry_and_clears_wear_of_that_axis(store: Store) -> None:
     store.offsets.tool_offsets.change_row(2, "worn", {"wear_x": 0.1}).result()
     changes = store.offsets.tool_offsets.set_touched_offset(2, TouchPosition(x=-21.0), "touched").result()
     assert [change.number for change in changes] == [2]
-    assert store.offsets.tool_offsets.read_rows()[2] == ToolRow(-21.0, -90.0, wear_x=0.0, wear_z=0.25)
+    assert store.offsets.tool_offsets.read_rows()[2] == ToolOffsetRow(-21.0, -90.0, wear_x=0.0, wear_z=0.25)
     assert store.offsets.tool_offsets.set_touched_offset(2, TouchPosition(x=-21.0), "again").result() == ()
 
 
@@ -114,7 +114,7 @@ def test_first_touch_sets_tool_with_both_axes(store: Store) -> None:
         store.offsets.tool_offsets.set_touched_offset(7, TouchPosition(x=3.0), "half").result()
     assert store.offsets.tool_offsets.read_rows() == {}
     store.offsets.tool_offsets.set_touched_offset(7, TouchPosition(x=3.0, z=-50.0), "first").result()
-    assert store.offsets.tool_offsets.read_rows() == {7: ToolRow(3.0, -50.0)}
+    assert store.offsets.tool_offsets.read_rows() == {7: ToolOffsetRow(3.0, -50.0)}
 
 
 def test_master_touch_moves_every_tool(store: Store) -> None:
@@ -123,23 +123,23 @@ def test_master_touch_moves_every_tool(store: Store) -> None:
     store.offsets.tool_offsets.set_touched_offset(1, TouchPosition(x=12.0, z=-101.0), "new bar").result()
     # T1 stood at 10.5 and -100 with its wear: part zero has moved by 1.5 and -1
     tools = store.offsets.tool_offsets.read_rows()
-    assert tools[1] == ToolRow(12.0, -101.0, master=True)
-    assert tools[2] == ToolRow(-18.5, -91.0, wear_z=0.25)
-    assert tools[3] == ToolRow(6.5, -96.0)
+    assert tools[1] == ToolOffsetRow(12.0, -101.0, master=True)
+    assert tools[2] == ToolOffsetRow(-18.5, -91.0, wear_z=0.25)
+    assert tools[3] == ToolOffsetRow(6.5, -96.0)
     assert len({change.step for change in store.offsets.read_history(limit=3)}) == 1
     store.offsets.undo_last_step().result()
-    assert store.offsets.tool_offsets.read_rows()[2] == ToolRow(-20.0, -90.0, wear_z=0.25)
-    assert store.offsets.tool_offsets.read_rows()[1] == ToolRow(10.0, -100.0, wear_x=0.5, master=True)
+    assert store.offsets.tool_offsets.read_rows()[2] == ToolOffsetRow(-20.0, -90.0, wear_z=0.25)
+    assert store.offsets.tool_offsets.read_rows()[1] == ToolOffsetRow(10.0, -100.0, wear_x=0.5, master=True)
 
 
 def test_master_can_be_set_alone_when_only_its_tip_changed(store: Store) -> None:
     three_tools(store)
     store.offsets.tool_offsets.set_master_tool(1, "reference").result()
     store.offsets.tool_offsets.set_touched_offset(
-        1, TouchPosition(z=-99.0, moves_only_this_tool=True), "new insert"
+        1, TouchPosition(z=-99.0, applies_to_this_tool_only=True), "new insert"
     ).result()
     assert store.offsets.tool_offsets.read_rows()[1].z == -99.0
-    assert store.offsets.tool_offsets.read_rows()[3] == ToolRow(5.0, -95.0)
+    assert store.offsets.tool_offsets.read_rows()[3] == ToolOffsetRow(5.0, -95.0)
 
 
 def test_change_of_master_moves_no_tip_and_leaves_one_master(store: Store) -> None:

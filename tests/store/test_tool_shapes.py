@@ -11,10 +11,10 @@ import pytest
 from core.store import database
 from core.store.store import Store, StoreError
 from core.store.store_file import STORE_FILE_NAME
-from core.store.store_rows import ShapeRow, ToolRow
+from core.store.store_rows import ToolOffsetRow, ToolShapeRow
 from tests.coded import raises_code
 
-DRILL = ShapeRow("drill", diameter=6.35, point=118.0, flutes=2)
+DRILL = ToolShapeRow("drill", diameter=6.35, point=118.0, flutes=2)
 
 
 def set_shape(store: Store, number: int, **values: float | str) -> None:
@@ -41,7 +41,7 @@ def test_shapes_have_a_history_of_their_own(store: Store) -> None:
     assert store.offsets.tool_shapes.read_rows() == {5: DRILL}
     store.offsets.tool_shapes.undo_last_step().result()
     assert store.offsets.tool_shapes.read_rows() == {}
-    assert store.offsets.tool_offsets.read_rows() == {5: ToolRow(1.0, 2.0)}
+    assert store.offsets.tool_offsets.read_rows() == {5: ToolOffsetRow(1.0, 2.0)}
 
 
 def test_removed_shape_is_restored_by_undo(store: Store) -> None:
@@ -106,6 +106,6 @@ def test_older_store_has_no_shapes_and_accepts_new_ones(folder: Path) -> None:
     connection.close()
     with Store.open(folder) as store:
         assert store.offsets.tool_shapes.read_rows() == {}
-        assert store.offsets.tool_offsets.read_rows() == {3: ToolRow(1.0, 2.0, 0.4)}
+        assert store.offsets.tool_offsets.read_rows() == {3: ToolOffsetRow(1.0, 2.0, 0.4)}
         set_shape(store, 3, kind="turning", insert="CNMG432")
-        assert store.offsets.tool_shapes.read_rows() == {3: ShapeRow("turning", insert="CNMG432")}
+        assert store.offsets.tool_shapes.read_rows() == {3: ToolShapeRow("turning", insert="CNMG432")}

@@ -99,7 +99,7 @@ def test_killed_copy_of_older_version_has_no_final_name(
     assert not [name for name in names(folder) if "version" in name or "unfinished" in name]
     with Store.open(folder) as store:
         assert store.offsets.tool_offsets.read_rows()[3].x == 1.0
-    assert backup.find_problems(folder / f"turndesk-version-{len(scripts) - 1}.db") == ()
+    assert backup.find_store_problems(folder / f"turndesk-version-{len(scripts) - 1}.db") == ()
 
 
 def test_unfinished_files_of_another_process_are_not_removed(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from core.store.store import Store, StoreError
-from core.store.store_rows import ZeroRow
+from core.store.store_rows import ZeroOffsetRow
 from tests.coded import raises_code
 
 
@@ -17,7 +17,10 @@ def test_saved_zero_offsets_exist_after_reopening(tmp_path: Path) -> None:
         store.offsets.zero_offsets.change_row(54, "turned", {"c": -15.0}).result()
         store.offsets.zero_offsets.change_row(59, "other", {"z": 3.0}).result()
     with Store.open(tmp_path, read_only=True) as store:
-        assert store.offsets.zero_offsets.read_rows() == {54: ZeroRow(1.5, -20.0, -15.0), 59: ZeroRow(z=3.0)}
+        assert store.offsets.zero_offsets.read_rows() == {
+            54: ZeroOffsetRow(1.5, -20.0, -15.0),
+            59: ZeroOffsetRow(z=3.0),
+        }
 
 
 def test_history_is_newest_first_and_identical_value_is_no_change(tmp_path: Path) -> None:
@@ -26,8 +29,13 @@ def test_history_is_newest_first_and_identical_value_is_no_change(tmp_path: Path
         store.offsets.zero_offsets.change_row(55, "again", {"z": 1.0}).result()
         store.offsets.zero_offsets.change_row(55, "two", {"z": 2.0}, who="somebody").result()
         two, one = store.offsets.zero_offsets.read_history()
-        assert (two.old, two.new, two.why, two.who) == (ZeroRow(z=1.0), ZeroRow(z=2.0), "two", "somebody")
-        assert (one.old, one.new) == (None, ZeroRow(z=1.0))
+        assert (two.old, two.new, two.why, two.who) == (
+            ZeroOffsetRow(z=1.0),
+            ZeroOffsetRow(z=2.0),
+            "two",
+            "somebody",
+        )
+        assert (one.old, one.new) == (None, ZeroOffsetRow(z=1.0))
 
 
 def test_undo_goes_back_step_by_step_until_nothing_is_left(tmp_path: Path) -> None:
@@ -37,7 +45,7 @@ def test_undo_goes_back_step_by_step_until_nothing_is_left(tmp_path: Path) -> No
         assert store.offsets.zero_offsets.remove_all_rows("all").result() == 2
         assert store.offsets.zero_offsets.read_rows() == {}
         assert {change.number for change in store.offsets.zero_offsets.undo_last_step().result()} == {54, 56}
-        assert store.offsets.zero_offsets.read_rows() == {54: ZeroRow(x=1.0), 56: ZeroRow(c=90.0)}
+        assert store.offsets.zero_offsets.read_rows() == {54: ZeroOffsetRow(x=1.0), 56: ZeroOffsetRow(c=90.0)}
         store.offsets.zero_offsets.undo_last_step().result()
         store.offsets.zero_offsets.undo_last_step().result()
         assert store.offsets.zero_offsets.read_rows() == {}
@@ -71,4 +79,4 @@ def test_tool_and_zero_offsets_are_undone_separately(tmp_path: Path) -> None:
         store.offsets.tool_offsets.change_row(1, "t", {"x": 1.0}).result()
         store.offsets.zero_offsets.change_row(54, "z", {"x": 1.0}).result()
         store.offsets.tool_offsets.undo_last_step().result()
-        assert store.offsets.zero_offsets.read_rows() == {54: ZeroRow(x=1.0)}
+        assert store.offsets.zero_offsets.read_rows() == {54: ZeroOffsetRow(x=1.0)}

@@ -281,7 +281,7 @@ def _machine(desk: Desk) -> Told:
         if isinstance(desk.desk_control.station_panel, PlantControls)
         else None
     )
-    true = hands.get_true_position() if hands is not None else shot.actual
+    true = hands.get_true_positions() if hands is not None else shot.actual
     outputs = hands.outputs() if hands is not None else dict.fromkeys(shot.outputs, True)
     return {
         "turning": round(hands.get_spindle_rpm() if hands is not None else shot.rpm_actual),
@@ -298,7 +298,7 @@ def _machine(desk: Desk) -> Told:
         "spindle_auto": shot.spindle_auto,
         "switches": [shot.optional_stop, shot.block_delete, shot.cycle_repeat, shot.no_count],
         "alarms": [[alarm.number, alarm.text] for alarm in shot.alarms],
-        "refused": shot.start_refusal,
+        "refused": shot.start_refusal_reason,
         "start_code": getattr(shot, "start_code", ""),
         "homed": list(shot.homed),
     }

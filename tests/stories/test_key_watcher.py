@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.stop_keys.stop_records import MAX_RECORD_BYTES, FocusRecord, StopKind, StopPress
+from app.desk.stop_keys.stop_records import MAX_RECORD_BYTES, FocusRecord, StopKeyPress, StopKind
 from tests.stories.x11 import Server, another_client, missing
 
 LIMIT = 20.0  # s
@@ -30,8 +30,8 @@ class Bench:
         """Tell the watcher which window is whose."""
         self.screen.send(focus.to_bytes())
 
-    def stop(self) -> StopPress:
-        return StopPress.from_bytes(self.control.recv(MAX_RECORD_BYTES))
+    def stop(self) -> StopKeyPress:
+        return StopKeyPress.from_bytes(self.control.recv(MAX_RECORD_BYTES))
 
 
 @pytest.fixture
@@ -68,7 +68,7 @@ def _under(server: Server, at: tuple[int, int]) -> int:
     return child.value
 
 
-def press_until_sent(bench: Bench, key: str) -> StopPress:
+def press_until_sent(bench: Bench, key: str) -> StopKeyPress:
     """Press until the watcher has begun to watch."""
     bench.control.settimeout(0.5)
     for _ in range(40):
@@ -85,7 +85,7 @@ def test_a_stop_key_is_sent_while_the_pointer_is_on_the_window(bench: Bench) -> 
     bench.show(FocusRecord(frozenset({bench.window}), is_esc_stop_key=False))
     sent = press_until_sent(bench, "Pause")
     assert sent.stop_kind is StopKind.HOLD
-    assert StopPress.from_bytes(bench.screen.recv(MAX_RECORD_BYTES)) == sent
+    assert StopKeyPress.from_bytes(bench.screen.recv(MAX_RECORD_BYTES)) == sent
 
 
 def test_nothing_is_sent_for_pointer_elsewhere_or_for_other_keys(bench: Bench) -> None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.transfer.serial_transfer import SETTING_ROWS, make_stored_settings, read_settings
+from app.transfer.serial_transfer import SETTING_ROWS, convert_settings_to_json, read_settings
 from core.machine.serial_and_backup_tables import SerialLineModel
 from tests.texts import text
 
@@ -55,7 +55,7 @@ def test_port_setting_is_unchanged_without_ports() -> None:
 
 def test_stored_settings_are_read_back() -> None:
     changed = replace(DEFAULT, baud=4800, parity="O", eol="\n", wait=True)
-    assert read_settings(make_stored_settings(changed), DEFAULT) == changed
+    assert read_settings(convert_settings_to_json(changed), DEFAULT) == changed
 
 
 @pytest.mark.parametrize(

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING
 
 from app.desk.command_errors import CommandError
 from app.offsets.change_rules import (
-    Suspicion,
-    SuspicionKind,
+    SuspicionReason,
+    SuspiciousChange,
     TravelLimits,
-    describe_suspicions,
-    find_followers,
-    find_table_suspicions,
+    describe_suspicious_changes,
+    find_following_tools,
+    find_suspicious_table_changes,
     find_travel_limits,
 )
 from core.message import Message
@@ -41,7 +41,10 @@ def confirm_changes(store: Store, args: argparse.Namespace, changes: OffsetChang
     """
     travel = _machine_travel(store, args)
     tables = {kind: store.offsets.get_table(kind).read_rows() for kind in changes}
-    found = {kind: find_table_suspicions(kind, tables[kind], rows, travel) for kind, rows in changes.items()}
+    found = {
+        kind: find_suspicious_table_changes(kind, tables[kind], rows, travel)
+        for kind, rows in changes.items()
+    }
     beyond = {kind: _only_travel(each) for kind, each in found.items() if _only_travel(each)}
     if beyond:
         raise CommandError(
@@ -63,8 +66,8 @@ def confirm_changes(store: Store, args: argparse.Namespace, changes: OffsetChang
         raise CommandError("you did not press Y; nothing was changed", "not-confirmed")
 
 
-def _only_travel(found: tuple[Suspicion, ...]) -> tuple[Suspicion, ...]:
-    return tuple(each for each in found if each.kind is SuspicionKind.OUTSIDE_TRAVEL)
+def _only_travel(found: tuple[SuspiciousChange, ...]) -> tuple[SuspiciousChange, ...]:
+    return tuple(each for each in found if each.kind is SuspicionReason.OUTSIDE_TRAVEL)
 
 
 def _machine_travel(store: Store, args: argparse.Namespace) -> TravelLimits:
@@ -79,31 +82,33 @@ def _machine_travel(store: Store, args: argparse.Namespace) -> TravelLimits:
     )
 
 
-def _describe_suspicions(suspicions: Mapping[OffsetKind, tuple[Suspicion, ...]], tools: Iterable[int]) -> str:
+def _describe_suspicions(
+    suspicions: Mapping[OffsetKind, tuple[SuspiciousChange, ...]], tools: Iterable[int]
+) -> str:
     """Return one message that describes all suspicious changes.
 
     ``tools`` are the numbers of the tools that may follow a master tool.
     """
     texts = (
-        describe_suspicions(each, partial(_format_change, kind), partial(_reason, tools))
+        describe_suspicious_changes(each, partial(_format_change, kind), partial(_reason, tools))
         for kind, each in suspicions.items()
         if each
     )
     return ", ".join(texts)
 
 
-def _reason(tools: Iterable[int], each: Suspicion) -> str:
-    if each.kind is SuspicionKind.NEW_MASTER:
-        return f"followers: {', '.join(map(format_edge_name, find_followers(tools, each.row_number)))}"
+def _reason(tools: Iterable[int], each: SuspiciousChange) -> str:
+    if each.kind is SuspicionReason.NEW_MASTER:
+        return f"followers: {', '.join(map(format_edge_name, find_following_tools(tools, each.row_number)))}"
     words = {
-        SuspicionKind.OUTSIDE_TRAVEL: "the value is outside the axis travel",
-        SuspicionKind.WRONG_SIDE: "the tool would cut on the other side of the part",
-        SuspicionKind.LARGE_CHANGE: "the change is unusually large",
+        SuspicionReason.OUTSIDE_TRAVEL: "the value is outside the axis travel",
+        SuspicionReason.WRONG_SIDE: "the tool would cut on the other side of the part",
+        SuspicionReason.LARGE_CHANGE: "the change is unusually large",
     }
     return words[each.kind]
 
 
-def _format_change(kind: OffsetKind, suspicion: Suspicion) -> str:
+def _format_change(kind: OffsetKind, suspicion: SuspiciousChange) -> str:
     """Return a change as text, such as ``T1 x +1.20000 → -15.00000 in``."""
     letter = {
         OffsetKind.TOOL: format_edge_name(suspicion.row_number),

@@ -72,7 +72,7 @@ def _quote_word(word: str) -> str:
     return '"' + inside.replace("\\", "\\\\") + '"'  # values of a desktop entry have another level of escapes
 
 
-def install_entries(*, autostart: bool) -> list[Path]:
+def install_desktop_entries(*, autostart: bool) -> list[Path]:
     """Write the desktop entries and return their paths.
 
     The autostart entry is written only if ``autostart`` is true. Raises CommandError if a file cannot be
@@ -83,18 +83,18 @@ def install_entries(*, autostart: bool) -> list[Path]:
     try:
         for path in (entry, icon, types, *((start,) if autostart else ())):
             path.parent.mkdir(parents=True, exist_ok=True)
-        entry.write_text(format_entry(f"{_command()} %f"), encoding="utf-8")
+        entry.write_text(format_desktop_entry(f"{_command()} %f"), encoding="utf-8")
         shutil.copyfile(str(shipped / f"{ENTRY_NAME}.svg"), icon)
         shutil.copyfile(str(shipped / f"{ENTRY_NAME}.xml"), types)
         if autostart:
-            start.write_text(format_entry(f"{_command()} --kiosk"), encoding="utf-8")
+            start.write_text(format_desktop_entry(f"{_command()} --kiosk"), encoding="utf-8")
     except OSError as error:
         raise make_write_error(error.filename, error) from error
     _update_databases(entry.parent, types.parent.parent)
     return [entry, icon, types, *([start] if autostart else [])]
 
 
-def format_entry(command: str) -> str:
+def format_desktop_entry(command: str) -> str:
     """Return the text of a desktop entry that runs ``command``."""
     return _ENTRY.format(command=command)
 
@@ -111,7 +111,7 @@ def _update_databases(applications: Path, mime: Path) -> None:
                 subprocess.run([tool, str(folder)], check=False, capture_output=True, timeout=60)
 
 
-def remove_entries() -> list[Path]:
+def remove_desktop_entries() -> list[Path]:
     """Remove the existing desktop entries and return their paths.
 
     Raises CommandError if a file cannot be removed, or if the user has no home folder and an XDG variable

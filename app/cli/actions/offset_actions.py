@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING
 from app.cli.actions.change_confirmation import confirm_changes
 from app.cli.change_author import get_change_author
 from app.cli.store_command import open_store
-from app.desk.arithmetic import EntryError, evaluate_expression
+from app.desk.arithmetic import InvalidEntryError, evaluate_expression
 from app.desk.command_errors import EXIT_OK, CommandError
 from app.desk.toml_file import describe_unknown_key
-from app.offsets.change_rules import find_required_right
-from app.offsets.offset_values import format_set_fields
+from app.offsets.change_rules import find_required_access_right
+from app.offsets.offset_values import format_specified_fields
 from app.offsets.offsets_file import KEY_ALIASES, TOOL_TABLE_KEYS, find_range_error, format_value
 from core.access.access_table import ProtectedChange
 from core.message import Message
@@ -30,19 +30,19 @@ from core.store.store_rows import (
     ZERO_CODES,
     FieldType,
     FieldValue,
-    MillRow,
+    MillToolRow,
     OffsetChange,
     OffsetKind,
     OffsetRow,
     PresetRow,
     RowField,
-    ShapeRow,
-    ToolRow,
-    ZeroRow,
+    ToolOffsetRow,
+    ToolShapeRow,
+    ZeroOffsetRow,
     convert_to_inches,
     replace_fields,
 )
-from core.tool_edges import format_edge_name, make_row_number
+from core.tool_edges import format_edge_name, make_edge_row_number
 
 if TYPE_CHECKING:
     from core.store.store import Store
@@ -104,9 +104,9 @@ def _convert_to_inches(kind: OffsetKind, row: OffsetRow) -> dict[str, FieldValue
 
 
 def _line(name: str, row: OffsetRow) -> str:
-    if isinstance(row, ShapeRow):
+    if isinstance(row, ToolShapeRow):
         return f"{name:<3} {_format_shape(row)}"
-    if isinstance(row, ZeroRow):
+    if isinstance(row, ZeroOffsetRow):
         return Message(
             "{name} X {x}  Z {z} mm  C {c}°",
             name=name,
@@ -114,15 +114,15 @@ def _line(name: str, row: OffsetRow) -> str:
             z=f"{row.z:+.3f}",
             c=f"{row.c:+.3f}",
         )
-    if isinstance(row, MillRow | PresetRow):
-        return Message("{name} {row}  (mill, mm)", name=f"{name:<4}", row=format_set_fields(row))
-    r = row.nose_radius if isinstance(row, ToolRow) else row.r
+    if isinstance(row, MillToolRow | PresetRow):
+        return Message("{name} {row}  (mill, mm)", name=f"{name:<4}", row=format_specified_fields(row))
+    r = row.nose_radius if isinstance(row, ToolOffsetRow) else row.r
     x, z, r = convert_to_inches(row.x), convert_to_inches(row.z), convert_to_inches(r)
     line = f"{name:<3} X {x:+.5f}  Z {z:+.5f}  R {r:.5f}"
-    return line + _format_details(row) if isinstance(row, ToolRow) else line
+    return line + _format_details(row) if isinstance(row, ToolOffsetRow) else line
 
 
-def _format_shape(row: ShapeRow) -> str:
+def _format_shape(row: ToolShapeRow) -> str:
     """Return the defined fields of a tool shape in the form in which a user enters them."""
     field_texts = [f"{row.kind} {row.hand}"]
     values: list[FieldValue] = list(row)
@@ -135,7 +135,7 @@ def _format_shape(row: ShapeRow) -> str:
     return "  ".join(field_texts)
 
 
-def _format_details(row: ToolRow) -> str:
+def _format_details(row: ToolOffsetRow) -> str:
     """Return those of a tool's wear, tip, master mark and remark that are set, as text."""
     wear = (
         Message(
@@ -159,7 +159,7 @@ def _set(args: argparse.Namespace) -> int:
         if kind is OffsetKind.TOOL and name in FIELDS_BY_KIND[OffsetKind.SHAPE]
     }
     offset = {name: value for name, value in values.items() if name not in shape}
-    acts = [find_required_right(kind, offset)] if offset else []
+    acts = [find_required_access_right(kind, offset)] if offset else []
     acts += [ProtectedChange.SHAPES] if shape else []
     with open_store() as store:
         reason = ChangeReason(args.why, get_change_author(store, args, *acts))
@@ -201,9 +201,9 @@ def _check_shape(
     CommandError is also raised if the tool has no stored offset yet and ``offset`` does not contain both X
     and Z.
     """
-    from app.desk.stored_shapes import find_mistakes
+    from app.desk.stored_shapes import find_shape_row_mistakes
 
-    row = replace_fields(store.offsets.tool_shapes.read_rows().get(number, ShapeRow()), shape)
+    row = replace_fields(store.offsets.tool_shapes.read_rows().get(number, ToolShapeRow()), shape)
     if not row.kind:
         kinds = FIELDS_BY_KIND[OffsetKind.SHAPE]["kind"].range_text
         raise CommandError(
@@ -224,8 +224,8 @@ def _check_shape(
         raise CommandError(
             Message("{text}; enter both x and z, or touch the tool off first", text=text), "needs-both-axes"
         )
-    tool = replace_fields(tools.get(number, ToolRow()), offset)
-    if mistakes := find_mistakes(row, tool):
+    tool = replace_fields(tools.get(number, ToolOffsetRow()), offset)
+    if mistakes := find_shape_row_mistakes(row, tool):
         raise CommandError(
             f"{format_edge_name(number)}: "
             + "; ".join(f"{wrong.field_name}: {wrong.message}" for wrong in mistakes),
@@ -243,7 +243,7 @@ def _named(text: str) -> tuple[OffsetKind, int]:
         return _MILL_KIND[of_mill[1].upper()], int(of_mill[2])  # the store reports invalid numbers
     edge = _EDGE.fullmatch(text)
     if edge and int(edge[1]) in OFFSET_NUMBERS:
-        return OffsetKind.TOOL, make_row_number(int(edge[1]), int(edge[2]))
+        return OffsetKind.TOOL, make_edge_row_number(int(edge[1]), int(edge[2]))
     match = _OFFSET.fullmatch(text)
     kind = _KIND[match[1].upper()] if match else OffsetKind.TOOL
     if match and int(match[2]) in (ZERO_CODES if kind is OffsetKind.ZERO else OFFSET_NUMBERS):
@@ -331,7 +331,7 @@ def _parse_value(field: RowField, text: str) -> FieldValue:
         return _FLAGS[text.strip().lower()]
     try:
         value = evaluate_expression(text)
-    except EntryError as error:
+    except InvalidEntryError as error:
         raise CommandError(f"{field.name}: {error}", "not-a-number") from error
     if field.field_type is FieldType.INTEGER:
         return int(value) if value.is_integer() else value
@@ -344,11 +344,11 @@ def _clear(args: argparse.Namespace) -> int:
     with open_store() as store:
         if letter in {**_KIND, **_MILL_KIND}:
             table = {**_KIND, **_MILL_KIND}[letter]
-            who = get_change_author(store, args, find_required_right(table))
+            who = get_change_author(store, args, find_required_access_right(table))
             count = store.offsets.get_table(table).remove_all_rows(args.why, author=who).result()
         else:
             kind, number = _named(args.offset)
-            who = get_change_author(store, args, find_required_right(kind))
+            who = get_change_author(store, args, find_required_access_right(kind))
             count = store.offsets.get_table(kind).remove_row(number, args.why, author=who).result()
             letter = _name(kind, number)
     if not count:
@@ -395,7 +395,7 @@ def _format_change(change: OffsetChange) -> str:
 def _undo(args: argparse.Namespace) -> int:
     with open_store() as store:
         kinds = [OffsetKind(args.table)] if args.table else list(OffsetKind)
-        who = get_change_author(store, args, *map(find_required_right, kinds))
+        who = get_change_author(store, args, *map(find_required_access_right, kinds))
         undone = (
             store.offsets.get_table(OffsetKind(args.table)).undo_last_step(args.why, who=who)
             if args.table

@@ -18,10 +18,10 @@ from typing import NamedTuple
 import resources
 from app import VERSION
 from app.cli.bug_report.private_texts import (
-    format_without_names,
+    format_message_without_names,
     mask_machine_file,
     mask_program_texts,
-    remove_record_name,
+    remove_scope_record_name,
 )
 from app.cli.bug_report.replaced_names import PrivateValueReplacer
 from app.compose.machine.machine_setup import read_machine_file_in_use
@@ -45,14 +45,14 @@ class ReportPart(NamedTuple):
     text: str
 
 
-class _Stored(NamedTuple):
+class _StoredData(NamedTuple):
     """Data from the TurnDesk store that the bug report uses."""
 
     user_names: frozenset[str] = frozenset()
     program_names: frozenset[str] = frozenset()
     machine_file: str | None = None
     latest_program: tuple[str, str] | None = None  # name and text of the program that was started last
-    events: tuple[str, ...] = ()
+    event_texts: tuple[str, ...] = ()
     damage_text: str = ""
 
 
@@ -77,7 +77,7 @@ def generate_bug_report(machine_file: str | None = None, program: Path | None = 
         ReportPart("Store", stored.damage_text or "can be read"),
         *_machine_part(machine_file or stored.machine_file, replacements, named=machine_file is not None),
         *_program_part(program, stored.latest_program),
-        *_log_parts(stored.events),
+        *_log_parts(stored.event_texts),
     ]
     return "\n".join(f"== {part.title} ==\n{replacements(part.text).rstrip()}\n" for part in parts)
 
@@ -106,7 +106,7 @@ def _users() -> Iterator[str]:
         yield from (entry.pw_name, full, *full.split())
 
 
-def _stored() -> _Stored:
+def _stored() -> _StoredData:
     """Return the store's data for the report.
 
     If the store cannot be read, the result contains only the error code.
@@ -116,21 +116,23 @@ def _stored() -> _Stored:
             with store.read() as connection:
                 people, programs = _stored_names(connection)
             runs = sorted(
-                (row for row in store.runs.read_records() if row.started), key=lambda row: row.started or ""
+                (row for row in store.runs.read_run_records() if row.started),
+                key=lambda row: row.started or "",
             )
             events = store.events.read_events(limit=MAX_LOG_LINES)
             machine = read_machine_file_in_use(store.settings)
-            return _Stored(
+            return _StoredData(
                 frozenset(people),
                 frozenset(programs),
                 machine,
                 _latest(store, runs[-1].program) if runs else None,
                 tuple(
-                    f"{row.at} {row.kind} line {row.line}: {format_without_names(row.text)}" for row in events
+                    f"{row.at} {row.kind} line {row.line}: {format_message_without_names(row.text)}"
+                    for row in events
                 ),
             )
     except CodedError as error:
-        return _Stored(damage_text=f"cannot be read: {error.code}")
+        return _StoredData(damage_text=f"cannot be read: {error.code}")
 
 
 def _latest(store: Store, name: str) -> tuple[str, str] | None:
@@ -181,18 +183,18 @@ def _shipped_strings() -> frozenset[str]:
     """Return all strings and names in the shipped machine files, which are public."""
     found: set[str] = set()
 
-    def add(value: object) -> None:
+    def add_strings(value: object) -> None:
         if isinstance(value, str):
             found.add(value)
         elif isinstance(value, dict):
             for each in value.values():
-                add(each)
+                add_strings(each)
         elif isinstance(value, list):
             for each in value:
-                add(each)
+                add_strings(each)
 
     for path in sorted((Path(resources.__file__).parent / "machines").glob("*.toml")):
-        add(tomllib.loads(path.read_text(encoding="utf-8")))
+        add_strings(tomllib.loads(path.read_text(encoding="utf-8")))
     return frozenset(found)
 
 
@@ -228,7 +230,7 @@ def _log_parts(events: tuple[str, ...]) -> Iterator[ReportPart]:
     if (log := folder / "turndesk.log").is_file():
         yield ReportPart("Log of faults", _last_lines(log, str))
     if run := _newest(folder, "*.jsonl"):
-        yield ReportPart("Newest run without a screen", _last_lines(run, remove_record_name))
+        yield ReportPart("Newest run without a screen", _last_lines(run, remove_scope_record_name))
     if events:
         yield ReportPart("Newest events", "\n".join(events))
 

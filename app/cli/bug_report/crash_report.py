@@ -93,24 +93,27 @@ def _try_write(folder: Path, text: str) -> Path | None:
 
 @contextmanager
 def catch_interrupts() -> Iterator[None]:
-    """Remember each interrupt that Python drops inside the block. ``raise_interrupt`` then raises it."""
+    """Remember each interrupt that Python drops inside the block.
+
+    ``raise_dropped_interrupt`` then raises it.
+    """
     before = sys.unraisablehook
 
-    def keep(hook_args: UnraisableHookArgs) -> None:
+    def record_interrupt(hook_args: UnraisableHookArgs) -> None:
         if issubclass(hook_args.exc_type, KeyboardInterrupt):
             _dropped.append(hook_args.exc_type)
         else:
             before(hook_args)
 
     _dropped.clear()
-    sys.unraisablehook = keep
+    sys.unraisablehook = record_interrupt
     try:
         yield
     finally:
         sys.unraisablehook = before
 
 
-def raise_interrupt() -> None:
+def raise_dropped_interrupt() -> None:
     """Raise KeyboardInterrupt once if an interrupt was dropped."""
     if _dropped:
         _dropped.clear()

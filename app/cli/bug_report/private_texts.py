@@ -29,11 +29,11 @@ def mask_program_texts(text: str) -> str:
     The length and position of each text do not change.
     """
 
-    def hidden(found: re.Match[str]) -> str:
+    def mask_match(found: re.Match[str]) -> str:
         start = found["name"] or ""
         return start + re.sub(r"\w", "x", found[0][len(start) :])
 
-    return _COMMENTS.sub(hidden, text)
+    return _COMMENTS.sub(mask_match, text)
 
 
 def mask_machine_file(text: str, public_strings: Collection[str], replacer: PrivateValueReplacer) -> str:
@@ -77,7 +77,7 @@ def _parts(line: str, replaced: Callable[[re.Match[str]], str]) -> Iterator[str]
         end = string.end()
 
 
-def remove_record_name(log_line: str) -> str:
+def remove_scope_record_name(log_line: str) -> str:
     """Return a line of a program run's event log without the name of its scope recording."""
     try:
         event = json.loads(log_line)
@@ -87,7 +87,7 @@ def remove_record_name(log_line: str) -> str:
     return json.dumps(event, ensure_ascii=False)
 
 
-def format_without_names(text: str) -> str:
+def format_message_without_names(text: str) -> str:
     """Return a message as its template and its numeric values, without names.
 
     A message that is a plain string is returned unchanged.

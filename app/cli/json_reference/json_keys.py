@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.cli.json_reference.offsets_keys import OFFSETS_HISTORY_OUTPUT, OFFSETS_SHOW_OUTPUT
-from app.compose.optional_features import extras, insert_after
+from app.compose.optional_features import extras, insert_items_after
 from core.json_keys import JsonOutput, declare_keys, declare_row_keys, prefix_keys
 from core.records.record import Channel
 
@@ -440,7 +440,7 @@ _OWN_OUTPUTS = (
     ),
 )
 ALL_OUTPUTS = tuple(
-    insert_after(
+    insert_items_after(
         _OWN_OUTPUTS,
         lambda output: output.command,
         [

@@ -67,7 +67,7 @@ undoes), `at`, the number, the row before and after the change as `old_…` and 
 """
 
 
-def generate_page() -> str:
+def generate_json_page() -> str:
     """Return the complete reference page as Markdown."""
     lines = [_HEAD.rstrip("\n"), *_commands(), *_shop_floor(), *_store()]
     return "\n".join([_TITLE, *_contents(), *lines]) + "\n"
@@ -131,7 +131,7 @@ def _wrapped(text: str) -> list[str]:
 
 def main(arguments: list[str]) -> int:
     """Write the reference page to the file named in the arguments."""
-    Path(arguments[0]).write_text(generate_page(), encoding="utf-8")
+    Path(arguments[0]).write_text(generate_json_page(), encoding="utf-8")
     return 0
 
 

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from core.json_keys import JsonKey, JsonOutput, declare_keys, declare_row_keys, prefix_keys
 from core.store import table_keys
-from core.store.store_rows import MillRow, PresetRow, SecondaryRow, ShapeRow, ToolRow, ZeroRow
+from core.store.store_rows import (
+    MillToolRow,
+    PresetRow,
+    SecondaryOffsetRow,
+    ToolOffsetRow,
+    ToolShapeRow,
+    ZeroOffsetRow,
+)
 
 
 def _inch_keys(columns: tuple[JsonKey, ...]) -> tuple[JsonKey, ...]:
@@ -16,11 +23,11 @@ def _inch_keys(columns: tuple[JsonKey, ...]) -> tuple[JsonKey, ...]:
 
 
 _OFFSETS = {
-    "tool": _inch_keys(declare_row_keys("", ToolRow, table_keys.TOOL_OFFSET_COLUMNS)),
-    "secondary": _inch_keys(declare_row_keys("", SecondaryRow, table_keys.SECONDARY_OFFSET_COLUMNS)),
-    "zero": declare_row_keys("", ZeroRow, table_keys.ZERO_OFFSET_COLUMNS),
-    "shape": _inch_keys(declare_row_keys("", ShapeRow, table_keys.TOOL_SHAPE_COLUMNS)),
-    "mill tool": declare_row_keys("", MillRow, table_keys.MILL_TOOL_COLUMNS),
+    "tool": _inch_keys(declare_row_keys("", ToolOffsetRow, table_keys.TOOL_OFFSET_COLUMNS)),
+    "secondary": _inch_keys(declare_row_keys("", SecondaryOffsetRow, table_keys.SECONDARY_OFFSET_COLUMNS)),
+    "zero": declare_row_keys("", ZeroOffsetRow, table_keys.ZERO_OFFSET_COLUMNS),
+    "shape": _inch_keys(declare_row_keys("", ToolShapeRow, table_keys.TOOL_SHAPE_COLUMNS)),
+    "mill tool": declare_row_keys("", MillToolRow, table_keys.MILL_TOOL_COLUMNS),
     "preset": declare_row_keys("", PresetRow, table_keys.PRESET_COLUMNS),
 }
 _NUMBER_KEYS = {

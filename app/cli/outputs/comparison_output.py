@@ -35,7 +35,7 @@ def make_comparison_json(
         source, this, job.comparison_offsets.setup, job.machine, is_ideal=job.uses_ideal_times
     )
     there, length, volume = (
-        found.report,
+        found.proof_report,
         get_length_converter(report.dialect),
         get_volume_converter(report.dialect),
     )
@@ -43,14 +43,23 @@ def make_comparison_json(
         (abs(p.difference_mm) for p in found.feature_pairs if p.difference_mm is not None), default=0.0
     )
     return {
-        "offsets": job.comparison_offsets.name,
+        "offsets": job.comparison_offsets.offsets_file_name,
         "features": [_pair_json(pair, report.dialect) for pair in found.feature_pairs],
         "differing": found.differing_feature_count,
         "largest": length(furthest),
-        "removed_volume": [each and volume(each.removed_volume_mm3) for each in (part, found.part)],
-        "cycle_time_s": [round_seconds(report.times.cycle_s), round_seconds(there.times.cycle_s)],
-        "cutting_time_s": [round_seconds(report.times.cutting_s), round_seconds(there.times.cutting_s)],
-        "rapid_time_s": [round_seconds(report.times.rapid_s), round_seconds(there.times.rapid_s)],
+        "removed_volume": [each and volume(each.removed_volume_mm3) for each in (part, found.part_report)],
+        "cycle_time_s": [
+            round_seconds(report.program_times.cycle_time_s),
+            round_seconds(there.program_times.cycle_time_s),
+        ],
+        "cutting_time_s": [
+            round_seconds(report.program_times.cutting_time_s),
+            round_seconds(there.program_times.cutting_time_s),
+        ],
+        "rapid_time_s": [
+            round_seconds(report.program_times.rapid_time_s),
+            round_seconds(there.program_times.rapid_time_s),
+        ],
         "gone": [make_diagnostic_json(each) for each in found.resolved_findings],
         "added": [make_diagnostic_json(each) for each in found.new_findings],
     }

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from app.cli.outputs.units import (
     Json,
     get_path_feed,
-    make_block_head,
+    make_common_block_json,
     round_degrees,
     round_millimeters,
     round_seconds,
@@ -32,7 +32,7 @@ def make_block_json(block: Block, source_line: str, start_s: float, end_s: float
     feed, mode = _feed_and_unit(block)
     swivel = block.swivel
     shown = {
-        **make_block_head(block, source_line),
+        **make_common_block_json(block, source_line),
         "units": "mm",
         **({} if swivel is None else _position_json(swivel)),
         "feed": feed,
@@ -44,7 +44,7 @@ def make_block_json(block: Block, source_line: str, start_s: float, end_s: float
     return shown | _plane_json(swivel) if block.kind == "plane" and swivel is not None else shown
 
 
-def make_mill_json(report: ProofReport, mill: MillResults) -> Json:
+def make_mill_proof_json(report: ProofReport, mill: MillResults) -> Json:
     """Return the JSON keys of a mill's proof that differ from a lathe's proof.
 
     ``limits`` are machine positions, and ``final`` has the positions of all axes.
@@ -53,8 +53,8 @@ def make_mill_json(report: ProofReport, mill: MillResults) -> Json:
         name.lower(): [round_millimeters(low), round_millimeters(high)]
         for name, (low, high) in zip(mill.axis_names, mill.axis_ranges, strict=False)
     }
-    limits["rpm"] = [round(rpm, 3) for rpm in report.ranges.rpm_range]
-    limits["feed_mm_min"] = [round(speed * _PER_MINUTE, 6) for speed in report.ranges.feed_range]
+    limits["rpm"] = [round(rpm, 3) for rpm in report.program_ranges.rpm_range]
+    limits["feed_mm_min"] = [round(speed * _PER_MINUTE, 6) for speed in report.program_ranges.feed_range]
     return {
         "limits": limits,
         "final": {} if mill.final_position is None else _position_json(mill.final_position),

@@ -18,7 +18,7 @@ from app.cli.outputs.units import (
     MM_PER_INCH,
     MM_S_PER_FT_MIN,
     Json,
-    make_block_head,
+    make_common_block_json,
     round_degrees,
     round_seconds,
     to_inches,
@@ -124,7 +124,7 @@ def make_block_json(block: Block, source_line: str, start_s: float, end_s: float
     circular = arc or block.kind == "plane-arc"
     turned = block.kind == "rotate"  # its speed is in rpm
     return {
-        **make_block_head(block, source_line),
+        **make_common_block_json(block, source_line),
         "x": to_inches(block.x),
         "z": to_inches(block.z),
         "c": round_degrees(block.c),

@@ -14,7 +14,7 @@ from app.cli.outputs.units import (
 )
 from core.language.source import Dialect
 from core.message import Message, collect_values
-from core.tool_edges import NamedTool
+from core.tool_edges import NamedToolNumber
 
 if TYPE_CHECKING:
     from core.language.diagnostics import Diagnostic
@@ -118,7 +118,7 @@ def make_diagnostic_json(diagnostic: Diagnostic) -> Json:
     }
 
 
-def count_stops(report: ProofReport, *, optional_stop: bool) -> int:
+def count_operator_stops(report: ProofReport, *, optional_stop: bool) -> int:
     """Return how many times one cycle waits for the operator."""
     return report.stop_count + (report.optional_stop_count if optional_stop else 0)
 
@@ -130,12 +130,12 @@ def make_report_json(
 
     Lengths are in inches for OmniTurn programs, and otherwise in mm. ``stock`` is null on a mill.
     """
-    reach, times = report.ranges, report.times
+    reach, times = report.program_ranges, report.program_times
     mill: Json = {}
     if report.mill_results is not None:
-        from app.cli.outputs.klartext_output import make_mill_json
+        from app.cli.outputs.klartext_output import make_mill_proof_json
 
-        mill = make_mill_json(report, report.mill_results)
+        mill = make_mill_proof_json(report, report.mill_results)
     inch, length = report.dialect is Dialect.OMNITURN, get_length_converter(report.dialect)
     return {
         "file": file,
@@ -145,16 +145,16 @@ def make_report_json(
         "elementary": report.elementary_block_count,
         "diagnostics": [make_diagnostic_json(d) for d in report.diagnostics],
         "silenced": sum(1 for d in report.diagnostics if d.downgrade_reason),
-        "cycle_time_s": round_seconds(times.cycle_s),
-        "cutting_time_s": round_seconds(times.cutting_s),
-        "rapid_time_s": round_seconds(times.rapid_s),
-        "dwell_time_s": round_seconds(times.dwell_s),
-        "wait_time_s": round_seconds(times.wait_s),
-        "stops": count_stops(report, optional_stop=optional_stop),
+        "cycle_time_s": round_seconds(times.cycle_time_s),
+        "cutting_time_s": round_seconds(times.cutting_time_s),
+        "rapid_time_s": round_seconds(times.rapid_time_s),
+        "dwell_time_s": round_seconds(times.dwell_time_s),
+        "wait_time_s": round_seconds(times.wait_time_s),
+        "stops": count_operator_stops(report, optional_stop=optional_stop),
         "cutting_length": length(report.cutting_length_mm),
         "rapid_length": length(report.rapid_length_mm),
         "corner_tolerance": length(report.corner_tolerance_mm),
-        "tools": [each.name if isinstance(each, NamedTool) else each for each in report.tool_numbers],
+        "tools": [each.name if isinstance(each, NamedToolNumber) else each for each in report.tool_numbers],
         "limits": {
             "x": [length(x) for x in reach.x_range],
             "z": [length(z) for z in reach.z_range],

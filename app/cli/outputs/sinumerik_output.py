@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from app.cli.outputs.units import (
     Json,
     get_path_feed,
-    make_block_head,
+    make_common_block_json,
     round_degrees,
     round_millimeters,
     round_seconds,
@@ -36,7 +36,7 @@ def make_block_json(block: Block, source_line: str, start_s: float, end_s: float
     arc, doubled = block.kind == "arc", 2.0 if block.modal.diameter else 1.0
     feed, mode = _feed_and_unit(block)
     return {
-        **make_block_head(block, source_line),
+        **make_common_block_json(block, source_line),
         "units": "mm",
         "x": round_millimeters(block.x * doubled),
         "z": round_millimeters(block.z),
@@ -81,4 +81,6 @@ def _feed_and_unit(block: Block) -> tuple[float | None, str | None]:
 def _round_angle(value: float, block: Block) -> float:
     """Return a rounded angle in degrees. For a modulo axis, the angle is at least 0 and less than 360."""
     angle = round_degrees(value)
-    return round_degrees(angle % _DEGREES_PER_REV) % _DEGREES_PER_REV if block.modal.is_c_modulo else angle
+    return (
+        round_degrees(angle % _DEGREES_PER_REV) % _DEGREES_PER_REV if block.modal.is_c_axis_modulo else angle
+    )

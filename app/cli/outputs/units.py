@@ -20,7 +20,7 @@ _PER_MINUTE = 60.0
 Json = dict[str, object]
 
 
-def make_block_head(block: Block, source_line: str) -> Json:
+def make_common_block_json(block: Block, source_line: str) -> Json:
     """Return the first keys of an elementary block's JSON object, which are the same for all languages."""
     return {
         "n": block.n,

@@ -18,22 +18,22 @@ from app.cli.part_options import apply_stored_part
 from app.cli.program_options import read_source
 from app.cli.proofs.progress_bar import ProgressBar
 from app.cli.proofs.proof_cache import ProofCache
-from app.cli.proofs.proof_job import JobsByMachine, ProofJob, describe_machine_choice
+from app.cli.proofs.proof_job import ProofJob, ProofJobsByMachine, describe_machine_choice
 from app.cli.proofs.proof_pool import (
     WORKER_KILLED_TEXT,
     LocalWorkers,
     WorkDistributor,
-    WorkerSource,
+    WorkerProvider,
     count_cores,
 )
 from app.cli.proofs.proof_work import (
     Proof,
     VersionMismatchError,
     get_code_hash,
-    prove_pickled,
+    prove_pickled_program,
 )
 from app.cli.proofs.report_file import ReportFile, open_report
-from app.compose.optional_features import find_worker_class
+from app.compose.optional_features import find_worker_class_name
 from app.compose.part_data import read_stored_parts
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, EXIT_USAGE, CommandError
 from core.language.source import ProgramSource
@@ -48,7 +48,7 @@ class ProgramFiles:
     """Program files found, sorted by name, and the number of files that are not programs."""
 
     paths: tuple[Path, ...]
-    other_count: int
+    other_file_count: int
 
 
 def find_programs(names: Iterable[str]) -> ProgramFiles:
@@ -125,42 +125,46 @@ def _is_program(path: Path) -> bool:
     return path.suffix.lower() in PROGRAM_EXTENSIONS and not path.name.startswith(".") and path.is_file()
 
 
-def prove_programs(args: argparse.Namespace, jobs: JobsByMachine) -> int:
+def prove_programs(args: argparse.Namespace, jobs: ProofJobsByMachine) -> int:
     """Prove all programs. Return 1 if a program has errors, or 2 if a program cannot be read."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     files = find_programs(args.files)
     with open_report(args) as report:
-        run = _Run(args, jobs, files, _workers(args), report)
+        run = _FolderProofRun(args, jobs, files, _workers(args), report)
         run.prove_programs()
-    return run.print_outcome()
+    return run.print_results()
 
 
-def _workers(args: argparse.Namespace) -> WorkerSource:
+def _workers(args: argparse.Namespace) -> WorkerProvider:
     if args.scheduler is None:
         return LocalWorkers(args.jobs if args.jobs is not None else count_cores())
-    module, _, name = find_worker_class().rpartition(".")
-    source: WorkerSource = getattr(import_module(module), name)(args.scheduler)
+    module, _, name = find_worker_class_name().rpartition(".")
+    source: WorkerProvider = getattr(import_module(module), name)(args.scheduler)
     return source
 
 
 @dataclass(frozen=True, slots=True)
-class _Unit:
+class _ProofUnit:
     """A program to prove, with its index in the order of names and its location in the proof cache."""
 
     program_index: int
     source: ProgramSource
     job: ProofJob
-    key: str
+    cache_key: str
     cache: ProofCache | None
 
 
-class _Run:
+class _FolderProofRun:
     """One execution of the command, with the programs to prove and the results reported so far."""
 
     def __init__(
-        self, args: argparse.Namespace, jobs: JobsByMachine, files: ProgramFiles, workers: WorkerSource,
+        self,
+        args: argparse.Namespace,
+        jobs: ProofJobsByMachine,
+        files: ProgramFiles,
+        workers: WorkerProvider,
         report: ReportFile | None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         from app.desk.data_folder import find_data_folder
 
         self._args, self._jobs, self._files, self._workers = args, jobs, files, workers
@@ -177,7 +181,7 @@ class _Run:
 
     def prove_programs(self) -> None:
         """Prove all programs, and save completed proofs even if the command is interrupted."""
-        proving: WorkDistributor[_Unit, Proof] = WorkDistributor(self._workers, self._submit)
+        proving: WorkDistributor[_ProofUnit, Proof] = WorkDistributor(self._workers, self._submit)
         results = proving.iterate_results(self._iterate_units())
         try:
             with self._progress:
@@ -195,25 +199,25 @@ class _Run:
         finally:
             results.close()
             for cache in self._caches.values():
-                cache.delete_oldest()
+                cache.delete_oldest_proofs()
 
-    def print_outcome(self) -> int:
+    def print_results(self) -> int:
         """Print the table of results and return the exit status.
 
         With --json, print only the number of files that are not programs.
         """
         rows = [(path, self._proofs[k]) for k, path in enumerate(self._files.paths)]
-        others = self._files.other_count
+        others = self._files.other_file_count
         if not self._args.json:
-            sys.stdout.write(format_table(rows, others))
+            sys.stdout.write(format_proof_table(rows, others))
         elif others:
             sys.stderr.write(f"turndesk: {others} other file{'s' * (others > 1)} skipped\n")
         return max(_status(proof) for _, proof in rows)
 
-    def _submit(self, executor: Executor, unit: _Unit) -> Future[Proof]:
-        return executor.submit(prove_pickled, unit.job.pickled_job, self._version, unit.source)
+    def _submit(self, executor: Executor, unit: _ProofUnit) -> Future[Proof]:
+        return executor.submit(prove_pickled_program, unit.job.pickled_job, self._version, unit.source)
 
-    def _iterate_units(self) -> Iterator[_Unit]:
+    def _iterate_units(self) -> Iterator[_ProofUnit]:
         """Yield the next program without a saved proof whenever a worker becomes available."""
         for index, path in enumerate(self._files.paths):
             try:
@@ -228,12 +232,12 @@ class _Run:
                 self._get_cache(machine, common),
                 _program_data(job.part_settings) if job is not common else None,
             )
-            key = cache.get_key(source, own) if cache is not None else ""
+            key = cache.get_cache_key(source, own) if cache is not None else ""
             found = cache.find_proof(key) if cache is not None else None
             if found is not None:
                 self._add(index, found)
             else:
-                yield _Unit(index, source, job, key, cache)
+                yield _ProofUnit(index, source, job, key, cache)
 
     def _get_cache(self, machine: str, job: ProofJob) -> ProofCache | None:
         """Return the proof cache for this machine, or None if caching is off.
@@ -255,18 +259,18 @@ class _Run:
             common, part_settings=apply_stored_part(common.part_settings, source.name, kept, self._args)
         )
 
-    def _kept(self, unit: _Unit, made: Proof | BaseException) -> Proof:
+    def _kept(self, unit: _ProofUnit, made: Proof | BaseException) -> Proof:
         if isinstance(made, BaseException):
             return Proof(
                 {}, failure_reason=f"{self._files.paths[unit.program_index]}: {self._describe_error(made)}"
             )
         if unit.cache is not None:
-            unit.cache.save_proof(unit.key, made)
+            unit.cache.save_proof(unit.cache_key, made)
         return made
 
     def _describe_error(self, error: BaseException) -> str:
         """Return the reason why a program could not be proved."""
-        if isinstance(error, self._workers.killed_exception):
+        if isinstance(error, self._workers.worker_killed_exception):
             return WORKER_KILLED_TEXT
         if isinstance(error, VersionMismatchError):
             return (
@@ -289,8 +293,8 @@ class _Run:
         )
 
     def _add(self, index: int, proof: Proof) -> None:
-        if proof.report:
-            proof.report["file"] = str(self._files.paths[index])
+        if proof.report_json:
+            proof.report_json["file"] = str(self._files.paths[index])
         self._proofs[index] = proof
         while self._told in self._proofs:
             self._print_result(self._files.paths[self._told], self._proofs[self._told])
@@ -304,7 +308,7 @@ class _Run:
         if proof.failure_reason:
             sys.stderr.write(f"turndesk: {proof.failure_reason}\n")
         elif self._args.json:
-            sys.stdout.write(json.dumps(proof.report) + "\n")
+            sys.stdout.write(json.dumps(proof.report_json) + "\n")
             sys.stdout.flush()
         if self._report is not None:
             self._report.add_proof(path, proof)
@@ -327,14 +331,14 @@ _HEAD = "verdict     errors  warnings      cycle s       removed  program\n"
 ProofRow = tuple[Path, Proof]
 
 
-def format_table(rows: Sequence[ProofRow], other_count: int) -> str:
+def format_proof_table(rows: Sequence[ProofRow], other_count: int) -> str:
     """Return the complete table as text. ``other_count`` is the number of files that are not programs."""
     return (
         _HEAD + "".join(_line(path, proof) for path, proof in rows) + _sum(rows, other_count) + _slowest(rows)
     )
 
 
-def format_verdict(proof: Proof) -> str:
+def format_proof_verdict(proof: Proof) -> str:
     """Return the result of a proof in one or two words."""
     if proof.failure_reason:
         return "not proved"
@@ -342,13 +346,13 @@ def format_verdict(proof: Proof) -> str:
 
 
 def _line(path: Path, proof: Proof) -> str:
-    word = format_verdict(proof)
+    word = format_proof_verdict(proof)
     if proof.failure_reason:
         return f"{word:10s}{'':38s}  {path}\n            {proof.failure_reason}\n"
     first = next(proof.iterate_findings("error"), None)
     return (
         f"{word:10s}{proof.count_findings('error'):8d}{proof.count_findings('warning'):10d}"
-        f"{_number(proof.report['cycle_time_s']):13.2f}{_removed(proof):>14s}  {path}\n"
+        f"{_number(proof.report_json['cycle_time_s']):13.2f}{_removed(proof):>14s}  {path}\n"
         + _format_comparison(proof)
         + (f"            line {first['line']}: {first['message']}\n" if first else "")
     )
@@ -356,10 +360,10 @@ def _line(path: Path, proof: Proof) -> str:
 
 def _format_comparison(proof: Proof) -> str:
     """Return one line of text that shows the effect of the offsets of --compare."""
-    found = proof.report.get("compare")
+    found = proof.report_json.get("compare")
     if not isinstance(found, dict):
         return ""
-    unit = "in" if proof.report["dialect"] == "omniturn" else "mm"
+    unit = "in" if proof.report_json["dialect"] == "omniturn" else "mm"
     here, there = found["cycle_time_s"]
     return (
         f"            with {found['offsets']}: {found['differing']} of {len(found['features'])} diameters and"
@@ -369,10 +373,10 @@ def _format_comparison(proof: Proof) -> str:
 
 
 def _removed(proof: Proof) -> str:
-    stock = proof.report.get("stock")
+    stock = proof.report_json.get("stock")
     if not isinstance(stock, dict):
         return "–"
-    unit = "in³" if proof.report["dialect"] == "omniturn" else "mm³"
+    unit = "in³" if proof.report_json["dialect"] == "omniturn" else "mm³"
     return f"{stock['removed_volume']:.4g} {unit}"
 
 
@@ -382,7 +386,7 @@ def _number(value: object) -> float:
 
 
 def _sum(rows: Sequence[ProofRow], others: int) -> str:
-    words = Counter(format_verdict(proof) for _, proof in rows)
+    words = Counter(format_proof_verdict(proof) for _, proof in rows)
     parts = [f"{words['proved']} proved"]
     parts += [Message("{words} with errors", words=words["errors"])] if words["errors"] else []
     parts += [Message("{words} not proved", words=words["not proved"])] if words["not proved"] else []

@@ -42,7 +42,7 @@ class ProofCache:
         self._job = sha256(job_text.encode()).digest()
         self._full = False
 
-    def get_key(self, source: ProgramSource, program_data: object = None) -> str:
+    def get_cache_key(self, source: ProgramSource, program_data: object = None) -> str:
         """Return the cache key of a program's proof.
 
         ``program_data`` are further data of this program on which the proof depends.
@@ -67,7 +67,7 @@ class ProofCache:
         if self._full:
             return
         path = self._path(key)
-        kept = {"report": proof.report, "section": proof.report_section}
+        kept = {"report": proof.report_json, "section": proof.report_section}
         aside = path.with_name(f"{path.name}.{os.getpid()}{_TEMPORARY_SUFFIX}")
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -78,21 +78,23 @@ class ProofCache:
             aside.unlink(missing_ok=True)
             sys.stderr.write(f"turndesk: proofs cannot be stored in {self._folder} ({error.strerror})\n")
 
-    def delete_oldest(self) -> None:
+    def delete_oldest_proofs(self) -> None:
         """Delete the oldest proofs if the cache is too large.
 
         Temporary files of killed processes are also deleted.
         """
         try:
-            there = [_File(path, *_stamp(path)) for path in self._folder.glob("??/*")]
+            there = [_CacheFile(path, *_stamp(path)) for path in self._folder.glob("??/*")]
         except OSError:
             return
         stale = [
             f
             for f in there
-            if f.path.suffix == _TEMPORARY_SUFFIX and f.last_used_s < time.time() - _STALE_AGE_S
+            if f.path.suffix == _TEMPORARY_SUFFIX and f.last_used_time_s < time.time() - _STALE_AGE_S
         ]
-        kept = sorted((f for f in there if f.path.suffix != _TEMPORARY_SUFFIX), key=lambda f: f.last_used_s)
+        kept = sorted(
+            (f for f in there if f.path.suffix != _TEMPORARY_SUFFIX), key=lambda f: f.last_used_time_s
+        )
         size = sum(each.size_bytes for each in kept)
         if size > self._largest:
             while kept and size > _TRIM_FRACTION * self._largest:
@@ -106,9 +108,9 @@ class ProofCache:
 
 
 @dataclass(frozen=True, slots=True)
-class _File:
+class _CacheFile:
     path: Path
-    last_used_s: float  # =
+    last_used_time_s: float  # =
     size_bytes: int
 
 

@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from core.interpreter.shared.job_setup import Setup
+    from core.interpreter.shared.job_setup import InterpreterSetup
     from core.language.source import ProgramSource
     from core.machine.machine_model import Machine
     from core.proving.program_tools import PartSettings
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 class ComparisonOffsets:
     """Name of the offsets file of --compare, and the setup that uses its offsets."""
 
-    name: str
-    setup: Setup
+    offsets_file_name: str
+    setup: InterpreterSetup
 
 
 @dataclass(frozen=True)
@@ -31,10 +31,10 @@ class ProofJob:
     """Common data of programs that are proved together: machine, setup, part and options."""
 
     machine: Machine
-    setup: Setup
+    setup: InterpreterSetup
     part_settings: PartSettings
     uses_ideal_times: bool = False
-    has_optional_stop: bool = False
+    is_optional_stop_on: bool = False
     needs_report_section: bool = False  # whether a section for a report is required
     comparison_offsets: ComparisonOffsets | None = None
 
@@ -47,7 +47,7 @@ class ProofJob:
 
 
 @dataclass(slots=True)
-class JobsByMachine:
+class ProofJobsByMachine:
     """Proof jobs by machine.
 
     There is one job for the machine that the options specify, and one for each shipped machine that a
@@ -66,9 +66,9 @@ class JobsByMachine:
         """
         if self.arguments.machine is not None:
             return ""
-        from app.compose.machine.machine_selection import select_machine
+        from app.compose.machine.machine_selection import select_mill_for_program
 
-        return select_machine(source)
+        return select_mill_for_program(source)
 
     def get_job(self, machine: str) -> ProofJob:
         """Return the proof job for a machine name. Raises CommandError if the machine is invalid.

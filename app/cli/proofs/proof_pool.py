@@ -13,7 +13,7 @@ from collections.abc import Callable, Generator, Iterator
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
 from typing import Generic, Protocol, TypeVar
 
-from app.cli.bug_report.crash_report import raise_interrupt
+from app.cli.bug_report.crash_report import raise_dropped_interrupt
 
 WorkUnit = TypeVar("WorkUnit")
 UnitResult = TypeVar("UnitResult")
@@ -36,16 +36,16 @@ def count_cores() -> int:
     return os.cpu_count() or 1
 
 
-class WorkerSource(Protocol):
+class WorkerProvider(Protocol):
     """Source of worker processes for units of work.
 
-    ``killed_exception`` is the exception that a unit of work raises if its worker is killed.
+    ``worker_killed_exception`` is the exception that a unit of work raises if its worker is killed.
     """
 
-    killed_exception: type[BaseException]
+    worker_killed_exception: type[BaseException]
 
     @property
-    def max_units_in_progress(self) -> int:
+    def max_active_work_units(self) -> int:
         """Return the maximum number of units of work that may be in progress at the same time."""
 
     def start_workers(self, worker_count: int | None = None, /) -> Executor:
@@ -63,8 +63,8 @@ class LocalWorkers:
 
     def __init__(self, worker_count: int) -> None:
         self.worker_count = worker_count
-        self.killed_exception: type[BaseException] = BrokenExecutor
-        self.max_units_in_progress = worker_count + _EXTRA_UNITS
+        self.worker_killed_exception: type[BaseException] = BrokenExecutor
+        self.max_active_work_units = worker_count + _EXTRA_UNITS
         self._before = set(multiprocessing.active_children())
         method = "forkserver" if sys.platform == "linux" else "spawn"
         self._context = multiprocessing.get_context(method)
@@ -111,7 +111,7 @@ class WorkDistributor(Generic[WorkUnit, UnitResult]):
     """
 
     def __init__(
-        self, workers: WorkerSource, submit_unit: Callable[[Executor, WorkUnit], Future[UnitResult]]
+        self, workers: WorkerProvider, submit_unit: Callable[[Executor, WorkUnit], Future[UnitResult]]
     ) -> None:
         self._workers, self._submit = workers, submit_unit
         self._running: dict[Future[UnitResult], WorkUnit] = {}
@@ -128,11 +128,11 @@ class WorkDistributor(Generic[WorkUnit, UnitResult]):
         done = False
         try:
             while True:
-                raise_interrupt()
+                raise_dropped_interrupt()
                 for unit in units:
                     executor = executor or self._workers.start_workers()
                     self._give(executor, unit)
-                    if len(self._running) >= self._workers.max_units_in_progress or self._again:
+                    if len(self._running) >= self._workers.max_active_work_units or self._again:
                         break
                 if not self._running and not self._again:
                     break

@@ -13,7 +13,7 @@ from app.cli.proofs.proof_job import ProofJob
 
 if TYPE_CHECKING:
     from app.cli.outputs.units import Json
-    from app.report.run_record import RunRecorder
+    from app.report.run_record import ReportRecorder
     from core.language.source import ProgramSource
     from core.proving.proof_report import PartReport, ProofReport
 
@@ -30,7 +30,7 @@ class Proof:
     duration of the proof in seconds, or 0 for a proof from the cache.
     """
 
-    report: Json
+    report_json: Json
     report_section: str = ""
     failure_reason: str = ""
     duration_s: float = 0.0
@@ -41,7 +41,7 @@ class Proof:
 
     def iterate_findings(self, severity: str) -> Iterator[Json]:
         """Return an iterator over the findings with this severity."""
-        found = self.report.get("diagnostics", [])
+        found = self.report_json.get("diagnostics", [])
         assert isinstance(found, list)
         return (each for each in found if each["severity"] == severity)
 
@@ -50,7 +50,7 @@ class VersionMismatchError(Exception):
     """Error raised because a worker with another TurnDesk version could prove programs differently."""
 
 
-def prove_pickled(pickled_job: bytes, version: str, source: ProgramSource) -> Proof:
+def prove_pickled_program(pickled_job: bytes, version: str, source: ProgramSource) -> Proof:
     """Prove one program in a worker. Raises VersionMismatchError if the versions differ.
 
     An empty ``version`` disables the check.
@@ -66,32 +66,35 @@ def prove_program(job: ProofJob, source: ProgramSource) -> Proof:
     """Prove one program in this process."""
     from app.cli.outputs.proof_output import make_report_json
 
-    found = prove_with_findings(job, source)
-    json = make_report_json(source.name, found.report, found.part, optional_stop=job.has_optional_stop)
+    found = prove_with_comparison(job, source)
+    json = make_report_json(
+        source.name, found.report, found.part_report, optional_stop=job.is_optional_stop_on
+    )
     return Proof(
-        json if found.comparison is None else {**json, "compare": found.comparison}, found.report_section
+        json if found.comparison_json is None else {**json, "compare": found.comparison_json},
+        found.report_section,
     )
 
 
-class ProofFindings(NamedTuple):
+class ProofResult(NamedTuple):
     """Results of one proof with the comparison and the report section, which may be empty."""
 
     report: ProofReport
-    part: PartReport | None
+    part_report: PartReport | None
     report_section: str = ""
-    comparison: Json | None = None
+    comparison_json: Json | None = None
 
 
-def prove_with_findings(
+def prove_with_comparison(
     job: ProofJob, source: ProgramSource, report_progress: Callable[[float], None] | None = None
-) -> ProofFindings:
+) -> ProofResult:
     """Prove one program, and add the comparison and the report section if the job requires them."""
-    from core.proving.part_proof import prove_with_part, require_tool_offsets
+    from core.proving.part_proof import prove_program_and_part, require_tool_offsets
 
     record = _run_record(job)
-    see = record.add_span if record is not None else None
+    see = record.add_time_span if record is not None else None
     around = (job.setup, job.machine, job.part_settings)
-    report, part = prove_with_part(
+    report, part = prove_program_and_part(
         source, *around, report_progress, is_ideal=job.uses_ideal_times, on_span=see
     )
     report = require_tool_offsets(report, job.setup)
@@ -101,7 +104,7 @@ def prove_with_findings(
 
         compare = make_comparison_json(job, source, report, part)
     if record is None:
-        return ProofFindings(report, part, "", compare)
+        return ProofResult(report, part, "", compare)
     from app.report.report_page import ProgramReport, make_offset_comparison
 
     section = ProgramReport(source, report, part, record, job.machine, job.setup).make_html()
@@ -111,16 +114,16 @@ def prove_with_findings(
         section += make_offset_comparison(
             format_comparison(compare, is_metric=report.is_metric, dialect=report.dialect)
         )
-    return ProofFindings(report, part, section, compare)
+    return ProofResult(report, part, section, compare)
 
 
-def _run_record(job: ProofJob) -> RunRecorder | None:
+def _run_record(job: ProofJob) -> ReportRecorder | None:
     """Return the recorder of run data for a report, or None if the job requires no report."""
     if not job.needs_report_section:
         return None
-    from app.report.run_record import RunRecorder
+    from app.report.run_record import ReportRecorder
 
-    return RunRecorder(job.part_settings)
+    return ReportRecorder(job.part_settings)
 
 
 @lru_cache(maxsize=4)

@@ -23,7 +23,7 @@ _TITLE = "Proof"
 _HTML, _PDF = {".html", ".htm"}, {".pdf"}
 
 
-class _Pages(Protocol):
+class _ReportPages(Protocol):
     """Interface of a writer that adds one program after another to a report.
 
     All methods may raise OSError.
@@ -32,7 +32,7 @@ class _Pages(Protocol):
     def add_page(self, name: str, html: str, /) -> None:
         """Add the HTML of the next program under its name."""
 
-    def finish(self) -> None:
+    def finish_file(self) -> None:
         """Write the complete file to the disk.
 
         A full disk is thus detected while the old report still exists.
@@ -55,7 +55,7 @@ class _HtmlPages:
     def add_page(self, _name: str, html: str) -> None:
         self._file.write(html)
 
-    def finish(self) -> None:
+    def finish_file(self) -> None:
         from app.report.html_tables import HTML_END
 
         self._file.write(HTML_END)
@@ -82,7 +82,7 @@ class _PdfPages:
         self._pages.add_pages(self._head + html, name)
         self._head = ""
 
-    def finish(self) -> None:
+    def finish_file(self) -> None:
         self._pages.close()
 
     def close(self) -> None:
@@ -95,7 +95,7 @@ class ReportFile:
     Methods raise CommandError for disk errors.
     """
 
-    def __init__(self, path: Path, pages: _Pages) -> None:
+    def __init__(self, path: Path, pages: _ReportPages) -> None:
         self._path, self._pages = path, pages
 
     def add_proof(self, path: Path, proof: Proof) -> None:
@@ -113,7 +113,7 @@ class ReportFile:
     def finish_report(self, temporary_path: Path) -> None:
         """Finish the report and move its temporary file to its final path."""
         try:
-            self._pages.finish()
+            self._pages.finish_file()
             self._pages.close()
             replace_atomically(temporary_path, self._path)
         except OSError as error:
@@ -178,7 +178,7 @@ def _report_path(args: argparse.Namespace) -> Path:
     return path
 
 
-def _pages(path: Path, ending: str, paper: str | None) -> _Pages:
+def _pages(path: Path, ending: str, paper: str | None) -> _ReportPages:
     return _PdfPages(path, paper) if ending in _PDF else _HtmlPages(path)
 
 

@@ -41,9 +41,9 @@ class ConnectedMachine:
 
     - ``on_screen_station`` is the operator station on the screen, or None if the machine has its
       own.
-    - ``list_more_rows`` returns the rows of ``turndesk machine check`` that follow the row of the
+    - ``list_extra_check_rows`` returns the rows of ``turndesk machine check`` that follow the row of the
       station.
-    - ``list_measured_rows`` returns names of those rows, and of inputs outside the backend. It
+    - ``list_measured_row_names`` returns names of those rows, and of inputs outside the backend. It
       returns only the names of rows and inputs with values that hardware measures.
     """
 
@@ -51,8 +51,8 @@ class ConnectedMachine:
     on_screen_station: StationPanel | None
     set_input: Callable[[str, bool], None] | None  # only for a simulated machine
     close: Callable[[], None]
-    list_more_rows: Callable[[], Iterable[CheckRow]] = tuple
-    list_measured_rows: Callable[[], Iterable[str]] = tuple
+    list_extra_check_rows: Callable[[], Iterable[MachineCheckRow]] = tuple
+    list_measured_row_names: Callable[[], Iterable[str]] = tuple
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,7 @@ class Backend:
     - ``is_simulated`` returns whether the machine and its devices are simulated on this computer.
     - ``simulate_devices`` simulates only the devices, to try a machine file without hardware.
     - ``survey_nodes`` queries every node or pin, and yields its name, address, fault and details.
-    - ``list_measured_rows`` returns the rows of ``turndesk machine check`` whose values hardware
+    - ``list_measured_row_names`` returns the rows of ``turndesk machine check`` whose values hardware
       reports. By default, no row counts as checked.
     """
 
@@ -75,7 +75,7 @@ class Backend:
     is_simulated: Callable[[Machine], bool] = lambda _machine: False
     simulate_devices: DeviceSimulation | None = None
     survey_nodes: Callable[[Machine, Clock], Iterable[tuple[str, str, str, str]]] | None = None
-    list_measured_rows: Callable[[Machine], Iterable[str]] = lambda _machine: ()
+    list_measured_row_names: Callable[[Machine], Iterable[str]] = lambda _machine: ()
 
 
 def find_backend(machine: Machine) -> Backend:
@@ -98,7 +98,7 @@ def _backend(word: str) -> Backend:
     return found
 
 
-def list_simulatable_backends() -> list[str]:
+def list_simulatable_backend_names() -> list[str]:
     """Return the names of the backends that can simulate their devices without the other hardware."""
     return [word for word in BACKENDS if _backend(word).simulate_devices is not None]
 
@@ -125,27 +125,27 @@ def get_axis_arguments(axis: Axis, machine: Machine) -> AxisArguments:
         "vmax": axis.max_speed,
         "amax": axis.max_acceleration,
         "count": axis.count_size,
-        "following_window": axis.following_window,
-        "following_time": axis.following_time_s,
+        "following_window": axis.following_error_window,
+        "following_time": axis.following_error_time_s,
         "travel": axis.travel,
         "absolute": axis.is_position_absolute,
         "home_speed": axis.home_speed or 10.0,
-        "corner": axis.max_acceleration * machine.timing.setpoint,
+        "corner": axis.max_acceleration * machine.timing.setpoint_duration_s,
     }
 
 
-def has_station(machine: Machine) -> bool:
+def has_own_station(machine: Machine) -> bool:
     """Return whether the machine has its own operator station instead of the station on the screen."""
     return any(name in machine.inputs for name in STATION_INPUTS)
 
 
-def list_input_rows(machine: Machine) -> list[str]:
+def list_input_row_names(machine: Machine) -> list[str]:
     """Return the names of the rows of ``turndesk machine check`` for the inputs.
 
     The result includes the operator station if it is wired to inputs.
     """
     inputs = [f"input {name}" for name in machine.inputs]
-    return [*inputs, "station"] if has_station(machine) else inputs
+    return [*inputs, "station"] if has_own_station(machine) else inputs
 
 
 def has_inverter(machine: Machine) -> bool:
@@ -167,7 +167,7 @@ FAILED_STATES = (
 )  # states that are faults; a pressed E-stop is not a fault
 
 
-class CheckRow(NamedTuple):
+class MachineCheckRow(NamedTuple):
     """One row of the machine check: name, address, state and details."""
 
     name: str
@@ -185,7 +185,7 @@ class CheckRow(NamedTuple):
             return "FAIL"
         return NOT_CHECKED if self.state == NOT_CHECKED else "ok"
 
-    def mark_unchecked(self, measured_names: Container[str]) -> CheckRow:
+    def mark_unchecked(self, measured_names: Container[str]) -> MachineCheckRow:
         """Return the row with the state ``NOT_CHECKED`` if no hardware reported the row.
 
         A failed row does not change. ``measured_names`` has the names of the rows that hardware reported.
@@ -196,14 +196,14 @@ class CheckRow(NamedTuple):
 
 
 @dataclass(slots=True)
-class CheckResults:
+class MachineCheckResults:
     """Results of a machine check: rows, warnings, faults and process rights.
 
-    ``warnings`` are notes about conditions that are not faults. ``rights`` are the rights that the
+    ``warnings`` are notes about conditions that are not faults. ``process_rights`` are the rights that the
     operating system grants to the control process.
     """
 
-    rows: list[CheckRow] = field(default_factory=list)
+    rows: list[MachineCheckRow] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)
-    rights: tuple[ProcessRight, ...] = ()
+    process_rights: tuple[ProcessRight, ...] = ()

@@ -7,7 +7,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.compose.backends.backend_entry import Backend, get_axis_arguments, has_station, list_input_rows
+from app.compose.backends.backend_entry import (
+    Backend,
+    get_axis_arguments,
+    has_own_station,
+    list_input_row_names,
+)
 from core.machine.hardware_model import HomingModel
 from core.machine.machine_model import Axis, Machine
 from core.message import Message
@@ -118,7 +123,7 @@ def create_canopen_config(machine: Machine) -> CanopenConfig:
             name: PotConfig(_terminal(pot.terminal, first), pot.low_value, pot.high_value, pot.switch)
             for name, pot in machine.hardware.analog_inputs.items()
         },
-        commit_time_s=machine.timing.commit,
+        commit_time_s=machine.timing.commit_time_s,
     )
 
 
@@ -140,7 +145,7 @@ def _spindle(machine: Machine, nodes: dict[str, CanNode]) -> SpindleConfig | Non
     if node is None or machine.hardware.spindle_driver != "cia402":
         return None
     model, is_c = machine.spindle, machine.is_c_enabled and machine.is_spindle_c_axis and "C" not in nodes
-    return SpindleConfig(node, model.max_rpm, model.accel, model.decel, is_c)
+    return SpindleConfig(node, model.max_rpm, model.acceleration_rpm_s, model.deceleration_rpm_s, is_c)
 
 
 def _encoder_config(machine: Machine, nodes: dict[str, CanNode]) -> EncoderConfig | None:
@@ -184,7 +189,7 @@ def create_canopen_drivers(machine: Machine, clock: Clock) -> DriverBundle:
         raise
     ports = owned.ports
     hands: object | None = peers.machine if peers is not None else None
-    if not has_station(machine):
+    if not has_own_station(machine):
         wired = (
             ports.station if {"handwheel", "spindle_load"} & machine.hardware.analog_inputs.keys() else None
         )
@@ -197,7 +202,7 @@ def create_canopen_drivers(machine: Machine, clock: Clock) -> DriverBundle:
             owned.close,
             hands,
             get_next_tick_time=owned.get_next_cycle_time,
-            collect_notes=owned.collect_warnings,
+            collect_driver_messages=owned.collect_warnings,
             get_idle_time=owned.get_idle_time,
             has_sent_requests=lambda: owned.has_sent_sync,
         )
@@ -243,7 +248,7 @@ def _measured_rows(machine: Machine) -> Iterator[str]:
         yield "spindle"
     if config.spindle is not None and config.spindle.is_c_axis:
         yield "C"
-    yield from list_input_rows(machine)
+    yield from list_input_row_names(machine)
 
 
 BACKEND = Backend(
@@ -252,7 +257,7 @@ BACKEND = Backend(
     is_simulated=_is_simulated,
     simulate_devices=_play,
     survey_nodes=_survey,
-    list_measured_rows=_measured_rows,
+    list_measured_row_names=_measured_rows,
 )
 
 

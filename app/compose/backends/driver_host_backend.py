@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from app.compose.backends.backend_entry import ConnectedMachine, find_backend, has_station, is_simulated
+from app.compose.backends.backend_entry import ConnectedMachine, find_backend, has_own_station, is_simulated
 from app.compose.backends.driver_host_process import DriverHostProcess, create_host_drivers
 from core.machine.machine_model import Machine
 from core.ports import Clock, DriverError
@@ -33,7 +33,7 @@ def connect_driver_host(
         close()
         raise
     hands = HostStationControls(line)
-    panel = hands if is_simulated(machine) or not has_station(machine) else None
+    panel = hands if is_simulated(machine) or not has_own_station(machine) else None
     return ConnectedMachine(ports, panel, hands.set_input if is_simulated(machine) else None, close)
 
 

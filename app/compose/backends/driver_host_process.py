@@ -21,12 +21,12 @@ from core.ports import Clock, DriverError
 from core.process_environment import make_module_environment
 from drivers.canopen.canopen_nodes import CYCLIC_MODES, MAX_SYNC_DELAY_FRACTION
 from drivers.canopen.canopen_table import CanopenTable
-from drivers.driver_host.host_connection import HostConnection, HostLink, SocketLink, clear_host_faults
+from drivers.driver_host.host_connection import HostConnection, HostLink, SocketLink, clear_drive_faults
 from drivers.driver_host.host_loop import (
     TRIAL_TIME_S,
     lock_host_memory,
     measure_wakeup_delay,
-    request_real_time,
+    request_real_time_scheduling,
     run_driver_host,
 )
 from drivers.driver_host.host_messages import (
@@ -89,13 +89,13 @@ class DriverHostProcess:
     def _restart(self) -> ConnectionAttempt[HostLink]:
         """Start a new process after the old one has ended. The bus must never have two masters."""
 
-        def begun() -> HostLink:
+        def start_new_host() -> HostLink:
             self._end()
             if self._closed:
                 raise DriverError("the control is shutting down", "feeder-gone")
-            return clear_host_faults(self._start_process())
+            return clear_drive_faults(self._start_process())
 
-        return ConnectionAttempt(begun)
+        return ConnectionAttempt(start_new_host)
 
     def _start_process(self) -> HostLink:
         """Start the process and return its link.
@@ -166,7 +166,7 @@ class DriverHostProcess:
         return Message({"error": why}, NO_NUMBERS)
 
 
-def get_setpoint_interval(machine: Machine) -> float:
+def get_setpoint_interval_s(machine: Machine) -> float:
     """Return the time between setpoints in seconds, or 0 if the drives accept late setpoints."""
     can = machine.hardware.find_driver_table(CanopenTable)
     return can.sync if can is not None and can.mode in CYCLIC_MODES else 0.0
@@ -207,9 +207,9 @@ def main(arguments: list[str]) -> int:
     sock = socket.socket(fileno=int(arguments[0]))
     clock: Clock = RealClock(float(arguments[1]))
     machine = pickle.load(sys.stdin.buffer)  # from the parent process, over a pipe that no other process has
-    warnings = request_real_time()
+    warnings = request_real_time_scheduling()
     locked = lock_host_memory()
-    if warnings and (period := get_setpoint_interval(machine)):
+    if warnings and (period := get_setpoint_interval_s(machine)):
         warnings.append(make_priority_warning(period, measure_wakeup_delay(period)))
     try:
         machine_driven = create_host_drivers(machine, clock)

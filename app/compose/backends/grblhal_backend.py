@@ -42,7 +42,7 @@ def create_grblhal_config(machine: Machine) -> GrblConfig:
             source=machine.source,
         )
     return GrblConfig(
-        table=model,
+        grblhal_table=model,
         axes=tuple(_axis(axis, machine) for axis in machine.axes),
         max_rpm=machine.spindle.max_rpm,
         outputs={name: GrblOutput(out.terminal, out.safe_state) for name, out in machine.outputs.items()},
@@ -60,7 +60,7 @@ def _play_devices(
     _typed: Callable[[], Iterable[str]],
 ) -> None:
     """Simulate the controller on the TCP port in the machine file, or on a new pseudoterminal."""
-    address = parse_tcp_address(create_grblhal_config(machine).table.port)
+    address = parse_tcp_address(create_grblhal_config(machine).grblhal_table.port)
     end: TcpConnection | PtyConnection = PtyConnection() if address is None else TcpConnection(*address)
     print_line(
         Message(
@@ -94,7 +94,9 @@ def _connect_controller(machine: Machine, clock: Clock) -> ConnectedMachine:
     controller = GrblMachine(create_grblhal_config(machine), clock)
     ports, close, encoder = controller.ports, controller.close, controller.encoder
     if has_inverter(machine):
-        ports, close = add_inverter(machine, ports, clock, close, encoder if encoder.is_measuring else None)
+        ports, close = add_inverter(
+            machine, ports, clock, close, encoder if encoder.has_measured_speed else None
+        )
         spindle = ports.spindle
         assert isinstance(spindle, InverterSpindle)
         encoder.get_reported_rpm = lambda: spindle.reported_rpm
@@ -117,5 +119,5 @@ BACKEND = Backend(
     "controller",
     connect=_connect_controller,
     simulate_devices=_play_devices,
-    list_measured_rows=_measured_rows,
+    list_measured_row_names=_measured_rows,
 )

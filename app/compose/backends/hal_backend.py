@@ -7,7 +7,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import resources
-from app.compose.backends.backend_entry import Backend, get_axis_arguments, has_station, list_input_rows
+from app.compose.backends.backend_entry import (
+    Backend,
+    get_axis_arguments,
+    has_own_station,
+    list_input_row_names,
+)
 from core.machine.hardware_model import HomingModel
 from core.machine.machine_model import Axis, Machine
 from core.ports import Clock, DriverError
@@ -30,13 +35,13 @@ def create_hal_config(machine: Machine) -> HalConfig:
     return HalConfig(
         hal_table=hal,
         hal_file=_hal_path(machine, hal.file),
-        commit_time_s=machine.timing.commit,
+        commit_time_s=machine.timing.commit_time_s,
         axes=tuple(_axis(axis, machine, hal) for axis in machine.axes),
         spindle=HalSpindleConfig(
             hal.spindle,
             spindle.max_rpm,
-            spindle.accel,
-            spindle.decel,
+            spindle.acceleration_rpm_s,
+            spindle.deceleration_rpm_s,
             has_encoder=bool(spindle.encoder_ppr),
             is_driven_by_hal=machine.hardware.spindle_driver == "hal",
         ),
@@ -68,7 +73,7 @@ def _axis(axis: Axis, machine: Machine, hal: HalTable) -> HalAxis:
         home_method=home.method,
         home_latch_speed=home.latch,
         home_offset=home.offset,
-        is_spindle=_is_spindle(axis, machine, hal),
+        is_spindle_c_axis=_is_spindle(axis, machine, hal),
     )
 
 
@@ -86,7 +91,7 @@ def create_hal_drivers(machine: Machine, clock: Clock) -> DriverBundle:
     zero = clock.origin_s if isinstance(clock, RealClock) else 0.0
     owned = HalMachine(config, clock, lambda: HalSession(config, zero))
     ports = owned.ports
-    if has_station(machine):
+    if has_own_station(machine):
         return DriverBundle(ports, owned.run_cycle, owned.close)
     wired = ports.station if {"handwheel", "spindle_load"} & machine.hardware.analog_inputs.keys() else None
     panel = OnScreenStation(clock, ports.io.inputs, wired)
@@ -98,7 +103,7 @@ def _survey_rows(machine: Machine, _clock: Clock) -> Iterator[tuple[str, str, st
     session = HalSession(create_hal_config(machine), 0.0, check_only=True)
     session.close()
     for each in session.pin_verdicts:
-        yield each.path, each.pin_name, each.error_text, each.error_text
+        yield each.machine_file_key, each.pin_name, each.error_text, each.error_text
 
 
 def _measured_rows(machine: Machine) -> Iterator[str]:
@@ -114,9 +119,12 @@ def _measured_rows(machine: Machine) -> Iterator[str]:
         yield from hal.axes
     if machine.spindle.encoder_ppr:
         yield "spindle"
-    yield from list_input_rows(machine)
+    yield from list_input_row_names(machine)
 
 
 BACKEND = Backend(
-    "HAL", create_drivers=create_hal_drivers, survey_nodes=_survey_rows, list_measured_rows=_measured_rows
+    "HAL",
+    create_drivers=create_hal_drivers,
+    survey_nodes=_survey_rows,
+    list_measured_row_names=_measured_rows,
 )

@@ -18,7 +18,7 @@ from drivers.hal.boards.hal_file_builder import (
     LatheData,
     WiringRow,
     format_wiring_table,
-    render_file,
+    render_hal_file,
 )
 from drivers.hal.boards.mesa_servo_lathe import build_mesa_servo_file
 from drivers.hal.boards.mesa_step_lathe import build_mesa_step_file
@@ -36,38 +36,38 @@ _BOARD_BUILDERS: Mapping[str, Callable[[LatheData], HalFile]] = {
 
 
 @dataclass(frozen=True, slots=True)
-class GeneratedHal:
+class GeneratedHalFiles:
     """HAL files and tables that are generated for a machine.
 
-    - ``name`` is the file name in [hal], and ``text`` is the text of the HAL file.
+    - ``name`` is the file name in [hal], and ``hal_text`` is the text of the HAL file.
     - ``extra_files`` are the additional files by name.
     - ``wiring_rows`` are the rows of the wiring table, and ``wiring_table`` is the same table as text.
     - ``measurement_lines`` describe the measurements that the machine builder must make.
     """
 
-    name: str
-    board_text: str
-    text: str
+    file_name: str
+    board_kind: str
+    hal_text: str
     extra_files: Mapping[str, str]
     wiring_rows: tuple[WiringRow, ...]
     wiring_table: tuple[str, ...]
     measurement_lines: tuple[str, ...]
 
 
-def generate_hal(machine: Machine) -> GeneratedHal:
+def generate_hal_files(machine: Machine) -> GeneratedHalFiles:
     """Return the generated HAL file and wiring table of a machine.
 
     Raises the errors of ``build_hal_file``.
     """
     file, hal = build_hal_file(machine), machine.hardware.find_driver_table(HalTable)
-    return GeneratedHal(
-        name=hal.file if hal is not None else "",
-        board_text=file.lathe.board_table.kind,
-        text=render_file(file),
+    return GeneratedHalFiles(
+        file_name=hal.file if hal is not None else "",
+        board_kind=file.lathe.board_table.kind,
+        hal_text=render_hal_file(file),
         extra_files=file.extra_files,
         wiring_rows=tuple(file.wiring_rows),
         wiring_table=tuple(format_wiring_table(file.wiring_rows)),
-        measurement_lines=tuple(file.check_notes),
+        measurement_lines=tuple(file.pre_motion_checks),
     )
 
 
@@ -106,15 +106,15 @@ def build_hal_file(machine: Machine) -> HalFile:
         if axis.name in hal.axes
     ]
     lathe = LatheData(
-        name=machine.name,
-        source_file=machine.source,
+        machine_name=machine.name,
+        machine_file_path=machine.source,
         board_table=board,
         servo_thread=hal.thread,
-        period_s=hal.period,
+        servo_period_s=hal.period,
         axes=tuple(axes),
         max_rpm=machine.spindle.max_rpm,
-        acceleration_rpm_s=machine.spindle.accel,
-        encoder_line_count=machine.spindle.encoder_ppr,
+        acceleration_rpm_per_s=machine.spindle.acceleration_rpm_s,
+        encoder_pulses_per_rev=machine.spindle.encoder_ppr,
         is_spindle_c_axis=machine.is_spindle_c_axis and machine.hardware.spindle_driver == "hal",
         terminal_names={path: name for path, name in _terminal_names(machine, hal) if name},
     )

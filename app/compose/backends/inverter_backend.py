@@ -41,11 +41,11 @@ def add_inverter(
         close_devices()
         raise
 
-    def let_go() -> None:
+    def close_all_devices() -> None:
         thread.close()
         close_devices()
 
-    return joined, let_go
+    return joined, close_all_devices
 
 
 def _attended(
@@ -63,7 +63,7 @@ def _attended(
     )
     thread = InverterThread(attended)
     try:
-        attended.open_and_check()
+        attended.open_and_check_line()
     except DriverError as error:
         attended.close()
         raise DriverError(
@@ -94,14 +94,14 @@ def _attended(
         else None,
         warnings=(*ports.warnings, *said),
         wakeup=None,  # the inverter does not notify changes
-        halt_machine=partial(halt_with_inverter, ports, spindle),
-        unknown=partial(find_unknown_parts, ports, spindle),
+        halt_machine=partial(halt_inverter_and_machine, ports, spindle),
+        unknown=partial(find_unknown_machine_parts, ports, spindle),
         spindle_lag=spindle.get_line_delay,
     )
     return thread, joined
 
 
-def find_unknown_parts(ports: MachinePorts, spindle: InverterSpindle) -> frozenset[UnknownPart]:
+def find_unknown_machine_parts(ports: MachinePorts, spindle: InverterSpindle) -> frozenset[UnknownPart]:
     """Return the parts of the machine that do not report their state.
 
     The spindle is included if neither the inverter nor its encoder reports its state.
@@ -110,7 +110,7 @@ def find_unknown_parts(ports: MachinePorts, spindle: InverterSpindle) -> frozens
     return rest | {UnknownPart.SPINDLE} if spindle.is_state_unknown else rest
 
 
-def halt_with_inverter(ports: MachinePorts, spindle: InverterSpindle) -> None:
+def halt_inverter_and_machine(ports: MachinePorts, spindle: InverterSpindle) -> None:
     """Stop the inverter and then the other devices. Any thread may call this function."""
     spindle.start_coasting()
     if ports.halt_machine is not None:
@@ -127,12 +127,12 @@ class AxisOnlySamples:
         self.sample_rate_hz, self._inner, self._load = samples.sample_rate_hz, samples, read_load
         self._spindle = slice(1 + 3 * axis_count, 4 + 3 * axis_count)
 
-    def take(self, max_rows: int = 8192) -> FloatArray:
+    def take_samples(self, max_rows: int = 8192) -> FloatArray:
         """Return the backend's samples with the latest load that the inverter reported.
 
         The spindle speed and the revolutions are unknown.
         """
-        rows = self._inner.take(max_rows)
+        rows = self._inner.take_samples(max_rows)
         rows[:, self._spindle] = float("nan")
         rows[:, self._spindle.stop - 1] = self._load()
         return rows

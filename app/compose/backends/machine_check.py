@@ -8,9 +8,9 @@ from app.compose.backends.backend_entry import (
     FAILED_STATES,
     MISSING,
     NOT_CHECKED,
-    CheckResults,
-    CheckRow,
     ConnectedMachine,
+    MachineCheckResults,
+    MachineCheckRow,
     find_backend,
     has_inverter,
     is_simulated,
@@ -33,39 +33,39 @@ _MAX_WAIT_S = 3.0  # s for inputs that are read one after the other
 _CHECK_INTERVAL_S = 0.02  # s
 
 
-def check_machine(machine: Machine) -> CheckResults:
+def check_machine(machine: Machine) -> MachineCheckResults:
     """Check each node, drive, spindle, station, input, output and pot.
 
     Driver errors become results of the check. Nothing is switched on, and nothing moves.
     """
     clock: Clock = RealClock() if needs_real_time(machine) else ManualClock()
-    answers = CheckResults()
+    answers = MachineCheckResults()
     try:
         _check_nodes(machine, clock, answers)
         if not answers.faults:
             _ask_ports(machine, clock, answers)
     except DriverError as error:
-        answers.rows.append(CheckRow(_device_name(machine), "", "no answer", str(error)))
+        answers.rows.append(MachineCheckRow(_device_name(machine), "", "no answer", str(error)))
         answers.faults.append(str(error))
-    answers.rights = check_rights() if USES_OWN_PROCESS else ()
+    answers.process_rights = check_rights() if USES_OWN_PROCESS else ()
     for extra in extras().values():
         extra.add_check_rows(machine, answers)
     return answers
 
 
-def _check_nodes(machine: Machine, clock: Clock, results: CheckResults) -> None:
+def _check_nodes(machine: Machine, clock: Clock, results: MachineCheckResults) -> None:
     """Query every node of a real bus separately, so that a missing node does not hide the other nodes."""
     survey = find_backend(machine).survey_nodes
     if survey is None or is_simulated(machine):
         return
     for name, at, error_text, detail in survey(machine, clock):
         state = "no answer" if "no answer" in error_text else "wrong" if error_text else "ok"
-        results.rows.append(CheckRow(name, at, state, detail))
+        results.rows.append(MachineCheckRow(name, at, state, detail))
         if error_text:
             results.faults.append(error_text)
 
 
-def _ask_ports(machine: Machine, clock: Clock, answers: CheckResults) -> None:
+def _ask_ports(machine: Machine, clock: Clock, answers: MachineCheckResults) -> None:
     connected = connect_machine(machine, clock)
     try:
         if needs_real_time(machine):
@@ -77,7 +77,7 @@ def _ask_ports(machine: Machine, clock: Clock, answers: CheckResults) -> None:
     finally:
         connected.close()
     if (word := find_backend(machine).device_name) in measured:
-        answers.rows.append(CheckRow(word, "", "ok", ""))
+        answers.rows.append(MachineCheckRow(word, "", "ok", ""))
     answers.rows += rows
     answers.faults += [
         Message("{row}: {state}; {detail}", row=row.name, state=row.state, detail=row.detail)
@@ -93,11 +93,11 @@ def _measured_names(machine: Machine, connected: ConnectedMachine) -> set[str]:
     names = (
         set()
         if is_simulated(machine)
-        else set(find_backend(machine).list_measured_rows(remove_feature_inputs(machine)))
+        else set(find_backend(machine).list_measured_row_names(remove_feature_inputs(machine)))
     )
     if has_inverter(machine):
         names.add("spindle")
-    return names.union(connected.list_measured_rows())
+    return names.union(connected.list_measured_row_names())
 
 
 def _wait_until_settled(clock: Clock, ports: MachinePorts, machine: Machine) -> None:
@@ -119,7 +119,7 @@ def _device_name(machine: Machine) -> str:
     return "spindle" if word == "feeder" and has_inverter(machine) else word
 
 
-def _rows(machine: Machine, connected: ConnectedMachine) -> Iterator[CheckRow]:
+def _rows(machine: Machine, connected: ConnectedMachine) -> Iterator[MachineCheckRow]:
     ports = connected.ports
     sample, terminals = ports.axes.sample(), _terminals(machine)
     for name, homed, at in zip(ports.axes.axes, sample.homed, sample.actual, strict=True):
@@ -128,16 +128,16 @@ def _rows(machine: Machine, connected: ConnectedMachine) -> Iterator[CheckRow]:
             choice="homed" if homed else "not homed",
             name=_place(machine.find_axis(name), at, machine),
         )
-        yield CheckRow(
+        yield MachineCheckRow(
             name, _node_address(machine, name), "fault" if sample.fault else "ok", sample.fault or detail
         )
     yield _spindle(machine, ports)
     station = ports.station.read_state()
-    yield CheckRow("station", "", "E-stop" if station.estop else "ok", _hands(station))
-    yield from connected.list_more_rows()
+    yield MachineCheckRow("station", "", "E-stop" if station.estop else "ok", _hands(station))
+    yield from connected.list_extra_check_rows()
     for kind, states in (("input", ports.io.inputs()), ("output", ports.io.get_outputs())):
         for name, on in states.items():
-            yield CheckRow(
+            yield MachineCheckRow(
                 Message("{kind} {name}", kind=kind, name=name),
                 terminals.pop(Message("{kind} {name}", kind=kind, name=name), ""),
                 "on" if on else "off",
@@ -145,22 +145,24 @@ def _rows(machine: Machine, connected: ConnectedMachine) -> Iterator[CheckRow]:
             )
     for name, terminal in terminals.items():
         if terminal == HARDWARE:
-            yield CheckRow(
+            yield MachineCheckRow(
                 name,
                 terminal,
                 NOT_CHECKED,
                 "the signal cuts power directly in hardware; its state is not reported",
             )
             continue
-        yield CheckRow(name, terminal, MISSING, "the machine does not have this terminal")
+        yield MachineCheckRow(name, terminal, MISSING, "the machine does not have this terminal")
 
 
-def _spindle(machine: Machine, ports: MachinePorts) -> CheckRow:
+def _spindle(machine: Machine, ports: MachinePorts) -> MachineCheckRow:
     fault, spindle = ports.spindle.read_fault(), ports.spindle
     detail = Message("{speed} rpm", speed=f"{spindle.speed():.0f}")
     if isinstance(spindle, InverterSpindle):
         detail = Message("{details}, {status}", details=detail, status=spindle.describe_status())
-    return CheckRow("spindle", _node_address(machine, "spindle"), "fault" if fault else "ok", fault or detail)
+    return MachineCheckRow(
+        "spindle", _node_address(machine, "spindle"), "fault" if fault else "ok", fault or detail
+    )
 
 
 def _hands(station: StationState) -> str:

@@ -27,7 +27,7 @@ def list_serial_ports() -> list[tuple[str, str]]:
     Raises DriverError if pyserial is missing.
     """
     try:
-        from drivers.serial_port import list_ports
+        from drivers.serial_port import list_serial_ports
     except ImportError as error:
         raise DriverError(MISSING_LIBRARY_TEXT) from error
-    return [(found.device_name, found.description) for found in list_ports()]
+    return [(found.device_name, found.description) for found in list_serial_ports()]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from app.compose.backends.backend_entry import Backend, ConnectedMachine, get_axis_arguments, has_inverter
 from core.machine.machine_model import Axis, Machine
-from core.machine.setter_table import SetterModel
+from core.machine.setter_table import ToolSetterModel
 from core.ports import Clock
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 from drivers.simulated.simulated_table import SimulatedTable
@@ -35,29 +35,29 @@ def create_sim_config(machine: Machine) -> SimConfig:
         axes=tuple(_axis(axis, machine) for axis in machine.axes),
         spindle=SimSpindle(
             max_rpm=spindle.max_rpm,
-            acceleration_rpm_per_s=spindle.accel,
-            deceleration_rpm_per_s=spindle.decel,
+            acceleration_rpm_per_s=spindle.acceleration_rpm_s,
+            deceleration_rpm_per_s=spindle.deceleration_rpm_s,
             pulses_per_rev=spindle.encoder_ppr,
             can_orient=spindle.oriented,
-            orient_rpm=spindle.orient_rpm,
+            orientation_rpm=spindle.orient_rpm,
         ),
-        collet=SimCollet(open_time_s=machine.collet.open_time, close_time_s=machine.collet.close_time),
+        collet=SimCollet(open_time_s=machine.collet.open_time_s, close_time_s=machine.collet.close_time_s),
         outputs={
             name: SimOutput(safe_state=output.safe_state, power_up_state=name == "collet")
             for name, output in machine.outputs.items()
         },
         inputs=tuple(machine.inputs),
-        commit_time_s=machine.timing.commit,
+        commit_time_s=machine.timing.commit_time_s,
         planned_faults=sim.faults,
         random_seed=sim.seed,
-        setter=_tool_setter(machine, sim.tips),
-        has_load_input="spindle_load" in machine.hardware.analog_inputs,
+        setter=_tool_setter(machine, sim.tool_tip_positions),
+        has_spindle_load_input="spindle_load" in machine.hardware.analog_inputs,
     )
 
 
 def _tool_setter(machine: Machine, tips: tuple[tuple[float, float], ...]) -> SimToolSetter | None:
     """Return the simulated tool setter, or None if the machine has no tool setter or tool tips."""
-    model = machine.hardware.find_driver_table(SetterModel)
+    model = machine.hardware.find_driver_table(ToolSetterModel)
     return SimToolSetter(model.x, model.z, model.width, tips) if model is not None and tips else None
 
 
@@ -76,10 +76,10 @@ def _create_drivers(machine: Machine, clock: Clock) -> DriverBundle:
     wakeup = ports.wakeup
     assert wakeup is not None
 
-    def idle(asleep: bool) -> float:
-        return MAX_SLEEP_CYCLE_S if asleep and wakeup.is_settled() else 0.0
+    def get_idle_time(asleep: bool) -> float:
+        return MAX_SLEEP_CYCLE_S if asleep and wakeup.can_rely_on_wakeups() else 0.0
 
-    return DriverBundle(ports, ports.axes.sample, _do_nothing, hands, get_idle_time=idle)
+    return DriverBundle(ports, ports.axes.sample, _do_nothing, hands, get_idle_time=get_idle_time)
 
 
 def _connect_in_process(machine: Machine, clock: Clock) -> ConnectedMachine:

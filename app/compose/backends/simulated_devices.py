@@ -14,7 +14,7 @@ from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import Clock, DriverError
 from drivers.canopen.canopen_table import CanopenTable
-from drivers.driver_host.host_loop import REAL_TIME_PRIORITY, lock_host_memory, request_real_time
+from drivers.driver_host.host_loop import REAL_TIME_PRIORITY, lock_host_memory, request_real_time_scheduling
 from drivers.wakeups import ManualClock
 
 if TYPE_CHECKING:
@@ -136,7 +136,7 @@ def simulate_devices(
     peers = create_devices(machine, clock)
     lock_host_memory()
     # drives respond on time; if priority is refused, the driver host has already reported it
-    request_real_time(REAL_TIME_PRIORITY - 10)
+    request_real_time_scheduling(REAL_TIME_PRIORITY - 10)
     peers.convert_arrival_time = lambda stamp: stamp - epoch
     print_line(
         Message(

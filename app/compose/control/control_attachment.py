@@ -36,9 +36,9 @@ def _found(machine: Machine, folder: Path) -> ControlClient | None:
     paths = [path for path in list_socket_paths(folder) if path.is_socket()]
     if not paths:
         return None
-    from app.compose.control.control_client import find_control
+    from app.compose.control.control_client import find_running_control
     from core.ports import DriverError
 
     with convert_to_command_error(DriverError):
-        found = (find_control(machine, folder, path) for path in paths)
+        found = (find_running_control(machine, folder, path) for path in paths)
         return next((each for each in found if each is not None), None)

@@ -26,22 +26,22 @@ from app.compose.control.control_messages import (
     EventStoredMessage,
     HelloMessage,
     InputChange,
-    InterruptedJobNote,
+    InterruptedJobMessage,
     MachineClosedMessage,
     ScreenAliveMessage,
     SnapshotMessage,
     StationAction,
     StopSocketMessage,
     ThreadEndedMessage,
-    is_own_user,
+    is_same_user,
 )
 from app.compose.control.control_start import DRIVERS_TIMEOUT_S, StartedControl
 from app.compose.control.descriptor_passing import SharedMemory, receive_descriptor, send_descriptor
 from app.compose.control.process_handle import ProcessHandle
-from app.compose.runs.receipt import Receipt
+from app.compose.runs.receipt import EventReceipt
 from app.desk.data_folder import RECORDS_FOLDER_NAME
-from core.executor.commands import Command, LoadJob, SupplyProof
-from core.executor.raised_alarm import CaughtAttempt, ReportedAttempt, make_alarm
+from core.executor.commands import Command, LoadJob, SupplyJobProof
+from core.executor.raised_alarm import ErrorCatcher, ErrorReporter, make_alarm
 from core.executor.snapshot import CYCLE_STATES, InterruptedJob, LogEvent, MachineState, Snapshot
 from core.machine.machine_model import Machine
 from core.message import Message
@@ -81,10 +81,10 @@ CLOSE_TIMEOUT_S = 20.0  # s, for drives that are switching on; then the machine 
 class ControlEventHandlers:
     """Callback functions for messages of the control, which are called in the client's thread."""
 
-    on_event: Callable[[LogEvent, Receipt | None], None]
+    on_event: Callable[[LogEvent, EventReceipt | None], None]
     on_interrupted_job: Callable[[InterruptedJob | None], None]
     on_thread_end: Callable[[str], None]
-    on_rest_change: Callable[[], None] = lambda: None
+    on_rest_state_change: Callable[[], None] = lambda: None
 
 
 class ControlClient:
@@ -140,7 +140,7 @@ class ControlClient:
 
     def post_command(self, command: Command) -> None:
         """Send a command to the executor."""
-        if self.is_attached and isinstance(command, LoadJob | SupplyProof):
+        if self.is_attached and isinstance(command, LoadJob | SupplyJobProof):
             with self._keeping:
                 if self._kept or self.snapshot.state in CYCLE_STATES:
                     self._kept[type(command)] = command  # the running program already has its job
@@ -158,7 +158,7 @@ class ControlClient:
         """Call the method ``name`` of the simulated operator station with these values."""
         self._outbox.put(StationAction(name, values, self.clock.now()))
 
-    def pass_stop_socket(self, stop_socket: socket) -> None:
+    def send_stop_socket(self, stop_socket: socket) -> None:
         """Pass a socket to the control and close it in this process.
 
         The control then receives stop keys from it.
@@ -166,7 +166,7 @@ class ControlClient:
         self._outbox.put(stop_socket)
 
     @property
-    def silent_time_s(self) -> float:
+    def silence_duration_s(self) -> float:
         """Return the time since the last message of the control, in seconds."""
         return time.monotonic() - self.heard_at
 
@@ -174,7 +174,7 @@ class ControlClient:
         """Set an input of a simulated machine on or off."""
         self._outbox.put(InputChange(name, is_on))
 
-    def report_alive(self, snapshot: Snapshot) -> None:
+    def report_screen_alive(self, snapshot: Snapshot) -> None:
         """Report to the control that the screen is processing its keys.
 
         The screen calls this method once per frame.
@@ -201,14 +201,14 @@ class ControlClient:
                 while self._connection.poll(max(until - time.monotonic(), 0.0)):
                     self._connection.recv()  # until its process ends and closes the socket
 
-    def ask_to_end(self) -> None:
+    def request_close(self) -> None:
         """Ask the control to stop the machine and end. The method does not wait for the end."""
         self._outbox.put(CloseRequest())
 
     def stop_and_close(self) -> None:
         """Stop the machine, close its drivers, and wait until the control process ends."""
         self._closing = True
-        self.ask_to_end()
+        self.request_close()
         self._closed.wait(CLOSE_TIMEOUT_S)
         if self.control_process is not None:
             try:
@@ -252,10 +252,10 @@ class ControlClient:
             while True:
                 message = self._connection.recv()
                 self.heard_at = time.monotonic()
-                with ReportedAttempt(_not_taken):
+                with ErrorReporter(_not_taken):
                     self._take(message, self._events)
         except _CONNECTION_ERRORS:
-            with ReportedAttempt(_not_taken):
+            with ErrorReporter(_not_taken):
                 if not self._closing:
                     self._handle_loss(self._events)
         self._closed.set()
@@ -266,14 +266,14 @@ class ControlClient:
                 self.snapshot = snapshot
                 self._came.set()
                 if stirred:
-                    with CaughtAttempt():  # the window may be closing
-                        events.on_rest_change()
+                    with ErrorCatcher():  # the window may be closing
+                        events.on_rest_state_change()
             case EventMessage(number, event, rows):
                 self.control_records.handle_event(event)
                 origin = EventOrigin(self.hello_message.control_identity, number)
                 confirm = partial(self._outbox.put, EventStoredMessage(number))
-                events.on_event(event, Receipt(origin, confirm, rows))
-            case InterruptedJobNote(job):
+                events.on_event(event, EventReceipt(origin, confirm, rows))
+            case InterruptedJobMessage(job):
                 events.on_interrupted_job(job)
             case ThreadEndedMessage(name):
                 events.on_thread_end(name)
@@ -293,10 +293,10 @@ class ControlClient:
         self.snapshot = replace(last, state=MachineState.FAULT, alarms=(*last.alarms, alarm))
         self.is_lost = True
         events.on_event(LogEvent(last.t, "alarm", alarm.text, alarm.line, alarm), None)
-        events.on_rest_change()
+        events.on_rest_state_change()
 
 
-class ControlStationControls(PostedControls):
+class RemoteStationControls(PostedControls):
     """Simulated operator station of the control, whose methods can be called from any thread.
 
     ``operate_station`` sends the name of a method and its values to the station.
@@ -322,7 +322,7 @@ class ControlRecordings(ScopeRecordings):
         if event.record_name:
             self._named.setdefault(event.record_name, time.monotonic())
 
-    def is_saving(self, name: str) -> bool:
+    def is_saving_record(self, name: str) -> bool:
         """Return whether the control has announced the record but its file does not exist yet."""
         there = self.folder is not None and (self.folder / name).exists()
         return not there and time.monotonic() < self._named.get(name, -_SAVE_TIMEOUT_S) + _SAVE_TIMEOUT_S
@@ -345,7 +345,7 @@ def _receive_hello(connection: Connection, timeout_s: float) -> HelloMessage:
     except _CONNECTION_ERRORS:
         message = b""  # a message of another version
     match message:
-        case HelloMessage() if message.version == PROTOCOL_VERSION:
+        case HelloMessage() if message.protocol_version == PROTOCOL_VERSION:
             return message
         case ControlFailedMessage(why):
             raise DriverError(why, reason=why if why == SCREEN_CONNECTED else "")
@@ -378,7 +378,7 @@ def _receive_memory(connection: Connection) -> SharedMemory:
         ) from error
 
 
-def find_control(machine: Machine, folder: Path, path: Path) -> ControlClient | None:
+def find_running_control(machine: Machine, folder: Path, path: Path) -> ControlClient | None:
     """Return the client of a control that is still running after its screen was killed, or None.
 
     The control listens at the socket ``path``. The result is None if no control is running, or if a
@@ -423,7 +423,7 @@ def _connect(path: Path) -> Connection | None:
             return None
         sock.setblocking(True)
         connection = Connection(sock.detach())
-    if is_own_user(connection):
+    if is_same_user(connection):
         return connection
     connection.close()
     return None

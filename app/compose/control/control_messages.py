@@ -30,21 +30,21 @@ _CREDENTIALS = struct.Struct("3i")  # process, user, group
 
 
 class CommandMessage(NamedTuple):
-    """Command for the executor. ``requested_at_s`` is the time of the request in seconds."""
+    """Command for the executor. ``request_time_s`` is the time of the request in seconds."""
 
     command: Command
-    requested_at_s: float
+    request_time_s: float
 
 
 class StationAction(NamedTuple):
     """Request to call a method of the simulated operator station.
 
-    ``acted_at_s`` is the time of the operator's action in seconds.
+    ``action_time_s`` is the time of the operator's action in seconds.
     """
 
     name: str
     arguments: tuple[object, ...]
-    acted_at_s: float
+    action_time_s: float
 
 
 class InputChange(NamedTuple):
@@ -78,13 +78,13 @@ class CloseRequest(NamedTuple):
 class HelloMessage(NamedTuple):
     """First message of the control. The file descriptor of the scope's shared memory follows it."""
 
-    version: int
+    protocol_version: int
     process_id: int  # number of its process
     control_identity: str  # differs from that of each other control; numbers of events belong to it
     machine: Machine  # machine of the control
     clock_zero_s: float  # zero of its clock, in s of the computer's monotonic clock
     warnings: tuple[str, ...]
-    rights: tuple[ProcessRight, ...]  # rights that the system has granted or refused
+    process_rights: tuple[ProcessRight, ...]  # rights that the system has granted or refused
     ring_layout: RingLayout
     disk_error: str  # reason why the scope does not write its file; empty if it does
     has_on_screen_station: bool  # whether the operator station on the screen operates this machine
@@ -117,7 +117,7 @@ class EventMessage(NamedTuple):
     production_rows: tuple[ProductionRow, ...] = ()
 
 
-class InterruptedJobNote(NamedTuple):
+class InterruptedJobMessage(NamedTuple):
     """Message with the job that is running, which a power failure would interrupt, or None."""
 
     job: InterruptedJob | None
@@ -133,7 +133,7 @@ class MachineClosedMessage(NamedTuple):
     """Report that the machine is stopped and its drivers are closed."""
 
 
-def is_own_user(connection: Connection) -> bool:
+def is_same_user(connection: Connection) -> bool:
     """Return whether the process at the other end of the connection belongs to the user of this process."""
     with fromfd(connection.fileno(), AF_UNIX, SOCK_STREAM) as sock, suppress(OSError):
         _, user, _ = _CREDENTIALS.unpack(sock.getsockopt(SOL_SOCKET, SO_PEERCRED, _CREDENTIALS.size))

@@ -15,7 +15,7 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from app.compose.control.control_messages import ControlFailedMessage, is_own_user
+from app.compose.control.control_messages import ControlFailedMessage, is_same_user
 from app.compose.control.control_server import CHECK_INTERVAL_S, ControlServer
 from app.compose.control.control_slot import ControlSlot, ScreenListener
 from app.compose.control.process_rights_check import acquire_rights
@@ -54,7 +54,7 @@ def main(arguments: list[str]) -> int:
     if listener is not None:
         threading.Thread(target=_serve_screens, args=(server, listener), name="screens", daemon=True).start()
     while not server.closing_event.wait(CHECK_INTERVAL_S):
-        server.check_screen()
+        server.check_screen_response()
     server.close()
     if listener is not None:
         listener.close()
@@ -68,7 +68,7 @@ def _serve_screens(server: ControlServer, listener: ScreenListener) -> None:
     while not server.closing_event.is_set():
         with suppress(OSError, EOFError):
             connection = listener.accept_screen()
-            if is_own_user(connection):
+            if is_same_user(connection):
                 _serve_connection(server, connection)
             else:
                 connection.close()

@@ -45,28 +45,28 @@ from app.compose.control.screen_outbox import NOT_SAVED, ScreenOutbox
 from app.compose.control.unattended_notes import (
     UnconfirmedEvent,
     UnconfirmedEvents,
-    remove_note,
-    save_events,
-    save_note,
+    delete_interruption_note,
+    save_interruption_note,
+    save_unconfirmed_events,
 )
 from app.compose.optional_features import extras
-from app.desk.stop_keys.stop_records import StopKind, StopPress
-from core.closing_steps import ClosingStep, close_in_order
+from app.desk.stop_keys.stop_records import StopKeyPress, StopKind
+from core.closing_steps import ClosingStep, run_steps_in_order
 from core.executor.commands import (
     MOTION_COMMAND_TYPES,
-    BlockNextPart,
     ChangeOffsets,
     Command,
     DeselectHandwheel,
     FeedHold,
     LoadJob,
-    PrepareStart,
+    PrepareCycleStart,
+    PreventNextPart,
     Reset,
     StopJog,
     StopSpindle,
 )
 from core.executor.executor import Executor
-from core.executor.raised_alarm import CaughtAttempt, ReportedAttempt
+from core.executor.raised_alarm import ErrorCatcher, ErrorReporter
 from core.executor.safety.watchdog import WATCHDOG_THREAD_NAME, ExecutorThread, Watchdog
 from core.executor.scope_recorder import ScopeRecorder, list_recorded_signals
 from core.executor.snapshot import (
@@ -137,7 +137,10 @@ class ControlServer:
         self.executor.on_change_at_rest = self.outbox.request_changed_snapshot
         self._thread = ExecutorThread(self.executor, clock)
         self._watchdog = Watchdog(
-            self._thread, self.executor.halt_function, list_watched_threads(), self.outbox.report_thread_end
+            self._thread,
+            self.executor.halt_function,
+            list_watched_thread_names(),
+            self.outbox.report_thread_end,
         )
         self._noted: InterruptedJob | None = None
         self._reading: SharedProgram | None = None
@@ -163,7 +166,7 @@ class ControlServer:
 
     def close(self) -> None:
         """Stop the machine as an emergency stop does, and close its drivers."""
-        close_in_order(
+        run_steps_in_order(
             (
                 ClosingStep("watchdog", self._watchdog.stop_checks),
                 ClosingStep("executor", self._thread.close, EXECUTOR_TIMEOUT_S),
@@ -172,10 +175,10 @@ class ControlServer:
                 ClosingStep("recorder", self.recorder.close),
             )
         )
-        self.outbox.report_closed()
+        self.outbox.report_machine_closed()
         if self._sender is not None:
             self._sender.join(JOIN_TIMEOUT_S)
-        close_in_order([ClosingStep("events", self._save_events)])
+        run_steps_in_order([ClosingStep("events", self._save_events)])
 
     def _save_events(self) -> None:
         """Save the events that no screen has stored, so that the next start can read them."""
@@ -190,12 +193,12 @@ class ControlServer:
                 )
                 for each in left
             )
-            save_events(self._folder, UnconfirmedEvents(self.executor.snapshot.program, events))
+            save_unconfirmed_events(self._folder, UnconfirmedEvents(self.executor.snapshot.program, events))
 
     # --- Executor thread ------------------------------------------------------------------------------
 
     def _hear(self, event: LogEvent) -> None:
-        self.outbox.add_event(self.recorder.assign_record_name(event))
+        self.outbox.add_event(self.recorder.add_record_name(event))
 
     def _note(self, job: InterruptedJob | None) -> None:
         self._noted = job
@@ -230,19 +233,19 @@ class ControlServer:
         sender = threading.Thread(
             target=self._send, args=(connection, gone), name="control-sender", daemon=True
         )
-        with CaughtAttempt() as talk:
+        with ErrorCatcher() as talk:
             connection.send(self._hello())
             send_descriptor(connection, self._memory.descriptor)
             self._quiet, self._met, self._screen = 0, False, connection
-            remove_note(self._folder)
+            delete_interruption_note(self._folder)
             self._saved = NOT_SAVED  # if the screen disconnects before it has stored the note
             sender.start()
             self._sender = sender
             while True:
                 message = connection.recv()
-                with ReportedAttempt(_not_obeyed):
+                with ErrorReporter(_not_obeyed):
                     self._obey(message)
-        # otherwise ``check_screen`` reacts as the machine file specifies
+        # otherwise ``check_screen_response`` reacts as the machine file specifies
         if not isinstance(talk.error, OSError | EOFError):
             _log.error("the screen has sent what is no message; it is disconnected", exc_info=talk.error)
         self._screen = None
@@ -281,7 +284,7 @@ class ControlServer:
                 self._stopped_at = max(self._stopped_at, at)
                 self.executor.post(command, at)
             case CommandMessage(command):
-                if isinstance(command, BlockNextPart):
+                if isinstance(command, PreventNextPart):
                     self._barred = command.why
                 self._posts.put(message)
             case StationAction():
@@ -300,7 +303,7 @@ class ControlServer:
             case _:
                 _log.error("the control does not know this message of the screen: %r", message)
 
-    def _stop(self, stop: StopPress) -> None:
+    def _stop(self, stop: StopKeyPress) -> None:
         """Execute a stop key. The method is called in the thread of the key's socket."""
         self._stopped_at = max(self._stopped_at, self._clock.now())
         panel = self._connected.on_screen_station
@@ -321,13 +324,13 @@ class ControlServer:
         while not self.closing_event.is_set():
             command, at = self._posts.get()
             if not (isinstance(command, MOTION_COMMAND_TYPES) and at <= self._stopped_at):
-                with ReportedAttempt(self.executor.handle_failure):
+                with ErrorReporter(self.executor.handle_failure):
                     self.executor.post(self._attach_reading(command), at)
 
     def _use_hand(self, hand: StationAction) -> None:
         if hand.name in _STOPPING_ACTIONS:
-            self._stopped_at = max(self._stopped_at, hand.acted_at_s)
-        late = self._clock.now() - hand.acted_at_s > KEY_EXPIRY_S
+            self._stopped_at = max(self._stopped_at, hand.action_time_s)
+        late = self._clock.now() - hand.action_time_s > KEY_EXPIRY_S
         if self._connected.on_screen_station is None or (late and hand.name in _STARTING_ACTIONS):
             return
         getattr(self._connected.on_screen_station, hand.name)(*hand.arguments)
@@ -348,7 +351,7 @@ class ControlServer:
 
         The executor's thread does not have enough time to read a program.
         """
-        if not isinstance(command, LoadJob | ChangeOffsets | PrepareStart) or command.job is None:
+        if not isinstance(command, LoadJob | ChangeOffsets | PrepareCycleStart) or command.job is None:
             return command
         job = command.job
         if job.setup.begin is not None and job.setup.begin.is_mdi_line:
@@ -362,7 +365,7 @@ class ControlServer:
 
     # --- Screen that is silent or disconnected --------------------------------------------------------
 
-    def check_screen(self) -> None:
+    def check_screen_response(self) -> None:
         """Check whether the screen responds.
 
         The watchdog calls this method every ``CHECK_INTERVAL_S`` seconds.
@@ -394,17 +397,17 @@ class ControlServer:
         """
         self._saved = NOT_SAVED
         if self._machine.hardware.continues_without_screen:
-            self.executor.post(BlockNextPart(_NO_SCREEN_TEXT))
+            self.executor.post(PreventNextPart(_NO_SCREEN_TEXT))
 
     def _go_together(self) -> None:
         if self._machine.hardware.continues_without_screen:
-            self.executor.post(BlockNextPart(self._barred))
+            self.executor.post(PreventNextPart(self._barred))
 
     def _save_note(self) -> None:
         self._saved = noted = self._noted
-        save_note(self._folder, noted)
+        save_interruption_note(self._folder, noted)
         if self._screen is not None:  # a screen has connected since and has the note
-            remove_note(self._folder)
+            delete_interruption_note(self._folder)
 
 
 def _row(event: LogEvent, began: datetime) -> EventRow:
@@ -413,7 +416,7 @@ def _row(event: LogEvent, began: datetime) -> EventRow:
     return EventRow(at, event.kind, event.text, event.line_number, event.record_name)
 
 
-def list_watched_threads() -> tuple[str, ...]:
+def list_watched_thread_names() -> tuple[str, ...]:
     """Return the names of the threads in this process whose unexpected end is reported to the operator."""
     return (
         "commands",

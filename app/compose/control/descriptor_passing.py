@@ -10,7 +10,7 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from socket import AF_UNIX, SOCK_SEQPACKET, SOCK_STREAM, fromfd, recv_fds, send_fds, socket
 
-from app.desk.stop_keys.stop_records import MAX_RECORD_BYTES, StopPress
+from app.desk.stop_keys.stop_records import MAX_RECORD_BYTES, StopKeyPress
 
 _MARK = b"f"  # a descriptor must be sent together with a byte
 
@@ -54,7 +54,7 @@ class SharedMemory:
         return cls(file)
 
 
-def handle_stop_keys(stop_socket: int, request_stop: Callable[[StopPress], None]) -> None:
+def handle_stop_keys(stop_socket: int, request_stop: Callable[[StopKeyPress], None]) -> None:
     """Call ``request_stop`` for each stop key received from ``stop_socket``, until the socket closes.
 
     A separate thread receives the keys and calls ``request_stop``, independently of the screen's state.
@@ -63,8 +63,8 @@ def handle_stop_keys(stop_socket: int, request_stop: Callable[[StopPress], None]
     threading.Thread(target=_obey, args=(sock, request_stop), name="stop-keys", daemon=True).start()
 
 
-def _obey(line: socket, stop: Callable[[StopPress], None]) -> None:
+def _obey(line: socket, stop: Callable[[StopKeyPress], None]) -> None:
     with line, suppress(OSError):
         while record := line.recv(MAX_RECORD_BYTES):
             with suppress(ValueError):  # =
-                stop(StopPress.from_bytes(record))
+                stop(StopKeyPress.from_bytes(record))

@@ -14,13 +14,13 @@ from socket import AF_UNIX, SOCK_SEQPACKET, socket, socketpair
 from app.compose.control.control_client import (
     ControlClient,
     ControlEventHandlers,
-    ControlStationControls,
+    RemoteStationControls,
 )
 from app.compose.control.control_start import StartedControl, start_control
 from app.compose.control.posted_state import PostedState
 from app.desk.translation import tr
 from core.executor.commands import Command, Reset
-from core.executor.raised_alarm import ReportedAttempt
+from core.executor.raised_alarm import ErrorReporter
 from core.executor.snapshot import InterruptedJob, LogEvent, Snapshot
 from core.machine.machine_model import Machine
 from core.message import Message
@@ -46,7 +46,7 @@ class LiveControl:
         self._client, self._machine, self._folder = client, machine, folder
         self._state = PostedState(client.hello_message.interrupted_job)
         self.hands = (
-            ControlStationControls(self.operate_station)
+            RemoteStationControls(self.operate_station)
             if client.hello_message.has_on_screen_station
             else None
         )
@@ -83,25 +83,25 @@ class LiveControl:
             self.restart()
             return
         with self._lock:
-            self._state.note_command(command)
+            self._state.record_command(command)
             self._client.post_command(command)
 
     def operate_station(self, name: str, *values: object) -> None:
         """Call the method ``name`` of the simulated operator station with these values."""
         with self._lock:
-            self._state.note_station_action(name, values)
+            self._state.record_station_action(name, values)
             self._client.operate_station(name, *values)
 
     def set_input(self, name: str, is_on: bool) -> None:
         """Set an input of a simulated machine on or off."""
         self._client.set_input(name, is_on)
 
-    def report_alive(self, snapshot: Snapshot) -> None:
+    def report_screen_alive(self, snapshot: Snapshot) -> None:
         """Report to the control that the screen is processing its keys.
 
         The screen calls this method once per frame.
         """
-        self._client.report_alive(snapshot)
+        self._client.report_screen_alive(snapshot)
 
     def open_stop_socket(self) -> socket | None:
         """Return a socket that sends stop keys directly to the current control, bypassing this process."""
@@ -110,7 +110,7 @@ class LiveControl:
             if self._line is not None:
                 self._line.close()
             self._line = theirs
-            self._client.pass_stop_socket(theirs.dup())
+            self._client.send_stop_socket(theirs.dup())
         return ours
 
     def close(self) -> None:
@@ -154,7 +154,7 @@ class LiveControl:
 
     def _restart(self) -> None:
         old = self._client
-        with ReportedAttempt(self._failed):
+        with ErrorReporter(self._failed):
             if (old.is_lost or self._is_silent(old)) and self._has_ended(old):
                 self._start(old)
 
@@ -166,7 +166,7 @@ class LiveControl:
         """
         self._say(tr("CONTROL HANGS: IT IS ENDED AFTER 5 S. PRESS E-STOP"))
         last_response_at = client.heard_at
-        while client.silent_time_s < SCREEN_CONTROL_TIMEOUT_S and not client.is_lost:
+        while client.silence_duration_s < SCREEN_CONTROL_TIMEOUT_S and not client.is_lost:
             if client.heard_at != last_response_at:
                 self._say(tr("THE CONTROL RESPONDS AGAIN. IT WAS NOT RESTARTED"))
                 return False
@@ -176,7 +176,7 @@ class LiveControl:
 
     def _has_ended(self, client: ControlClient) -> bool:
         """Ask the control process to end, kill it if necessary, and return whether it has ended."""
-        client.ask_to_end()
+        client.request_close()
         ended = client.handle.wait_for_end(END_TIMEOUT_S) or client.handle.kill_process(KILL_TIMEOUT_S)
         if ended and client.control_process is not None:
             with suppress(subprocess.TimeoutExpired):
@@ -211,16 +211,16 @@ class LiveControl:
             LogEvent(new.clock.now(), "warning", Message("the control was started again")), None
         )
         self._say(tr("THE CONTROL HAS STARTED AGAIN. CHECK TOOL, PART AND POSITION"))
-        self._events.on_rest_change()
+        self._events.on_rest_state_change()
 
     def _pass_state(self, new: ControlClient, last: Snapshot) -> None:
         """Send the loaded program and the operator's values, as shown on the screen, to a new control."""
-        for name, values in self._state.list_station_actions():
+        for name, values in self._state.list_restore_station_actions():
             new.operate_station(name, *values)
-        for command in self._state.list_commands(last):
+        for command in self._state.list_restore_commands(last):
             new.post_command(command)
         if self._line is not None:
-            new.pass_stop_socket(self._line.dup())
+            new.send_stop_socket(self._line.dup())
 
     def _note(self, job: InterruptedJob | None) -> None:
         self._state.interrupted_job = job

@@ -5,17 +5,24 @@ from __future__ import annotations
 from typing import Final
 
 from core.executor import commands
-from core.executor.commands import ChangeOffsets, Command, LoadJob, PrepareStart, SetSwitch, SupplyProof
+from core.executor.commands import (
+    ChangeOffsets,
+    Command,
+    LoadJob,
+    PrepareCycleStart,
+    SetSwitch,
+    SupplyJobProof,
+)
 from core.executor.job import Job, Proof
 from core.executor.snapshot import InterruptedJob, Snapshot, StartAction
 
 StationCall = tuple[str, tuple[object, ...]]
 # Commands that set one value: the last of each kind is posted again.
 _VALUES: Final = (
-    commands.UseOffsets,
+    commands.UseOffsetTables,
     commands.SetSpindleLimit,
     commands.SetFeedOverride,
-    commands.BlockNextPart,
+    commands.PreventNextPart,
 )
 # Switches that only make a run stop earlier or not count. Cycle repeat starts parts, so it is off again.
 _SWITCHES = ("single_block", "optional_stop", "no_count")
@@ -41,26 +48,26 @@ class PostedState:
         self._values: dict[type[Command], Command] = {}
         self._station: dict[str, StationCall] = {}
 
-    def note_command(self, command: Command) -> None:
+    def record_command(self, command: Command) -> None:
         """Update the recorded state for a command that was sent to the control."""
         match command:
             case LoadJob(job, proof) | ChangeOffsets(Job() as job, proof):
                 self._job, self._proof, self._renewal = job, proof, None
             case ChangeOffsets():
                 self._renewal = command
-            case SupplyProof(proof):
+            case SupplyJobProof(proof):
                 self._proof = proof
-            case PrepareStart():
+            case PrepareCycleStart():
                 self._starts = command.starts
             case _ if isinstance(command, _VALUES):
                 self._values[type(command)] = command
 
-    def note_station_action(self, name: str, values: tuple[object, ...]) -> None:
+    def record_station_action(self, name: str, values: tuple[object, ...]) -> None:
         """Update the recorded state for an action at the simulated station."""
         if name in _STATION:
             self._station[_STATION[name]] = name, values
 
-    def list_commands(self, last_snapshot: Snapshot) -> list[Command]:
+    def list_restore_commands(self, last_snapshot: Snapshot) -> list[Command]:
         """Return the commands that restore the recorded state in a new control, without any motion.
 
         ``last_snapshot`` is the last snapshot of the previous control.
@@ -78,9 +85,9 @@ class PostedState:
         if self._renewal is not None:
             found.append(self._renewal)
         if self._starts is not StartAction.PROGRAM:  # a line or a restart must be prepared again
-            found.append(PrepareStart(StartAction.MDI_LINE))
+            found.append(PrepareCycleStart(StartAction.MDI_LINE))
         return found
 
-    def list_station_actions(self) -> list[StationCall]:
+    def list_restore_station_actions(self) -> list[StationCall]:
         """Return the actions that restore the recorded state at the simulated station of a new control."""
         return list(self._station.values())

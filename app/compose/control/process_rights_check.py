@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from core.message import Message
-from drivers.process_rights import lock_process_memory, request_scheduling
+from drivers.process_rights import lock_process_memory, request_scheduling_policy
 
 USES_OWN_PROCESS = (
     sys.platform == "linux"
@@ -54,7 +54,7 @@ def check_rights() -> tuple[ProcessRight, ...]:
 
 
 def _scheduling() -> ProcessRight:
-    cause = request_scheduling("SCHED_RR", REAL_TIME_PRIORITY)
+    cause = request_scheduling_policy("SCHED_RR", REAL_TIME_PRIORITY)
     if not cause:
         return ProcessRight("real-time priority", Message("SCHED_RR {priority}", priority=REAL_TIME_PRIORITY))
     words = (

@@ -11,13 +11,13 @@ from multiprocessing.reduction import ForkingPickler
 
 from app.compose.control.control_messages import (
     EventMessage,
-    InterruptedJobNote,
+    InterruptedJobMessage,
     MachineClosedMessage,
     SnapshotMessage,
     ThreadEndedMessage,
 )
 from app.production.cycle_recorder import CycleRecorder
-from core.executor.raised_alarm import ReportedAttempt
+from core.executor.raised_alarm import ErrorReporter
 from core.executor.snapshot import InterruptedJob, LogEvent, Snapshot
 
 _log = logging.getLogger(__name__)
@@ -40,7 +40,7 @@ class ScreenOutbox:
         self._cycle_recorder = CycleRecorder()
         self._events: deque[EventMessage] = deque(maxlen=MAX_WAITING_EVENTS)
         self._ended: deque[ThreadEndedMessage] = deque()
-        self._noted: InterruptedJobNote | None = None
+        self._noted: InterruptedJobMessage | None = None
         self._ready = threading.Event()
         self._lock = threading.Lock()  # locked briefly while an event gets its number
         self._number = self._sent = 0  # numbers of the newest event and of the last event sent to this screen
@@ -77,7 +77,7 @@ class ScreenOutbox:
 
     def set_interrupted_job(self, job: InterruptedJob | None) -> None:
         """Replace the waiting message about the job that a power failure would interrupt."""
-        self._noted = InterruptedJobNote(job)
+        self._noted = InterruptedJobMessage(job)
         self._ready.set()
 
     def report_thread_end(self, name: str) -> None:
@@ -85,7 +85,7 @@ class ScreenOutbox:
         self._ended.append(ThreadEndedMessage(name))
         self._ready.set()
 
-    def report_closed(self) -> None:
+    def report_machine_closed(self) -> None:
         """Make the sender thread report that the machine is closed."""
         self._closed = True
         self._ready.set()
@@ -129,7 +129,7 @@ class ScreenOutbox:
 
 def send_message(connection: Connection, message: object) -> None:
     """Send one message. If it cannot be pickled, log and omit it. Raises OSError if the connection ends."""
-    with ReportedAttempt(lambda _: _log.error("the screen does not get %s", type(message).__name__)) as trial:
+    with ErrorReporter(lambda _: _log.error("the screen does not get %s", type(message).__name__)) as trial:
         data = ForkingPickler.dumps(message)
     if trial.error is None:
         connection.send_bytes(data)

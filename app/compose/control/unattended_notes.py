@@ -12,7 +12,7 @@ from typing import NamedTuple
 from core.executor.snapshot import InterruptedJob, convert_interrupted_job_to_json, parse_interrupted_job
 from core.file_replacement import write_atomically
 from core.message import pack_message, unpack_message
-from core.store.production.part_cycles import CycleRow, ProductionRow, StopRow
+from core.store.production.part_cycles import CycleRow, ProductionRow, ProductionStopRow
 from core.store.store_rows import EventOrigin, EventRow
 
 _log = logging.getLogger(__name__)
@@ -20,7 +20,7 @@ NOTE_FILE_NAME = "interrupted.json"
 EVENTS_FILE_NAME = "left_events.json"
 
 
-def save_note(folder: Path, job: InterruptedJob | None) -> None:
+def save_interruption_note(folder: Path, job: InterruptedJob | None) -> None:
     """Save a note of the interrupted job, or of None if no job is interrupted. Log a disk error."""
     try:
         write_atomically(
@@ -31,7 +31,7 @@ def save_note(folder: Path, job: InterruptedJob | None) -> None:
         _log.warning("the interrupted job cannot be kept in %s: %s", folder / NOTE_FILE_NAME, error)
 
 
-def read_note(folder: Path) -> tuple[bool, InterruptedJob | None]:
+def pop_interruption_note(folder: Path) -> tuple[bool, InterruptedJob | None]:
     """Return whether a note was saved by a control without a screen, and its interrupted job.
 
     The note is then deleted.
@@ -46,7 +46,7 @@ def read_note(folder: Path) -> tuple[bool, InterruptedJob | None]:
     return True, parse_interrupted_job(value)
 
 
-def remove_note(folder: Path) -> None:
+def delete_interruption_note(folder: Path) -> None:
     """Delete the note of the interrupted job, because a connected screen has stored its contents."""
     with suppress(OSError):
         (folder / NOTE_FILE_NAME).unlink(missing_ok=True)
@@ -63,11 +63,11 @@ class UnconfirmedEvent(NamedTuple):
 class UnconfirmedEvents(NamedTuple):
     """Events that no screen has confirmed, with their program."""
 
-    program: str = ""
+    program_name: str = ""
     events: tuple[UnconfirmedEvent, ...] = ()
 
 
-def save_events(folder: Path, unconfirmed_events: UnconfirmedEvents) -> None:
+def save_unconfirmed_events(folder: Path, unconfirmed_events: UnconfirmedEvents) -> None:
     """Save the events that no screen has confirmed. A disk error is logged."""
     program, events = unconfirmed_events
     saved = [[*row[:5], pack_message(row.text), *origin, rows] for row, origin, rows in events]
@@ -77,7 +77,7 @@ def save_events(folder: Path, unconfirmed_events: UnconfirmedEvents) -> None:
         _log.warning("%d events cannot be kept in %s: %s", len(events), folder / EVENTS_FILE_NAME, error)
 
 
-def pop_events(folder: Path) -> UnconfirmedEvents:
+def pop_unconfirmed_events(folder: Path) -> UnconfirmedEvents:
     """Return the saved events that no screen has confirmed as stored, and delete their file."""
     path = folder / EVENTS_FILE_NAME
     try:
@@ -131,6 +131,6 @@ def _production_row(values: Sequence[object]) -> ProductionRow:
             str() as reason,
             int() as line,
         ]:
-            return StopRow(key, cycle, program, at, seconds, reason, line)
+            return ProductionStopRow(key, cycle, program, at, seconds, reason, line)
         case _:
             raise ValueError("a row is neither a cycle nor a stop")

@@ -33,7 +33,7 @@ def get_settings_key(machine: Machine) -> str:
     return " ".join(("machine file", str(place)))
 
 
-def create_record(machine: Machine) -> dict[str, object]:
+def create_acceptance_record(machine: Machine) -> dict[str, object]:
     """Return the record to store when a user accepts a machine file.
 
     The record contains the text of the file and a hash of the values that are written to each node at
@@ -42,7 +42,7 @@ def create_record(machine: Machine) -> dict[str, object]:
     return {_TEXT: machine.text, _DRIVES: _hashes(machine)}
 
 
-def list_differences(machine: Machine, settings: SettingsReader) -> tuple[KeyChange, ...] | None:
+def list_file_differences(machine: Machine, settings: SettingsReader) -> tuple[KeyChange, ...] | None:
     """Return the differences from the accepted machine file, or None if this file was never accepted."""
     record = settings.read_setting(get_settings_key(machine))
     if not isinstance(record, dict) or not isinstance(record.get(_TEXT), str):
@@ -62,7 +62,7 @@ def list_differences(machine: Machine, settings: SettingsReader) -> tuple[KeyCha
     )
 
 
-def review_changes(
+def prepare_change_review(
     machine: Machine, persistence: Persistence, log_text: Callable[[str], None]
 ) -> MachineFileChanges:
     """Return the changes of the machine file for the screen.
@@ -70,10 +70,10 @@ def review_changes(
     A new machine file is accepted automatically, because the operator has chosen it. ``log_text`` writes to
     the event log.
     """
-    changes = list_differences(machine, persistence)
+    changes = list_file_differences(machine, persistence)
 
-    def keep() -> None:
-        persistence.save_setting(get_settings_key(machine), create_record(machine))
+    def save_acceptance() -> None:
+        persistence.save_setting(get_settings_key(machine), create_acceptance_record(machine))
         what, name = "; ".join(str(change) for change in changes or ()), persistence.who()
         done = Message(
             "machine file {path} accepted by {name}" if name else "machine file {path} accepted",
@@ -83,11 +83,11 @@ def review_changes(
         log_text(Message("{done}: {changes}", done=done, changes=what) if what else done)
 
     if changes is None:
-        keep()
-    return MachineFileChanges(machine.source, changes or (), keep)
+        save_acceptance()
+    return MachineFileChanges(machine.source, changes or (), save_acceptance)
 
 
-def guard_commands(
+def make_guarded_post(
     post_command: Callable[[Command], None],
     reviewed_changes: MachineFileChanges,
     report_refusal: Callable[[str], None],
@@ -97,13 +97,13 @@ def guard_commands(
     It rejects that command while changes of the machine file are not accepted.
     """
 
-    def give(command: Command) -> None:
+    def post_if_accepted(command: Command) -> None:
         if reviewed_changes.barred and isinstance(command, EnableDrives):
             report_refusal(reviewed_changes.barred)
         else:
             post_command(command)
 
-    return give
+    return post_if_accepted
 
 
 def _hashes(machine: Machine) -> dict[str, str]:

@@ -7,7 +7,7 @@ from functools import cache
 from importlib import import_module
 from typing import NamedTuple
 
-from app.compose.optional_features import extras, insert_after
+from app.compose.optional_features import extras, insert_items_after
 from core.table_schema import DriverDeclaration, find_raw_value
 
 
@@ -58,7 +58,7 @@ def list_driver_modules() -> tuple[DriverModule, ...]:
         for extra in extras().values()
         for module, tables in extra.machine_tables.items()
     ]
-    return tuple(insert_after(_OWN_MODULES, lambda each: each.tables[0], added))
+    return tuple(insert_items_after(_OWN_MODULES, lambda each: each.tables[0], added))
 
 
 def load_all_drivers() -> tuple[DriverDeclaration, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from app.compose.machine.machine_files import load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.dialects import SharedProgram
 from core.language.source import Dialect, ProgramSource
 
@@ -15,7 +15,7 @@ _MOVE_PATTERN = re.compile(r"^[\s/]*[0-9]*[\s/]*(?:L\b|PLANE\s+AXIAL\b)(.*)$", r
 _ROTARY_PATTERN = re.compile(r"(?<![A-Z])I?([ABC])(?=\s*[+-]?\s*[0-9.Q])", re.IGNORECASE)
 
 
-def select_machine(source: ProgramSource) -> str:
+def select_mill_for_program(source: ProgramSource) -> str:
     """Return the name of the first shipped mill that can run a Klartext program.
 
     If no mill can run the program, the result is the first mill with the program's rotary axes. For other
@@ -42,7 +42,9 @@ def find_rotary_axes(source: ProgramSource) -> frozenset[str]:
 
 
 def _runs(reading: SharedProgram, name: str) -> bool:
-    run = reading.start_pass(create_setup(load_shipped_machine(name), tool_offsets={}, secondary_offsets={}))
+    run = reading.start_pass(
+        create_power_up_setup(load_shipped_machine(name), tool_offsets={}, secondary_offsets={})
+    )
     for block in run.generate_blocks(stops_at_first_error=True):
         if block.n >= _MAX_CHECKED_BLOCKS:
             break

@@ -12,7 +12,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.desk.command_errors import CommandError, convert_to_command_error
-from core.interpreter.shared.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset, ZeroOffset
+from core.interpreter.shared.job_setup import (
+    ControlLimits,
+    InterpreterSetup,
+    SecondaryOffset,
+    ToolOffset,
+    ZeroOffset,
+)
 from core.message import Message
 
 if TYPE_CHECKING:
@@ -48,15 +54,15 @@ def get_control_limits(machine: Machine) -> ControlLimits:
         z_acceleration_mm_s2=machine.axes[1].max_acceleration,
         can_unclamp_while_turning=machine.interlocks.unclamp_while_turning,
         can_start_with_collet_open=machine.interlocks.spindle_with_collet_open,
-        m_outputs=machine.m_codes,
+        m_code_outputs=machine.m_code_outputs,
         disabled_m_codes=machine.disabled_m_codes,
         ignored_m_codes=machine.ignored_m_codes,
         is_c_enabled=machine.is_c_enabled,
         has_c_feedback=machine.has_c_feedback,
-        c_max_rpm=c_axis.max_speed / 6.0,  # 1 rpm is 6 degrees a second
+        max_c_rpm=c_axis.max_speed / 6.0,  # 1 rpm is 6 degrees a second
         c_acceleration_deg_s2=c_axis.max_acceleration,
         c_resolution_deg=c_axis.count_size,
-        is_c_modulo=machine.is_c_modulo,
+        is_c_modulo=machine.is_c_axis_modulo,
         is_c_linear=machine.is_third_axis_linear,
         c_travel_range=c_axis.travel if machine.is_third_axis_linear else None,
         is_spindle_c_axis=machine.is_spindle_c_axis,
@@ -81,7 +87,7 @@ class InputStates:
         return self.states_by_name.get(terminal, False)
 
 
-def create_setup(
+def create_power_up_setup(
     machine: Machine,
     *,
     tool_offsets: Mapping[int, ToolOffset],
@@ -91,12 +97,12 @@ def create_setup(
     input_states: Mapping[str, bool] | None = None,
     block_delete: bool = False,
     is_strict: bool = False,
-) -> Setup:
+) -> InterpreterSetup:
     """Return the setup of a program that starts after power-up, with the axes at machine home.
 
     Inputs that are not specified are open.
     """
-    return Setup(
+    return InterpreterSetup(
         start=(0.0,) * len(machine.axes),
         kinematics=_read_kinematics(machine),
         tools=tool_offsets,
@@ -121,7 +127,7 @@ def _read_kinematics(machine: Machine) -> Kinematics | None:
     return build_kinematics(machine)
 
 
-def store_machine(machine_file: str | None, persistence: Persistence) -> None:
+def save_machine_in_use(machine_file: str | None, persistence: Persistence) -> None:
     """Store which machine file is in use. None means the shipped lathe."""
     path = Path(machine_file) if machine_file else None
     place = str(path.resolve()) if path is not None and path.exists() else machine_file

@@ -40,7 +40,7 @@ _END, _END_64 = 22, 20  # bytes of ZIP's end record without a comment, and of th
 DISK_FULL_ERRORS = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
-def unpack_archive(source: Path, folder: Path) -> list[str]:
+def unpack_setup_archive(source: Path, folder: Path) -> list[str]:
     """Extract the checked members of the archive to ``folder`` and return their names.
 
     Raises CommandError if the archive is invalid, too large or unreadable, or if the disk is full.
@@ -51,10 +51,10 @@ def unpack_archive(source: Path, folder: Path) -> list[str]:
     ):
         _check_directory(source, raw)
         with zipfile.ZipFile(raw) as file:
-            names = _Extraction(source, file, folder).extract_all()
+            names = _Extraction(source, file, folder).extract_all_members()
     _check_store(source, folder / STORE)
     for name in names:
-        if (why := describe_problem(name, folder / name)) is not None:
+        if (why := find_member_error(name, folder / name)) is not None:
             raise CommandError(
                 Message("{source} contains {name}: {error}", source=source, name=name, error=why),
                 get_error_code(why),
@@ -92,7 +92,7 @@ def _not_unpacked(source: Path, folder: Path, error: Exception) -> CommandError:
     )
 
 
-def describe_problem(name: str, path: Path) -> CodedError | None:
+def find_member_error(name: str, path: Path) -> CodedError | None:
     """Return why a file cannot be the archive member ``name``, or None if it can.
 
     Raises OSError if the file cannot be read.
@@ -123,7 +123,7 @@ class _Extraction:
         self._source, self._file, self._folder = source, file, folder
         self._bytes = 0
 
-    def extract_all(self) -> list[str]:
+    def extract_all_members(self) -> list[str]:
         """Extract every member that the manifest lists, and return the members' names."""
         self._extract(MANIFEST)
         hashes = _parse_hashes(self._source, json.loads((self._folder / MANIFEST).read_bytes()))
@@ -257,7 +257,7 @@ def _check_path(name: str) -> None:
 
 def _check_store(source: Path, store: Path) -> None:
     try:
-        found = backup.find_problems(store)
+        found = backup.find_store_problems(store)
     except StoreError as error:
         raise CommandError(
             Message("{source}: {error}", source=source, error=error), get_error_code(error)

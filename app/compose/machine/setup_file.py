@@ -26,9 +26,9 @@ from app.compose.machine.setup_archive import (
     MANIFEST,
     PROGRAMS,
     STORE,
-    describe_problem,
+    find_member_error,
     is_machine_file,
-    unpack_archive,
+    unpack_setup_archive,
 )
 from app.compose.runs.journal import INTERRUPTED_JOB_KEY
 from app.desk.command_errors import CommandError, convert_to_command_error, make_write_error
@@ -129,7 +129,7 @@ def _write_archive(archive_path: Path, members: dict[str, Path]) -> tuple[str, .
         left_out = [
             each
             for each in members
-            if each.startswith(f"{PROGRAMS}/") and describe_problem(each, members[each])
+            if each.startswith(f"{PROGRAMS}/") and find_member_error(each, members[each])
         ]
         members = {name: path for name, path in members.items() if name not in left_out}
         hashes = {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in members.items()}
@@ -163,7 +163,7 @@ def _check_loadable(path: Path, target: Path) -> None:
     """Raise CommandError if ``load_setup`` would reject the archive, for example because it is too large."""
     try:
         with tempfile.TemporaryDirectory(prefix="turndesk-") as name:
-            unpack_archive(path, Path(name))
+            unpack_setup_archive(path, Path(name))
     except CommandError as error:
         raise CommandError(str(error).replace(str(path), str(target)), get_error_code(error)) from error
 
@@ -180,7 +180,7 @@ def _told(names: list[str], placed: Path | None = None) -> SetupContents:
 def check_setup(source: Path) -> SetupContents:
     """Check a setup file without changing data. Raises CommandError for the first error."""
     with tempfile.TemporaryDirectory(prefix="turndesk-") as name:
-        return _told(unpack_archive(source, Path(name)))
+        return _told(unpack_setup_archive(source, Path(name)))
 
 
 def load_setup(source: Path) -> tuple[SetupContents, Path | None]:
@@ -192,7 +192,7 @@ def load_setup(source: Path) -> tuple[SetupContents, Path | None]:
     """
     folder, stamp = find_data_folder(), datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
     with tempfile.TemporaryDirectory(prefix="turndesk-") as name, _StagedFiles(stamp) as staged:
-        names = unpack_archive(source, Path(name))
+        names = unpack_setup_archive(source, Path(name))
         try:
             for each in names:
                 if each != STORE:

@@ -62,11 +62,11 @@ class ErrorLog:
             with contextlib.suppress(OSError):  # a full disk has already been reported
                 handler.close()
 
-    def _opened(self, name: str) -> _File | None:
+    def _opened(self, name: str) -> _ErrorLogFile | None:
         folder = find_data_folder() / "logs"
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            file = _File(folder / name, maxBytes=_MAX_BYTES, backupCount=2, encoding="utf-8")
+            file = _ErrorLogFile(folder / name, maxBytes=_MAX_BYTES, backupCount=2, encoding="utf-8")
         except OSError as error:
             self._unmade = Message(
                 "the log cannot be written to {file}: {what}",
@@ -78,7 +78,7 @@ class ErrorLog:
         return file
 
 
-class _File(logging.handlers.RotatingFileHandler):
+class _ErrorLogFile(logging.handlers.RotatingFileHandler):
     """A log file that stores the text of a write error instead of printing a traceback."""
 
     error_text = ""

@@ -17,9 +17,9 @@ from app.compose.runs.run_log import EventLog
 from app.desk.command_errors import CommandError, convert_to_command_error
 from app.desk.data_folder import RECORDS_FOLDER_NAME, find_data_folder
 from app.desk.headless_run import HeadlessRun
-from app.production.parts_book import PartsBook, find_tool_table_kind, read_production_data
-from app.production.tool_life_watch import ToolLifeWatch
-from core.executor.commands import BlockNextPart, Command
+from app.production.parts_book import ProductionRecords, find_tool_table_kind, read_production_data
+from app.production.tool_life_watch import ToolLifeMonitor
+from core.executor.commands import Command, PreventNextPart
 from core.executor.executor import Executor
 from core.executor.interruption_watch import StoreFunction
 from core.executor.job import Proof
@@ -52,7 +52,7 @@ class HeadlessToolLife:
         tool_kind: OffsetKind = OffsetKind.TOOL,
     ) -> None:
         self._book = journal.create_parts_book(tool_kind)
-        self._watch = ToolLifeWatch(self._book)
+        self._watch = ToolLifeMonitor(self._book)
         self._post, self._say = post_command, print_line
         self._barred = ""
         try:
@@ -60,10 +60,10 @@ class HeadlessToolLife:
         except StoreError as error:
             print_line(Message("tool life is not counted: {error}", error=error))
 
-    def _read(self, book: PartsBook) -> None:
+    def _read(self, book: ProductionRecords) -> None:
         if book.store is None:
             raise StoreError(book.lock_reason)
-        book.current_data = read_production_data(book.store, "", book.tool_kind, {})
+        book.current_data = read_production_data(book.store, "", book.tool_table_kind, {})
         book.load_count = 1
 
     def update(self, snapshot: Snapshot, proof: Proof) -> None:
@@ -73,15 +73,15 @@ class HeadlessToolLife:
         """
         if not self._book.load_count:
             return
-        self._watch.observe(snapshot, self._say)
-        wanted = self._watch.find_block_reason(snapshot, proof.tool_numbers)
+        self._watch.process_snapshot(snapshot, self._say)
+        wanted = self._watch.find_lock_reason(snapshot, proof.tool_numbers)
         if wanted != self._barred:
-            self._post(BlockNextPart(wanted))
+            self._post(PreventNextPart(wanted))
         self._barred = wanted
 
     def save_tool_use(self) -> None:
         """Save the tool use counted since the last save."""
-        self._watch.save_all()
+        self._watch.save_all_tool_use()
         self._book.close()
 
 
@@ -127,20 +127,20 @@ def run_headless(
         if recorder.storage_error:
             print_line(recorder.storage_error)
 
-        def hear(event: LogEvent) -> None:
-            noted = recorder.assign_record_name(event)
+        def handle_event(event: LogEvent) -> None:
+            noted = recorder.add_record_name(event)
             event_log.write_event(noted)
             if journal is not None:
                 journal.hear(noted)
 
         executor = Executor(
-            machine, connected.ports, hear, store_interruption=note, record_tick=recorder.queue_tick
+            machine, connected.ports, handle_event, store_interruption=note, record_tick=recorder.queue_tick
         )
         tools = find_tool_table_kind(machine.kind)
         lives = HeadlessToolLife(journal, executor.post, print_line, tools) if journal is not None else None
         recorder.start()
         started = [
-            extra.start_headless(machine, lambda: executor.snapshot, print_line, is_real_time=paced)
+            extra.start_headless_services(machine, lambda: executor.snapshot, print_line, is_real_time=paced)
             for extra in extras().values()
         ]
         try:
@@ -249,13 +249,13 @@ def _start_function(
     if panel is None:
         return lambda: print_line("press both palm buttons")
 
-    def press() -> None:
+    def press_palm_buttons() -> None:
         panel.press_left()
         panel.press_right()
         panel.release_left()
         panel.release_right()
 
-    return press
+    return press_palm_buttons
 
 
 def _set_inputs(connected: ConnectedMachine, inputs: Mapping[str, bool]) -> None:

@@ -12,13 +12,13 @@ from collections.abc import Callable, Collection, Mapping
 from contextlib import closing
 from pathlib import Path
 
-from app.compose.control.unattended_notes import pop_events, read_note
-from app.compose.runs.receipt import Receipt
+from app.compose.control.unattended_notes import pop_interruption_note, pop_unconfirmed_events
+from app.compose.runs.receipt import EventReceipt
 from app.desk.data_folder import find_data_folder
 from app.desk.persistence import NullRunRecords, Persistence
 from app.offsets.offset_book import OffsetBook, OffsetRows, read_store_rows
 from app.production.cycle_recorder import CycleRecorder
-from app.production.parts_book import PartsBook
+from app.production.parts_book import ProductionRecords
 from app.programs.run_history import mark_interrupted_runs
 from core.executor.snapshot import (
     InterruptedJob,
@@ -30,14 +30,21 @@ from core.executor.snapshot import (
 from core.language.source import ProgramSource
 from core.message import Message
 from core.store import backup, store_connection
-from core.store.backup import BackupVerdict, check_backup
+from core.store.backup import BackupCheckResult, check_backup
 from core.store.damaged_rows import TABLES_USED_BY_PROGRAMS
 from core.store.production.run_records import RunRecords
 from core.store.store import Store
 from core.store.store_access import PendingEntries
 from core.store.store_errors import StoreError
 from core.store.store_file import STORE_FILE_NAME, has_store
-from core.store.store_rows import EventOrigin, EventRow, OffsetKind, ToolRow, VersionRow, get_utc_now_text
+from core.store.store_rows import (
+    EventOrigin,
+    EventRow,
+    OffsetKind,
+    ProgramVersionRow,
+    ToolOffsetRow,
+    get_utc_now_text,
+)
 from core.store.user_records import UserList
 
 _log = logging.getLogger(__name__)
@@ -66,10 +73,10 @@ class Journal(Persistence):
         self._folder, self._goes_on = folder, control_running
         self.who: Callable[[], str] = str  # returns the name of the user who is logged in
         self._lock = threading.Lock()  # locked briefly while the store or events are exchanged
-        self._held: deque[tuple[LogEvent, Receipt | None]] | None = (
+        self._held: deque[tuple[LogEvent, EventReceipt | None]] | None = (
             None  # events buffered during a restore or without a store
         )
-        self._books: list[OffsetBook | PartsBook] = []
+        self._books: list[OffsetBook | ProductionRecords] = []
         self._store: Store | None = None
         self._program = ""
         self._write_error = ""
@@ -126,12 +133,12 @@ class Journal(Persistence):
 
     def _take_interrupted(self, store: Store) -> InterruptedJob | None:
         """Store the events of a control that ran without a screen, and return its interrupted job."""
-        program, events = pop_events(self._folder)
+        program, events = pop_unconfirmed_events(self._folder)
         for row, origin, production_rows in events:
-            if not self.has_stored(origin):
+            if not self.has_stored_event(origin):
                 part_of = Path(program).name if row.kind == "part" else ""
                 store.runs.record_event(row, part_of, origin, production_rows)
-        known, left = read_note(self._folder)
+        known, left = pop_interruption_note(self._folder)
         if not known:
             return parse_interrupted_job(store.settings.read_setting(INTERRUPTED_JOB_KEY))
         self.is_interruption_logged = False
@@ -182,7 +189,7 @@ class Journal(Persistence):
         )
         rows = self._read_other_rows() if store is None else None
         if rows is not None:
-            book.show_rows(rows)
+            book.replace_rows(rows)
         book.has_read_failed = store is None and rows is None and has_store(self._folder)
         self._attach_book(book, store)
         return book
@@ -197,26 +204,26 @@ class Journal(Persistence):
         except StoreError:
             return None
 
-    def create_parts_book(self, tool_kind: OffsetKind = OffsetKind.TOOL) -> PartsBook:
+    def create_parts_book(self, tool_kind: OffsetKind = OffsetKind.TOOL) -> ProductionRecords:
         """Return the book of measured parts and tool lives in the store.
 
         ``tool_kind`` is the tool table of this machine.
         """
         store = self._store
-        book = PartsBook(store, "" if store else self.write_error, tool_kind)
+        book = ProductionRecords(store, "" if store else self.write_error, tool_kind)
         self._attach_book(book, store)
         return book
 
-    def _attach_book(self, book: OffsetBook | PartsBook, store: Store | None) -> None:
+    def _attach_book(self, book: OffsetBook | ProductionRecords, store: Store | None) -> None:
         """Register a book whose store must be replaced whenever the journal's store is replaced.
 
         The journal's store may also be replaced while the book is being created.
         """
         self._books.append(book)
         if self._store is not store:
-            book.use_store(self._store, self._write_error)
+            book.switch_store(self._store, self._write_error)
 
-    def hear(self, event: LogEvent, receipt: Receipt | None = None) -> None:
+    def hear(self, event: LogEvent, receipt: EventReceipt | None = None) -> None:
         """Save an event. For a completed part, also increase the part count of its program.
 
         The receipt is confirmed when the event is on the disk. An event that waits in memory is confirmed
@@ -230,10 +237,10 @@ class Journal(Persistence):
             elif self._store is not None:
                 self._write(self._store, event, receipt)
 
-    def has_stored(self, origin: EventOrigin) -> bool:
+    def has_stored_event(self, origin: EventOrigin) -> bool:
         """Return whether a previous screen process has already stored the event with this origin."""
         last = self._last_origin
-        return last is not None and origin.control == last.control and origin.number <= last.number
+        return last is not None and origin.control_id == last.control_id and origin.number <= last.number
 
     def resume_recording(self, snapshot: Snapshot) -> None:
         """Count parts for the program of a control that ran without this process.
@@ -243,8 +250,8 @@ class Journal(Persistence):
         with self._lock:
             self._program = snapshot.program
 
-    def _write(self, store: Store, event: LogEvent, receipt: Receipt | None) -> None:
-        if receipt is not None and self.has_stored(receipt.origin):  # the store was opened late
+    def _write(self, store: Store, event: LogEvent, receipt: EventReceipt | None) -> None:
+        if receipt is not None and self.has_stored_event(receipt.origin):  # the store was opened late
             receipt.confirm_storage()
             return
         row = EventRow(get_utc_now_text(), event.kind, event.text, event.line_number, event.record_name)
@@ -263,7 +270,7 @@ class Journal(Persistence):
                 name, source.text.encode("utf-8", "surrogateescape"), "loaded to run"
             )
 
-    def versions(self, name: str) -> tuple[VersionRow, ...]:
+    def versions(self, name: str) -> tuple[ProgramVersionRow, ...]:
         """Return all versions of a program, newest first. Raises StoreError if they cannot be read.
 
         Do not call this method in the screen's thread.
@@ -335,14 +342,14 @@ class Journal(Persistence):
         """
         return self.require_store().events.read_events(search, limit, kinds)
 
-    def read_last_run_tools(self, program: str) -> tuple[str, dict[int, ToolRow]]:
+    def read_last_run_tools(self, program: str) -> tuple[str, dict[int, ToolOffsetRow]]:
         """Return the UTC start time of the program's last run, and the tool offsets at that time.
 
         The result is empty if the program has not run. Raises StoreError if the store cannot be read. Call
         this method in a worker thread.
         """
         store = self.require_store()
-        started = next((row.started for row in store.runs.read_records() if row.program == program), None)
+        started = next((row.started for row in store.runs.read_run_records() if row.program == program), None)
         return (
             (started, store.offsets.tool_offsets.read_rows_at(started)) if started is not None else ("", {})
         )
@@ -361,7 +368,7 @@ class Journal(Persistence):
         self.require_store()
         backup.back_up_store(self._folder, target)
 
-    def check_backup(self, source: Path) -> BackupVerdict:
+    def check_backup(self, source: Path) -> BackupCheckResult:
         """Check a backup against the store, and return the result.
 
         The result also reports a damaged or unreadable backup. Raises StoreError if no store is open or it
@@ -402,9 +409,9 @@ class Journal(Persistence):
             rows = self._read_other_rows()
             for book in self._books:
                 if isinstance(book, OffsetBook):
-                    book.use_store(None, self._write_error, rows)
+                    book.switch_store(None, self._write_error, rows)
                 else:
-                    book.use_store(None, self._write_error)
+                    book.switch_store(None, self._write_error)
             if error.is_temporary:
                 self._start_opener()
             return
@@ -415,12 +422,12 @@ class Journal(Persistence):
         self._write_error = ""
         self._post_noted()
         for book in self._books:
-            book.use_store(store, "")
+            book.switch_store(store, "")
         if late:
             self._late = True
             self._tell_late()
 
-    def on_late_open(self, callback: Callable[[], None]) -> None:
+    def set_late_open_callback(self, callback: Callable[[], None]) -> None:
         """Set the function to call when a store that was unavailable at startup has been read.
 
         The function is called in a different thread, or immediately if the late store was already read.

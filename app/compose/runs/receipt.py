@@ -9,7 +9,7 @@ from core.store.production.part_cycles import ProductionRow
 from core.store.store_rows import EventOrigin
 
 
-class Receipt(NamedTuple):
+class EventReceipt(NamedTuple):
     """Origin of an event, the function that confirms its storage, and its rows of cycles and stops.
 
     ``confirm_storage`` is called from any thread when the event is on the disk, or when it need not be

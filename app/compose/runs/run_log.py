@@ -59,7 +59,7 @@ class EventLog:
                 Message("{path}: the event log cannot be written: {cause}", path=path, cause=error.strerror),
                 "cannot-write",
             ) from error
-        delete_old_files(folder, path)
+        delete_old_log_files(folder, path)
         log = cls(path, file)
         try:
             yield log
@@ -87,7 +87,7 @@ class EventLog:
             )
 
 
-def delete_old_files(folder: Path, newest_path: Path) -> None:
+def delete_old_log_files(folder: Path, newest_path: Path) -> None:
     """Delete the oldest run and crash files until the log folder is within its limits.
 
     The limits are ``MAX_FILES``, ``MAX_TOTAL_BYTES`` and ``MAX_AGE_S``. The file ``newest_path``, which is

@@ -10,7 +10,13 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from app.desk.programs.program_loading import LoadedProgram
-from core.closing_steps import ClosingStep, WaitFunction, close_in_order, close_together, wait_for_end
+from core.closing_steps import (
+    ClosingStep,
+    WaitFunction,
+    run_steps_in_order,
+    run_steps_in_parallel,
+    wait_for_step_end,
+)
 from core.executor.snapshot import Snapshot
 
 DRIVERS_CLOSE_TIMEOUT_S = 10.0  # Seconds for stopping an inverter and for a driver process to end.
@@ -37,7 +43,7 @@ class StartHandler(Protocol):
 class FrameWatcher(Protocol):
     """Object that observes every frame and may add a reminder to the prompt line."""
 
-    def observe(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
+    def observe_frame(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Update the watcher from the snapshot and the loaded program, once per frame."""
         ...
 
@@ -71,12 +77,12 @@ class ClosingSequence:
     control: ControlClosing = field(default_factory=ControlClosing)
     list_service_steps: Callable[[], Iterable[ClosingStep]] = tuple
     storage_steps: tuple[ClosingStep, ...] = ()
-    wait_for_step: WaitFunction = wait_for_end  # Waits for one closing step.
+    wait_for_step: WaitFunction = wait_for_step_end  # Waits for one closing step.
 
     def close(self, model_steps: Iterable[ClosingStep]) -> None:
         """Stop the machine and close its drivers, then close all workers together, and then the storage."""
         drivers = ClosingStep("drivers", self.control.close_drivers, DRIVERS_CLOSE_TIMEOUT_S)
-        close_in_order((*self.control.stop_steps, drivers), self.wait_for_step)
+        run_steps_in_order((*self.control.stop_steps, drivers), self.wait_for_step)
         workers = (*model_steps, *self.control.worker_steps, *self.list_service_steps())
-        close_together(workers, self.wait_for_step)
-        close_in_order(self.storage_steps, self.wait_for_step)
+        run_steps_in_parallel(workers, self.wait_for_step)
+        run_steps_in_order(self.storage_steps, self.wait_for_step)

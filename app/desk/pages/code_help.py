@@ -83,7 +83,7 @@ class CodeHelp:
     def words(self) -> tuple[tuple[str, str], ...]:
         """Return the address words of the selected code with their meanings."""
         chosen = self.selected_entry
-        return self._book.list_words(chosen) if self._book is not None and chosen is not None else ()
+        return self._book.list_word_meanings(chosen) if self._book is not None and chosen is not None else ()
 
     @property
     def selected_entry(self) -> CodeBookEntry | None:
@@ -97,6 +97,8 @@ def make_code_blocks(code_book: CodeBook, entries: Sequence[CodeBookEntry]) -> t
     for entry in entries:
         blocks.append(GuideBlock(BlockKind.HEADING, entry.form))
         blocks.append(GuideBlock(BlockKind.TEXT, tr(entry.what)))
-        blocks += (GuideBlock(BlockKind.KEY, tr(what), word) for word, what in code_book.list_words(entry))
+        blocks += (
+            GuideBlock(BlockKind.KEY, tr(what), word) for word, what in code_book.list_word_meanings(entry)
+        )
         blocks += (GuideBlock(BlockKind.TEXT, line) for line in entry.example.splitlines())
     return tuple(blocks)

@@ -7,7 +7,7 @@ from pathlib import Path
 from app.desk.pages.table_content import FunctionKey
 
 
-class PanelModel:
+class EditorPanelModel:
     """Panel without functions, for an editor whose panel is not installed.
 
     A feature overrides all members.
@@ -24,7 +24,7 @@ class PanelModel:
     cursor_line: int = 0
 
     @property
-    def path_line(self) -> int:
+    def path_end_line(self) -> int:
         """Return the program line, counted from 1, up to which the tool path is drawn."""
         return 0
 
@@ -39,7 +39,7 @@ class PanelModel:
     def process_results(self) -> None:
         """Process the results of the workers. The editor calls this method once per frame."""
 
-    def function_keys(self) -> dict[int, FunctionKey]:
+    def make_function_keys(self) -> dict[int, FunctionKey]:
         """Return the function keys of the panel by number."""
         return {}
 

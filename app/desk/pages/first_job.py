@@ -8,7 +8,7 @@ from typing import NamedTuple
 from app.desk.persistence import Persistence
 from app.desk.programs.program_loading import LoadedProgram, LoadingPhase
 from app.desk.status.interrupted_notice import NoticeRow
-from app.desk.status.prompt_line import find_missing_tools
+from app.desk.status.prompt_line import find_unmeasured_tools
 from app.desk.translation import tr
 from core.executor.snapshot import CYCLE_STATES, MachineState, Snapshot
 from core.message import Message
@@ -91,9 +91,9 @@ class FirstJobCard:
         if self.step_index == 0:
             return loaded.path is not None and loaded.proof is not None
         if self.step_index == 1:
-            return loaded.proof is not None and not find_missing_tools(loaded)
+            return loaded.proof is not None and not find_unmeasured_tools(loaded)
         if self.step_index == 2:
-            return good and not find_missing_tools(loaded)
+            return good and not find_unmeasured_tools(loaded)
         if self.step_index == 3:
             ran, self._dry = self._dry, snapshot.state in CYCLE_STATES and snapshot.no_count
             return ran and snapshot.state not in _NO_END

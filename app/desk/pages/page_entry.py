@@ -61,7 +61,7 @@ def find_mdi_refusal(snapshot: Snapshot) -> str:
     return ""
 
 
-def find_searchto_refusal(snapshot: Snapshot, loaded: LoadedProgram) -> str:
+def find_restart_refusal(snapshot: Snapshot, loaded: LoadedProgram) -> str:
     """Return the reason why SEARCHTO cannot be opened or continued now, or an empty string if it can."""
     if snapshot.state in CYCLE_STATES:
         return tr("TO USE SEARCHTO, LET THE PROGRAM END, OR STOP IT AND PRESS R")

@@ -35,7 +35,7 @@ class PageRegistry:
         """Register the model of a page by its class. The model closes together with TurnDesk."""
         self._attached[type(model)] = model
 
-    def attach_lazily(self, model_class: str, make_model: Callable[[], AttachedModel]) -> None:
+    def attach_lazy_model(self, model_class: str, make_model: Callable[[], AttachedModel]) -> None:
         """Register a page model that is created by the first call of ``find_model``.
 
         ``model_class`` is the class name with its module, for example
@@ -101,7 +101,7 @@ class PageRegistry:
     def notify_run_watchers(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Pass a frame of a program run to the run watchers."""
         for watcher in self._run_watchers:
-            watcher.observe(snapshot, loaded)
+            watcher.observe_frame(snapshot, loaded)
 
     def notify_frame_watchers(self, snapshot: Snapshot) -> None:
         """Pass the snapshot of a frame to the frame watchers."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from app.desk.arithmetic import EXPRESSION_CHARACTERS, MAX_LENGTH
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 
 if TYPE_CHECKING:
     from core.part.tool_outline import ToolOutline
@@ -48,7 +48,7 @@ def refused(text: str) -> str:
     return text if set(text) - EXPRESSION_CHARACTERS else RejectedText(text)
 
 
-def edit_text(text: str, key: str, max_length: int = MAX_LENGTH) -> str:
+def apply_edit_key(text: str, key: str, max_length: int = MAX_LENGTH) -> str:
     """Return an input text after one key press. The key is a character, ``Back`` or ``Delete``."""
     if key == "Back":
         return text[:-1]
@@ -61,43 +61,43 @@ def edit_text(text: str, key: str, max_length: int = MAX_LENGTH) -> str:
 class TableRow:
     """One row of a table.
 
-    - ``is_lit`` draws a lamp, which is filled if True and hollow if False. None draws no lamp.
+    - ``is_lamp_lit`` draws a lamp, which is filled if True and hollow if False. None draws no lamp.
     - A cell may have two lines if the table has ``has_tall_rows`` set.
-    - ``outline`` is drawn in the last cell.
+    - ``tool_outline`` is drawn in the last cell.
     """
 
     cells: tuple[str, ...]
-    is_lit: bool | None = None
-    tone: Tone = Tone.READY
+    is_lamp_lit: bool | None = None
+    tone: StatusTone = StatusTone.READY
     bar_fraction: float | None = None  # Filled part of the last cell, 0…1.
-    outline: ToolOutline | None = None
+    tool_outline: ToolOutline | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class TableContent:
     """Content of a table with a title, column heads and an entry line.
 
-    - ``column_shares`` are the fractions of the table's width that the columns have.
+    - ``relative_column_widths`` are the fractions of the table's width that the columns have.
     - ``marked`` is the index of the selected row, or -1 if no row is selected.
-    - ``question`` and ``text`` are shown in the entry line.
-    - Cells of the columns ``raw_columns`` contain names and user texts, which are not translated.
+    - ``entry_prompt`` and ``text`` are shown in the entry line.
+    - Cells of the columns ``untranslated_columns`` contain names and user texts, which are not translated.
     """
 
     title: str
     column_heads: tuple[str, ...]
-    column_shares: tuple[float, ...]
+    relative_column_widths: tuple[float, ...]
     rows: tuple[TableRow, ...]
     marked: int = -1
-    question: str = ""
+    entry_prompt: str = ""
     text: str = ""
     notes: tuple[str, ...] = ()
-    raw_columns: frozenset[int] = frozenset()
-    number_columns: frozenset[int] = frozenset()  # Columns that are right-aligned, for numbers.
+    untranslated_columns: frozenset[int] = frozenset()
+    numeric_columns: frozenset[int] = frozenset()  # Columns that are right-aligned, for numbers.
     has_tall_rows: bool = False  # Rows are high enough for two lines and a drawing.
-    is_rejected: bool = field(init=False)  # The next character replaces the text.
+    is_entry_rejected: bool = field(init=False)  # The next character replaces the text.
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "is_rejected", isinstance(self.text, RejectedText))
+        object.__setattr__(self, "is_entry_rejected", isinstance(self.text, RejectedText))
 
 
 class FunctionKey(NamedTuple):
@@ -133,5 +133,5 @@ class InputField:
         taken = self.accepts_key(key) or key in {"Back", "Delete"}
         if taken:
             replaced = self.accepts_key(key) and self.text == self.proposed_text
-            self.text, self.proposed_text = edit_text("" if replaced else self.text, key), ""
+            self.text, self.proposed_text = apply_edit_key("" if replaced else self.text, key), ""
         return taken

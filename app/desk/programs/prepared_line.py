@@ -11,7 +11,7 @@ from functools import partial
 
 from app.desk.background_work import LatestRequestWorker, ProgressCallback
 from app.desk.programs.program_loading import FirstMoveResult, ProvedJob
-from core.executor.commands import Command, PrepareStart
+from core.executor.commands import Command, PrepareCycleStart
 from core.executor.job import Job
 from core.executor.snapshot import CYCLE_STATES, Snapshot, StartAction
 from core.language.diagnostics import Diagnostic, Severity
@@ -24,7 +24,7 @@ It is called on the worker thread.
 """
 
 
-def find_unset_tools(job: Job, proved_job: ProvedJob) -> tuple[Diagnostic, ...]:
+def find_unmeasured_tool_errors(job: Job, proved_job: ProvedJob) -> tuple[Diagnostic, ...]:
     """Return an error for each tool in the MDI line that does not have a measured offset."""
     missing = proved_job.proof.unset(job)
     text = "Tool {number} has not been set."
@@ -64,12 +64,12 @@ class PreparedMdiLine:
     def cancel_line(self) -> None:
         """Cancel the line, so that Cycle Start has no effect."""
         self.discard_line()
-        self.post_command(PrepareStart(StartAction.MDI_LINE))
+        self.post_command(PrepareCycleStart(StartAction.MDI_LINE))
 
     def stop_line_mode(self) -> None:
         """Cancel the line, so that Cycle Start starts programs again."""
         self.discard_line()
-        self.post_command(PrepareStart(StartAction.PROGRAM))
+        self.post_command(PrepareCycleStart(StartAction.PROGRAM))
 
     def discard_line(self) -> None:
         """Cancel the proof in progress, and discard the ready line and its diagnostics."""
@@ -125,7 +125,7 @@ class PreparedMdiLine:
 
     def _proved(self, answer: tuple[Job, ProvedJob]) -> None:
         job, proved = answer
-        self.diagnostics = (*proved.diagnostics, *find_unset_tools(job, proved))
+        self.diagnostics = (*proved.diagnostics, *find_unmeasured_tool_errors(job, proved))
         if self.blocking_errors:
             self.on_refused(self.blocking_errors[0])
         else:
@@ -134,10 +134,10 @@ class PreparedMdiLine:
 
     def _prepare(self) -> None:
         if self.ready_job is None or self._proof is None:
-            self.post_command(PrepareStart(StartAction.MDI_LINE))
+            self.post_command(PrepareCycleStart(StartAction.MDI_LINE))
         else:
             self.post_command(
-                PrepareStart(
+                PrepareCycleStart(
                     StartAction.MDI_LINE, self.ready_job, self._proof.proof, self._proof.first_move_clearance
                 )
             )

@@ -27,13 +27,13 @@ class ProgramChoice:
     program_folders: ProgramFolders
     program_loader: ProgramLoader
     read_snapshot: Callable[[], Snapshot]
-    prompt_answers: PromptLine
+    prompt_line: PromptLine
     save_path: Callable[[str], None]
 
-    def can_choose(self) -> bool:
+    def can_choose_program(self) -> bool:
         """Return whether a program can currently be chosen. If not, show the reason on the prompt line."""
         if why := find_program_refusal(self.read_snapshot()):
-            self.prompt_answers.say(why)
+            self.prompt_line.say(why)
         return not why
 
     def load_by_name(self, name: str) -> bool:
@@ -47,26 +47,26 @@ class ProgramChoice:
     def load_path(self, path: Path) -> None:
         """Load the program at this path, but ask the operator before it replaces an interrupted job."""
         found = self.read_snapshot().interrupted
-        self.prompt_answers.withdraw_question()
+        self.prompt_line.withdraw_question()
         if found is not None and found.program != path.name:
-            self.prompt_answers.ask_question(
+            self.prompt_line.ask_question(
                 interrupted_notice.make_replace_question(found, path.name), partial(self._load, path)
             )
         else:
             self._load(path)
 
     def _load(self, path: Path) -> None:
-        if self.can_choose():
-            self.program_loader.start_loading(path, self.program_loader.loaded_program.has_block_delete)
+        if self.can_choose_program():
+            self.program_loader.start_loading(path, self.program_loader.loaded_program.is_block_delete_on)
             self.save_path(str(path))
 
     def toggle_block_delete(self) -> None:
         """Toggle Block Delete and reload the program, because its proof depends on Block Delete."""
         loaded = self.program_loader.loaded_program
         if loaded.path is None:
-            self.prompt_answers.say("F2: CHOOSE A PROGRAM BEFORE CHANGING BLOCK DELETE")
+            self.prompt_line.say("F2: CHOOSE A PROGRAM BEFORE CHANGING BLOCK DELETE")
         elif self.read_snapshot().state in ACTIVE_STATES:
-            self.prompt_answers.say("CHANGE BLOCK DELETE ONLY BETWEEN CYCLES")
+            self.prompt_line.say("CHANGE BLOCK DELETE ONLY BETWEEN CYCLES")
         else:
-            self.prompt_answers.withdraw_question()
-            self.program_loader.start_loading(loaded.path, not loaded.has_block_delete)
+            self.prompt_line.withdraw_question()
+            self.program_loader.start_loading(loaded.path, not loaded.is_block_delete_on)

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.translation import tr
-from core.executor.raised_alarm import CaughtAttempt
+from core.executor.raised_alarm import ErrorCatcher
 from core.language.source import ProgramSource, SourceError, load_source
 from core.message import Message
 
@@ -55,7 +55,7 @@ class ProgramFolders:
         """Return whether a file name has the extension of a drawing."""
         return name.lower().endswith(self._drawing_endings)
 
-    def accepts_name(self, name: str) -> bool:
+    def accepts_file_name(self, name: str) -> bool:
         """Return whether a file name has the extension of a program or a drawing."""
         return is_program_name(name) or self.is_drawing_name(name)
 
@@ -63,7 +63,7 @@ class ProgramFolders:
         """Return the programs of all folders, sorted by name. A missing folder counts as empty."""
         return self._listed(is_program_name)
 
-    def find_matching(self, typed_text: str) -> tuple[ListedProgram, ...]:
+    def find_matching_programs(self, typed_text: str) -> tuple[ListedProgram, ...]:
         """Return the programs whose names contain the typed text."""
         part = typed_text.strip().lower()
         return tuple(entry for entry in self.list_programs() if part in entry.name.lower())
@@ -201,11 +201,11 @@ class ProgramFileMonitor:
             self._wanted.wait(CHECK_INTERVAL_S)
             self._wanted.clear()
             if not self._closing.is_set():
-                self.check_safely()
+                self.check_file_safely()
 
-    def check_safely(self) -> None:
+    def check_file_safely(self) -> None:
         """Check the program's files once. If an exception occurs, they count as unreadable."""
-        with CaughtAttempt() as trial:
+        with ErrorCatcher() as trial:
             self.compare_files()
         if trial.error is not None:
             _log.error("the program's file cannot be watched", exc_info=trial.error)

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from app.desk.background_work import LatestRequestWorker, ProgressCallback, WorkRequest
-from core.executor.commands import Clearance, Command, LoadJob, SupplyProof
+from core.executor.commands import Command, LoadJob, StartClearance, SupplyJobProof
 from core.executor.job import Job, Proof
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import ProgramSource
@@ -32,16 +32,16 @@ class FirstMoveResult(NamedTuple):
     """Result of checking the first move of a program for collisions.
 
     The result has one verdict for a start at the current position and one verdict for Cycle Repeat.
-    ``approach_legs`` is the path to draw. ``zero_position`` is the machine position, X and Z in mm, at
+    ``approach_legs`` is the path to draw. ``part_zero_position`` is the machine position, X and Z in mm, at
     which the tool tip is at part zero.
     """
 
-    clearances: tuple[Clearance, ...]
+    clearances: tuple[StartClearance, ...]
     approach_legs: ApproachLegs = ()
-    zero_position: tuple[float, float] = (0.0, 0.0)
+    part_zero_position: tuple[float, float] = (0.0, 0.0)
 
     @property
-    def start_clearance(self) -> Clearance:
+    def start_clearance(self) -> StartClearance:
         """Return the verdict on a start from the current position of the axes."""
         return self.clearances[0]
 
@@ -63,18 +63,18 @@ class LoadingPhase(StrEnum):
 class ProvedJob:
     """Proof of a job with its diagnostics.
 
-    If ``waits_for_part`` is True, the job must not start before the part is proved, because an error of the
-    part may prevent the start. ``first_move_result`` is the result of the first-move check of an MDI line
-    or a restart.
+    If ``waits_for_part_proof`` is True, the job must not start before the part is proved, because an error
+    of the part may prevent the start. ``first_move_result`` is the result of the first-move check of an MDI
+    line or a restart.
     """
 
     proof: Proof
     diagnostics: tuple[Diagnostic, ...] = ()
-    waits_for_part: bool = False
+    waits_for_part_proof: bool = False
     first_move_result: FirstMoveResult | None = None
 
     @property
-    def first_move_clearance(self) -> Clearance | None:
+    def first_move_clearance(self) -> StartClearance | None:
         """Return the verdict of the first-move check, or None if the move was not checked."""
         return self.first_move_result.start_clearance if self.first_move_result is not None else None
 
@@ -116,7 +116,7 @@ def _no_part(_picture: ProgramPicture, _watch: ProgressCallback) -> PartProof | 
 class LoadingSteps:
     """Functions of other packages that load a program, called only on the worker thread.
 
-    The ``ProgressCallback`` receives the progress. It may raise AbandonedError, which the functions must
+    The ``ProgressCallback`` receives the progress. It may raise WorkAbandonedError, which the functions must
     not catch.
     """
 
@@ -136,7 +136,7 @@ class LoadedProgram:
 
     phase: LoadingPhase = LoadingPhase.EMPTY
     path: Path | None = None
-    has_block_delete: bool = False
+    is_block_delete_on: bool = False
     source: ProgramSource | None = None
     job: Job | None = None
     proof: Proof | None = None
@@ -196,7 +196,7 @@ class ProgramLoader:
             self._now = LoadedProgram(LoadingPhase.READING, path, block_delete)
             self.worker.request_work(partial(self._load, path, block_delete), lambda _: None, self._failed)
 
-    def replace_loaded(self, loaded: LoadedProgram) -> None:
+    def replace_loaded_program(self, loaded: LoadedProgram) -> None:
         """Replace the loaded program with an updated object for the same program.
 
         The updated object has a new proof or a new progress of loading.
@@ -231,17 +231,17 @@ class ProgramLoader:
                 now, phase=LoadingPhase.DRAWING, proof=proof, diagnostics=found, progress_count=0
             ),
         )
-        if not proved.waits_for_part:
-            self.post_command(SupplyProof(proof))
+        if not proved.waits_for_part_proof:
+            self.post_command(SupplyJobProof(proof))
         picture = steps.draw_path(job, partial(self._reached, request))
-        phase = LoadingPhase.PROVING_PART if proved.waits_for_part else find_final_phase(proof)
+        phase = LoadingPhase.PROVING_PART if proved.waits_for_part_proof else find_final_phase(proof)
         self._publish(request, lambda now: replace(now, phase=phase, picture=picture, progress_count=0))
         self._prove_part(job, proved, picture, request)
         _freeze_garbage()
 
     def _prove_part(self, job: Job, proved: ProvedJob, picture: ProgramPicture, request: WorkRequest) -> None:
         """Prove the part. The program may run before this proof ends unless it must wait for the proof."""
-        watch = partial(self._reached, request) if proved.waits_for_part else request
+        watch = partial(self._reached, request) if proved.waits_for_part_proof else request
         part = self.loading_steps.prove_part(picture, watch)
         found, whole = proved.diagnostics, proved.proof
         if part is not None:
@@ -253,14 +253,14 @@ class ProgramLoader:
                 now, phase=phase, proof=whole, diagnostics=found, part_proof=part, progress_count=0
             ),
         )
-        if proved.waits_for_part or whole != proved.proof:
-            self.post_command(SupplyProof(whole))
+        if proved.waits_for_part_proof or whole != proved.proof:
+            self.post_command(SupplyJobProof(whole))
 
     def _reached(self, request: WorkRequest, count: float) -> None:
         self._publish(request, lambda now: replace(now, progress_count=int(count)))
 
     def _publish(self, request: WorkRequest, change: Callable[[LoadedProgram], LoadedProgram]) -> None:
-        request.publish_result(lambda: self.replace_loaded(change(self._now)))
+        request.publish_result(lambda: self.replace_loaded_program(change(self._now)))
 
     def _failed(self, why: str) -> None:
         self._now = replace(self._now, phase=LoadingPhase.UNREADABLE, error_text=why)

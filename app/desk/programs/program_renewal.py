@@ -10,13 +10,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
 
-from app.desk.background_work import AbandonedError, LatestRequestWorker, WorkRequest
+from app.desk.background_work import LatestRequestWorker, WorkAbandonedError, WorkRequest
 from app.desk.programs.program_loading import LoadedProgram, LoadingPhase, ProgramLoader, find_final_phase
 from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
 from app.offsets.active_offsets import make_secondary_offsets, make_tool_offsets
 from app.offsets.offset_book import OffsetBook
-from core.executor.commands import ChangeOffsets, Command, SupplyProof, UseOffsets
+from core.executor.commands import ChangeOffsets, Command, SupplyJobProof, UseOffsetTables
 from core.executor.job import Job, Proof, find_outdated_setting
 from core.executor.snapshot import MachineState, Snapshot
 from core.message import Message
@@ -45,7 +45,7 @@ class RunningRenewal:
     _trouble: str = ""
 
     def __post_init__(self) -> None:
-        self.worker = LatestRequestWorker("renewing", thread_owner=self.program_loader.worker)
+        self.worker = LatestRequestWorker("renewing", thread_owning_worker=self.program_loader.worker)
 
     def begin_renewal(self) -> bool:
         """Announce the renewal to the executor and begin proving.
@@ -71,11 +71,11 @@ class RunningRenewal:
             return False
         if ready is not self._shown:
             self._shown = ready
-            self.program_loader.replace_loaded(ready)
+            self.program_loader.replace_loaded_program(ready)
             # The proof includes the findings of the part.
             if ready.proof is not None and ready.proof != self._given:
                 self._given = ready.proof
-                self.program_loader.post_command(SupplyProof(ready.proof))
+                self.program_loader.post_command(SupplyJobProof(ready.proof))
         return True
 
     def poll_error(self) -> str:
@@ -108,7 +108,7 @@ class RunningRenewal:
             part_proof=None,
             progress_count=0,
         )
-        if not proved.waits_for_part:
+        if not proved.waits_for_part_proof:
             request.publish_result(partial(self._publish, fresh))
             self._give(job, proved.proof)
         picture = steps.draw_path(job, watch)
@@ -124,7 +124,7 @@ class RunningRenewal:
             diagnostics=found,
             phase=find_final_phase(whole),
         )
-        if proved.waits_for_part:
+        if proved.waits_for_part_proof:
             request.publish_result(partial(self._publish, fresh))
             self._give(job, whole)
         return fresh
@@ -143,7 +143,7 @@ class RunningRenewal:
 
     def _still_loaded(self) -> None:
         if self.program_loader.load_count != self._loads:
-            raise AbandonedError
+            raise WorkAbandonedError
 
     def _ready(self, fresh: LoadedProgram) -> None:
         self._next = fresh
@@ -193,14 +193,14 @@ class ProgramRenewal:
             self.is_requested = False
             # The new offsets take effect immediately, also for the tool in use.
             post_command(
-                UseOffsets(
+                UseOffsetTables(
                     make_tool_offsets(offset_book.tool_offsets),
                     make_secondary_offsets(offset_book.secondary_offsets),
                 )
             )
             now = self.program_loader.loaded_program
             if now.path is not None:
-                self.program_loader.start_loading(now.path, now.has_block_delete)
+                self.program_loader.start_loading(now.path, now.is_block_delete_on)
 
     def _report_error(self, snapshot: Snapshot) -> None:
         """Warn that the next part will not start, while the operator can still undo the change."""

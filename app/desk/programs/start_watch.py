@@ -19,10 +19,16 @@ from typing import TYPE_CHECKING, NamedTuple
 from app.desk.background_work import LatestRequestWorker, ProgressCallback
 from app.desk.programs.prepared_line import ProveLine
 from app.desk.programs.program_loading import FirstMoveResult, LoadedProgram, ProvedJob
-from app.desk.status.interrupted_notice import can_restart
+from app.desk.status.interrupted_notice import can_restart_program
 from app.desk.translation import tr
 from app.path.path_aspects import ApproachLeg
-from core.executor.commands import FIRST_MOVE_CROSSES, TOOL_IN_PART, Clearance, Command, ReplaceClearances
+from core.executor.commands import (
+    FIRST_MOVE_CROSSES,
+    TOOL_IN_PART,
+    Command,
+    ReplaceStartClearances,
+    StartClearance,
+)
 from core.executor.job import Job, start_program_pass
 from core.executor.snapshot import (
     CYCLE_STATES,
@@ -63,8 +69,8 @@ class FirstMoveQuery(NamedTuple):
     job: Job
     start_kind: StartAction
     axis_positions: tuple[float, ...]
-    begun_cycle_count: int
-    active_tool: int
+    started_cycle_count: int
+    active_tool_number: int
     previous_part: (
         PreviousPart | None
     )  # None: no part is in the chuck, or the program of the part is unknown.
@@ -79,14 +85,14 @@ class FirstMoveQuery(NamedTuple):
             self.job.digest,
             self.start_kind,
             self.axis_positions,
-            self.begun_cycle_count,
-            self.active_tool,
+            self.started_cycle_count,
+            self.active_tool_number,
             known,
             self.is_part_unknown,
         )
 
 
-def add_verdict(proved_job: ProvedJob, result: FirstMoveResult) -> ProvedJob:
+def add_first_move_verdict(proved_job: ProvedJob, result: FirstMoveResult) -> ProvedJob:
     """Return the proof with the verdict of the first-move check added.
 
     A rejected first move is an error.
@@ -111,7 +117,7 @@ class FirstMoveChecker:
     def check_first_move(self, query: FirstMoveQuery, report_progress: ProgressCallback) -> FirstMoveResult:
         """Return the verdict on the first move of this start.
 
-        AbandonedError of ``report_progress`` is passed on.
+        WorkAbandonedError of ``report_progress`` is passed on.
         """
         with self._lock:
             return self._judge(query, report_progress)
@@ -120,7 +126,7 @@ class FirstMoveChecker:
         from core.proving.start_check import find_first_moves, make_unchecked_move
 
         part, passes = asked.previous_part, _make_pass_finder(asked.job)
-        plain = Clearance(asked.job.digest, asked.axis_positions, asked.begun_cycle_count)
+        plain = StartClearance(asked.job.digest, asked.axis_positions, asked.started_cycle_count)
         if part is None or part.picture.part is None:
             move = make_unchecked_move(find_first_moves(passes, asked.axis_positions))
             unknown = asked.is_part_unknown or (part is not None and part.interrupted_job is not None)
@@ -160,12 +166,12 @@ class FirstMoveChecker:
 def _make_pass_finder(job: Job) -> Callable[[tuple[float, ...]], Iterable[Block]]:
     """Return a function that interprets a job from a given axis position, with all inputs off."""
 
-    def passes(at: tuple[float, ...]) -> Iterable[Block]:
+    def start_pass(at: tuple[float, ...]) -> Iterable[Block]:
         return start_program_pass(
             job, replace(job.setup, start=at, inputs=lambda _terminal: False)
         ).block_iterator
 
-    return passes
+    return start_pass
 
 
 def _now(asked: FirstMoveQuery, part: PreviousPart) -> StartState:
@@ -177,7 +183,7 @@ def _now(asked: FirstMoveQuery, part: PreviousPart) -> StartState:
     )
     return StartState(
         asked.axis_positions,
-        asked.active_tool,
+        asked.active_tool_number,
         where,
         starts_at_first_line=asked.start_kind is StartAction.PROGRAM,
     )
@@ -186,7 +192,7 @@ def _now(asked: FirstMoveQuery, part: PreviousPart) -> StartState:
 # --- messages -----------------------------------------------------------------------------------------------
 
 
-def _make_verdict(plain: Clearance, found: FirstMove, part: PreviousPart) -> Clearance:
+def _make_verdict(plain: StartClearance, found: FirstMove, part: PreviousPart) -> StartClearance:
     """Return the verdict of a first-move check with its text.
 
     A finding that depends on an assumption is a warning. Any other finding prevents the start.
@@ -195,7 +201,7 @@ def _make_verdict(plain: Clearance, found: FirstMove, part: PreviousPart) -> Cle
         warned = _not_known() if not found.is_part_known and found.path else ""
         return replace(plain, warned=warned)
     why = _words(found, part)
-    if found.is_assumed:
+    if found.has_assumed_data:
         return replace(plain, warned=why)
     return replace(plain, code=TOOL_IN_PART if found.is_inside_at_start else FIRST_MOVE_CROSSES, why=why)
 
@@ -231,7 +237,7 @@ def _way_out(found: FirstMove, part: PreviousPart) -> str:
     jog = tr(Message("JOG {direction} UNTIL THE TOOL IS CLEAR", direction=found.safe_jog_direction))
     if not found.safe_jog_direction:
         jog = tr("JOG THE TOOL BACK OUT ALONG ITS ENTRY PATH")
-    if part.interrupted_job is None or not can_restart(LoadedProgram(source=part.job.source)):
+    if part.interrupted_job is None or not can_restart_program(LoadedProgram(source=part.job.source)):
         return jog
     return tr(Message("F6, ENTER: RESUME   F6, F4: RETRACT   OR {jog}", jog=jog))
 
@@ -307,7 +313,7 @@ class FirstMoveWatch:
         """Return the proof of an MDI line or a restart, with the verdict on its first move."""
         if proved_job.proof.errors:
             return proved_job
-        return add_verdict(
+        return add_first_move_verdict(
             proved_job,
             self._judge.check_first_move(self._of(job, StartAction.MDI_LINE, snapshot), report_progress),
         )
@@ -350,14 +356,18 @@ class FirstMoveWatch:
 
     def _found(self, seen: FirstMoveResult) -> None:
         self.first_move_result = seen
-        self.post_command(ReplaceClearances(seen.clearances))
+        self.post_command(ReplaceStartClearances(seen.clearances))
 
     def _handle_failure(self, asked: FirstMoveQuery, reason: str) -> None:
         """Report that the first move could not be checked."""
         warned = tr(Message("THE FIRST MOVE COULD NOT BE CHECKED: {why}", why=reason))
         self._found(
             FirstMoveResult(
-                (Clearance(asked.job.digest, asked.axis_positions, asked.begun_cycle_count, warned=warned),)
+                (
+                    StartClearance(
+                        asked.job.digest, asked.axis_positions, asked.started_cycle_count, warned=warned
+                    ),
+                )
             )
         )
 
@@ -366,7 +376,7 @@ def make_drawn_legs(result: FirstMoveResult | None) -> tuple[ApproachLeg, ...]:
     """Return the first move as path legs for the path view, with the label at the end of the move."""
     if result is None:
         return ()
-    (zero_x, zero_z), last = result.zero_position, len(result.approach_legs) - 1
+    (zero_x, zero_z), last = result.part_zero_position, len(result.approach_legs) - 1
     return tuple(
         ApproachLeg(z - zero_z, x - zero_x, quick, tr("START") if number == last else "")
         for number, (x, z, quick) in enumerate(result.approach_legs)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from app.desk.station_controls import StationPanel
-from app.desk.status.machine_status import SilenceWatch
+from app.desk.status.machine_status import ControlSilenceDetector
 from core.executor.commands import Command
 from core.executor.snapshot import Snapshot
 
@@ -25,7 +25,7 @@ class DeskControl:
     - ``recordings`` contains the last minutes of samples, or is None without a recorder.
     - ``open_stop_channel`` opens a connection that sends stop keys to the control without the screen.
     - ``restart_control`` replaces a silent control, or is None if this is not possible.
-    - ``read_identity`` returns the identity of a control process, or an empty string for a control in
+    - ``read_control_identity`` returns the identity of a control process, or an empty string for a control in
       this process.
     """
 
@@ -37,5 +37,5 @@ class DeskControl:
     recordings: ScopeRecordings | None = None
     open_stop_channel: OpenStopChannel = lambda: None
     restart_control: Callable[[], object] | None = None
-    read_identity: Callable[[], str] = str
-    silence_watch: SilenceWatch = field(default_factory=SilenceWatch)
+    read_control_identity: Callable[[], str] = str
+    silence_watch: ControlSilenceDetector = field(default_factory=ControlSilenceDetector)

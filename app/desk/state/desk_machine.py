@@ -13,15 +13,16 @@ if TYPE_CHECKING:
 class DeskMachine:
     """Machine data for the screen: name, axes and start buttons.
 
-    ``machine`` is the machine as its machine file describes it, or None without a file. ``allows_one_hand``
-    is True if no real axis or spindle moves, so that the palm buttons may be pressed one after the other.
+    ``machine`` is the machine as its machine file describes it, or None without a file.
+    ``allows_one_hand_start`` is True if no real axis or spindle moves, so that the palm buttons may be
+    pressed one after the other.
     """
 
     name: str = ""
     machine: Machine | None = None
-    is_two_hand: bool = True
+    has_two_hand_start: bool = True
     has_c_axis: bool = True
-    allows_one_hand: bool = False
+    allows_one_hand_start: bool = False
 
     @property
     def program_language(self) -> str:

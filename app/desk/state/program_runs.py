@@ -50,9 +50,9 @@ class ProgramRuns:
 
         Do not call this method for MDI lines, which are not program runs.
         """
-        text = loaded.job.text_digest if loaded.job is not None else self.part_counter.text_digest
-        self.part_counter.observe(snapshot, post_command, show_message, text)
-        self.run_history.observe(snapshot, loaded)
+        text = loaded.job.text_digest if loaded.job is not None else self.part_counter.program_digest
+        self.part_counter.process_snapshot(snapshot, post_command, show_message, text)
+        self.run_history.process_snapshot(snapshot, loaded)
 
     def update_first_job(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Advance the card of the first job and store its step, without waiting for the disk.

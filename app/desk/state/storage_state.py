@@ -25,22 +25,22 @@ class StorageState:
     def set_file_readers(self, read_difference: Callable[[], str], recheck_file: Callable[[], None]) -> None:
         """Set the functions of the program file monitor.
 
-        ``read_file_difference`` and ``recheck_file`` call these functions.
+        ``describe_file_difference`` and ``recheck_file`` call these functions.
         """
         self._difference, self._recheck_file = read_difference, recheck_file
 
-    def read_problem(self) -> str:
+    def read_storage_problem(self) -> str:
         """Return the reason why events, parts and versions are not saved, or an empty string if they are."""
         return self._problem()
 
-    def read_unsaved(self) -> str:
+    def read_unsaved_text(self) -> str:
         """Return a description of the data that wait in memory to be saved.
 
         The result is an empty string if no data are waiting.
         """
         return self._waiting()
 
-    def read_file_difference(self) -> str:
+    def describe_file_difference(self) -> str:
         """Return how the program file differs from the loaded program, or an empty string if equal."""
         return self._difference()
 

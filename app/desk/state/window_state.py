@@ -35,7 +35,7 @@ class WindowState:
         """Connect the functions of a window in place of those of the previous window."""
         self._wake, self._is_stop_held, self._press_age = wake_window, is_stop_held, find_press_age
 
-    def set_page(self, *, can_start: bool, has_field: Callable[[], bool] = bool) -> None:
+    def set_page_properties(self, *, can_start: bool, has_field: Callable[[], bool] = bool) -> None:
         """Set the properties of the current page.
 
         ``can_start`` is True if cycles can be started from this page. ``has_field`` returns whether a text
@@ -63,11 +63,11 @@ class WindowState:
         """Return whether a text field of the current page accepts letters."""
         return self._has_field()
 
-    def is_stop_held(self) -> bool:
+    def is_stop_key_held(self) -> bool:
         """Return whether a key that stops the machine is held down."""
         return self._is_stop_held()
 
-    def find_press_age(self) -> float:
+    def find_press_age_s(self) -> float:
         """Return the time in seconds since the key press that is being processed."""
         return self._press_age()
 

@@ -50,7 +50,7 @@ class AlarmLog:
         if event.alarm is not None:
             self._heard.append(LoggedStop(self._clock(), event.alarm, event.record_name))
 
-    def add_stored(self, log_rows: Iterable[EventRow]) -> None:
+    def add_stored_entries(self, log_rows: Iterable[EventRow]) -> None:
         """Append older entries from the store, newest first, to the entries of this session."""
         kept = tuple(
             LoggedStop(format_wall_time(row.at, "%H:%M:%S"), alarm, row.record)

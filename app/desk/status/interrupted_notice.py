@@ -71,13 +71,13 @@ def make_interrupted_prompt(snapshot: Snapshot, loaded: LoadedProgram, start_ins
     if snapshot.confirmed:
         words = tr("STARTS AT LINE 1 ({text}) FROM CURRENT T{tool} POSITION. {start}. ESC: CANCEL")
         return tr(Message(words, text=_first(loaded), tool=snapshot.modal.tool, start=start_instruction))
-    if not can_restart(loaded):
+    if not can_restart_program(loaded):
         return tr(Message("STOPPED IN LINE {line}. JOG THE TOOL CLEAR. Y: START OVER", line=line))
     words = tr("STOPPED IN LINE {line}. F6: RETRACT AND RESUME. Y: START OVER")
     return tr(Message(words, line=line))
 
 
-def can_restart(loaded: LoadedProgram) -> bool:
+def can_restart_program(loaded: LoadedProgram) -> bool:
     """Return whether SEARCHTO supports the language of this program."""
     return loaded.source is None or loaded.source.dialect is Dialect.OMNITURN
 
@@ -117,7 +117,7 @@ def _describe_pass(found: InterruptedJob, loaded: LoadedProgram) -> str:
     picture, job = loaded.picture, loaded.job
     if picture is None or job is None or job.text_digest != found.text:
         return ""
-    passes = picture.find_blocks_for_line(found.line)
+    passes = picture.find_block_ranges(found.line)
     now = next((n for n, (a, b) in enumerate(passes, 1) if a <= found.block <= b), 0)
     return (
         tr(Message(" REPETITION {now} OF {all}", now=now, all=len(passes))) if now and len(passes) > 1 else ""
@@ -173,7 +173,7 @@ def _format_positions(
     return " ".join(found)
 
 
-def make_unknown_notice(snapshot: Snapshot) -> NoticeRow | None:
+def make_unknown_values_notice(snapshot: Snapshot) -> NoticeRow | None:
     """Return the notice about unknown values of a snapshot, or None if all values are known."""
     unknown = snapshot.unknown
     if not unknown:

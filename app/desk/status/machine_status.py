@@ -24,7 +24,7 @@ from app.desk.status.readouts import (
     make_spindle_readout,
 )
 from app.desk.translation import tr
-from core.alarms import CATALOG, Reaction
+from core.alarms import CATALOG, AlarmReaction
 from core.executor.snapshot import Alarm, MachineState, Snapshot
 from core.interpreter.shared.modal_state import ModalState
 from core.message import Message, join_messages
@@ -86,7 +86,7 @@ def _is_input(snapshot: Snapshot) -> bool:
     return " " not in snapshot.waiting_for
 
 
-class Tone(StrEnum):
+class StatusTone(StrEnum):
     """Appearance of a machine state.
 
     Each tone has a color and a shape, so that color is not the only indication.
@@ -102,18 +102,18 @@ class Tone(StrEnum):
 
 NOT_HOMED_TITLE = "NOT HOMED"
 STATE_TONES = {
-    MachineState.ESTOP: Tone.ALARM,
-    MachineState.DISABLED: Tone.OFF,
-    MachineState.IDLE: Tone.READY,
-    MachineState.RUN: Tone.RUN,
-    MachineState.STOPPING: Tone.PAUSE,
-    MachineState.HOLD: Tone.PAUSE,
-    MachineState.SINGLE_BLOCK_STOP: Tone.PAUSE,
-    MachineState.PROGRAM_STOP: Tone.PAUSE,
-    MachineState.WAIT: Tone.WAIT,
-    MachineState.JOG: Tone.RUN,
-    MachineState.HOMING: Tone.RUN,
-    MachineState.FAULT: Tone.ALARM,
+    MachineState.ESTOP: StatusTone.ALARM,
+    MachineState.DISABLED: StatusTone.OFF,
+    MachineState.IDLE: StatusTone.READY,
+    MachineState.RUN: StatusTone.RUN,
+    MachineState.STOPPING: StatusTone.PAUSE,
+    MachineState.HOLD: StatusTone.PAUSE,
+    MachineState.SINGLE_BLOCK_STOP: StatusTone.PAUSE,
+    MachineState.PROGRAM_STOP: StatusTone.PAUSE,
+    MachineState.WAIT: StatusTone.WAIT,
+    MachineState.JOG: StatusTone.RUN,
+    MachineState.HOMING: StatusTone.RUN,
+    MachineState.FAULT: StatusTone.ALARM,
 }
 
 
@@ -123,16 +123,16 @@ class MachineStatus:
 
     program_name: str
     state_text: str
-    state_tone: Tone
+    state_tone: StatusTone
     position: PositionReadout
     tool_text: str
-    secondary_text: str
+    secondary_offset_text: str
     feed: FeedReadout
     spindle: SpindleReadout
     mode_lamps: tuple[Lamp, ...]
     lamps: tuple[Lamp, ...]
-    cycle_time: str
-    last_cycle_time: str
+    cycle_time_text: str
+    last_cycle_time_text: str
     line_number: int
     block_text: str
     next_block_text: str
@@ -158,7 +158,7 @@ def _find_secondary_offset(modal: ModalState) -> str:
     return "" if modal.settable else f"D{modal.secondary}"
 
 
-def make_status(
+def make_machine_status(
     snapshot: Snapshot,
     readout: ReadoutKind,
     has_c_axis: bool,
@@ -182,21 +182,21 @@ def make_status(
     return MachineStatus(
         program_name=snapshot.program,
         state_text=state,
-        state_tone=Tone.OFF if state == NOT_HOMED_TITLE else STATE_TONES[snapshot.state],
+        state_tone=StatusTone.OFF if state == NOT_HOMED_TITLE else STATE_TONES[snapshot.state],
         position=make_position_readout(snapshot, readout, has_c_axis, metric, third_axis),
         tool_text=_find_tool_text(modal),
-        secondary_text="" if "Y" in snapshot.axes else _find_secondary_offset(modal),
+        secondary_offset_text="" if "Y" in snapshot.axes else _find_secondary_offset(modal),
         feed=make_feed_readout(snapshot, metric),
         spindle=make_spindle_readout(snapshot, metric, program_language),
         mode_lamps=make_mode_lamps(snapshot),
         lamps=make_lamps(snapshot, is_table_rotary=is_table_rotary),
-        cycle_time=formats.format_duration(snapshot.cycle_elapsed),
-        last_cycle_time=formats.format_duration(snapshot.last_cycle)
+        cycle_time_text=formats.format_duration(snapshot.cycle_elapsed),
+        last_cycle_time_text=formats.format_duration(snapshot.last_cycle)
         if snapshot.last_cycle
         else formats.NO_VALUE,
         line_number=snapshot.line,
         block_text=snapshot.block_text,
-        next_block_text=snapshot.next_text,
+        next_block_text=snapshot.next_block_text,
         comment=snapshot.comment,
         message=_message(snapshot),
         alarms=snapshot.alarms,
@@ -207,7 +207,7 @@ def make_status(
 def find_unrequested_stop(snapshot: Snapshot) -> Alarm | None:
     """Return the cause of an E-stop or an unrequested feed hold, or None if there is neither."""
     stop = snapshot.stop
-    if stop is None or (stop.code != "estop" and CATALOG[stop.code].reaction is not Reaction.HOLD):
+    if stop is None or (stop.code != "estop" and CATALOG[stop.code].reaction is not AlarmReaction.HOLD):
         return None
     return stop
 
@@ -247,7 +247,7 @@ SILENCE_TIMEOUT_S = 1.0  # Seconds without a new snapshot. The executor makes a 
 
 
 @dataclass(slots=True)
-class SilenceWatch:
+class ControlSilenceDetector:
     """Detector of a control that no longer responds.
 
     It compares the time stamps of snapshots with the screen's clock.

@@ -173,7 +173,7 @@ def _frame(modal: ModalState) -> tuple[ModalRow, ...]:
     pair = _format_pair
     return (
         ModalRow("tool", tr("TOOL"), format_edge_name(modal.tool)),
-        ModalRow("tool offset", tr("TOOL OFFSET"), pair(modal, modal.tool_x, modal.tool_z)),
+        ModalRow("tool offset", tr("TOOL OFFSET"), pair(modal, modal.tool_offset_x, modal.tool_offset_z)),
         ModalRow("secondary", tr("D OFFSET"), f"D{modal.secondary}  {_d(modal)}"),
         ModalRow("shift", tr("G10 ACTIVE"), pair(modal, modal.shift_x, modal.shift_z)),
         ModalRow("pending", tr("G10 FROM NEXT T"), pair(modal, modal.pending_shift_x, modal.pending_shift_z)),
@@ -182,7 +182,7 @@ def _frame(modal: ModalState) -> tuple[ModalRow, ...]:
 
 
 def _d(modal: ModalState) -> str:
-    return _format_pair(modal, modal.secondary_x, modal.secondary_z) if modal.secondary else ""
+    return _format_pair(modal, modal.secondary_offset_x, modal.secondary_offset_z) if modal.secondary else ""
 
 
 def _format_pair(modal: ModalState, x: float, z: float) -> str:

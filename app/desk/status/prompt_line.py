@@ -156,12 +156,12 @@ def _idle(snapshot: Snapshot, loaded: LoadedProgram, start: str) -> str:
 def find_start_obstacle(snapshot: Snapshot, loaded: LoadedProgram) -> str:
     """Return the reason why the loaded program cannot start now, or an empty string if it can start."""
     if loaded.phase in {LoadingPhase.UNREADABLE, LoadingPhase.REFUSED}:
-        return make_refusal(loaded)
+        return make_refusal_text(loaded)
     if not snapshot.program:
         return "PRESS F2 TO CHOOSE A PROGRAM"
     if snapshot.needs_proof:
         return "THE PROGRAM IS NOT PROVED YET AND WILL NOT START"
-    missing = find_missing_tools(loaded)
+    missing = find_unmeasured_tools(loaded)
     if missing and "Y" in snapshot.axes:
         return Message("WILL NOT START: {missing} NOT IN THE TOOL TABLE (F8)", missing=", ".join(missing))
     if missing:
@@ -175,14 +175,14 @@ def find_start_obstacle(snapshot: Snapshot, loaded: LoadedProgram) -> str:
     )
 
 
-def find_missing_tools(loaded: LoadedProgram) -> list[str]:
+def find_unmeasured_tools(loaded: LoadedProgram) -> list[str]:
     """Return the tools of the loaded program that do not have a measured offset."""
     if loaded.proof is None or loaded.job is None:
         return []
     return [format_edge_name(key) for key in loaded.proof.unset(loaded.job)]
 
 
-def make_refusal(loaded: LoadedProgram) -> str:
+def make_refusal_text(loaded: LoadedProgram) -> str:
     """Return the message that the loaded program will not run.
 
     The message contains the program's first error and the number of further errors.
@@ -221,7 +221,7 @@ def find_remedy(loaded: LoadedProgram, prompt: str) -> str:
     """
     errors = loaded.blocking_errors
     if errors:
-        return errors[0].hint if prompt == make_refusal(loaded) else ""
+        return errors[0].hint if prompt == make_refusal_text(loaded) else ""
     restart = tr("RESUME AT THIS LINE: {start}. ESC: CANCEL").partition("{start}")[0]
     if "TO START: " not in prompt and restart not in prompt:
         return ""
@@ -280,8 +280,8 @@ class PromptLine:
     question_text: str = ""
     on_confirmed: Callable[[], None] | None = None  # Action of the answer yes.
     key: str = YES_KEY  # Key that means yes.
-    is_success: bool = False  # The message reports a success.
-    is_lasting: bool = False  # No key removes the message before its time is over.
+    is_success_message: bool = False  # The message reports a success.
+    is_lasting_message: bool = False  # No key removes the message before its time is over.
     _said_at: float = 0.0
     _since: float = 0.0
     _in: MachineState | None = None
@@ -299,7 +299,7 @@ class PromptLine:
         """Return the kind of the message or question that is displayed."""
         if not self.message and self.on_confirmed is not None:
             return MessageKind.QUESTION
-        return MessageKind.SUCCESS if self.is_success else MessageKind.REFUSAL
+        return MessageKind.SUCCESS if self.is_success_message else MessageKind.REFUSAL
 
     def say(self, text: str, *, is_success: bool = False, is_lasting: bool = False) -> None:
         """Show a message. ``is_success`` marks it as a success message.
@@ -308,13 +308,13 @@ class PromptLine:
         message replaces it.
         """
         if (
-            self.is_lasting
+            self.is_lasting_message
             and self.message
             and not is_lasting
             and self.read_time_s() - self._said_at < MESSAGE_TIME_S
         ):
             return
-        self.message, self.is_success, self.is_lasting, self._said_at = (
+        self.message, self.is_success_message, self.is_lasting_message, self._said_at = (
             text,
             is_success,
             is_lasting,
@@ -334,7 +334,7 @@ class PromptLine:
         )
         self._in = self.read_snapshot().state
 
-    def was_read(self, time_s: float) -> bool:
+    def was_question_read(self, time_s: float) -> bool:
         """Return whether the operator had enough time before ``time_s`` to read the open question.
 
         The result is False if no question is open.
@@ -346,7 +346,7 @@ class PromptLine:
 
         ``time_s`` is the time of the key press.
         """
-        asked, read = self.on_confirmed, self.was_read(time_s)
+        asked, read = self.on_confirmed, self.was_question_read(time_s)
         self.withdraw_question()
         if asked is not None and read:
             asked()
@@ -354,18 +354,18 @@ class PromptLine:
     def withdraw_question(self) -> None:
         """Remove the question. Also remove the message, unless it is a lasting message."""
         self.question_text, self.on_confirmed = "", None
-        if not self.is_lasting:
+        if not self.is_lasting_message:
             self.message = ""
 
     def clear_message(self) -> None:
         """Remove the message for the previous key, but keep an open question."""
-        if not self.is_lasting:
+        if not self.is_lasting_message:
             self.message = ""
 
-    def remove_expired(self, snapshot: Snapshot) -> None:
+    def remove_expired_texts(self, snapshot: Snapshot) -> None:
         """Remove a message that has expired, and a question if the machine's state has changed since."""
         if self.message and self.read_time_s() - self._said_at >= MESSAGE_TIME_S:
-            self.message, self.is_lasting = "", False
+            self.message, self.is_lasting_message = "", False
         if self.on_confirmed is not None and snapshot.state is not self._in:
             self.question_text, self.on_confirmed = "", None
 
@@ -373,7 +373,7 @@ class PromptLine:
         """Queue an event of the executor. The executor's thread may call this method."""
         self._heard.append(event)
 
-    def note_start_attempt(self) -> None:
+    def record_start_attempt(self) -> None:
         """Record an attempt to start, so that even a repeated refusal with the same reason is shown."""
         self._refused = ""
 
@@ -381,14 +381,14 @@ class PromptLine:
         """Show refusals and other events of the executor. The screen calls this method once per frame."""
         while self._heard:
             event = self._heard.popleft()
-            if event.kind == "refused" and event.text != snapshot.start_refusal:
+            if event.kind == "refused" and event.text != snapshot.start_refusal_reason:
                 self.say(Message("REJECTED: {why}", why=event.text))
             elif event.kind in {"disturbed", "shared"}:
                 self.say(event.text)
             elif event.kind == "uncounted":
                 self.say(Message("NOT COUNTED AS A PART: {event}", event=event.text))
-        if snapshot.start_refusal != self._refused:
-            self._refused = snapshot.start_refusal
+        if snapshot.start_refusal_reason != self._refused:
+            self._refused = snapshot.start_refusal_reason
             if self._refused:
                 self.say(Message("CANNOT START: {refused}", refused=self._refused))
         self._report_unsaved()

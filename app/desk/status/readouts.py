@@ -32,7 +32,7 @@ class Lamp:
 
     label: str
     is_lit: bool
-    key: str = ""
+    switch_key: str = ""
     is_warning: bool = False
 
 
@@ -46,7 +46,7 @@ def make_mode_lamps(snapshot: Snapshot) -> tuple[Lamp, ...]:
         Lamp("OPTIONAL STOP", snapshot.optional_stop, "O"),
         Lamp("BLOCK DELETE", snapshot.block_delete, "/"),
         Lamp("CYCLE REPEAT", snapshot.cycle_repeat, "C"),
-        *((Lamp("NO COUNT", is_lit=True, key="P", is_warning=True),) if snapshot.no_count else ()),
+        *((Lamp("NO COUNT", is_lit=True, switch_key="P", is_warning=True),) if snapshot.no_count else ()),
     )
 
 
@@ -83,7 +83,7 @@ def make_drives_lamp(snapshot: Snapshot, key: str = "") -> Lamp:
     mark.
     """
     if UnknownPart.AXES in snapshot.unknown:
-        return Lamp("DRIVES ?", is_lit=True, key=key, is_warning=True)
+        return Lamp("DRIVES ?", is_lit=True, switch_key=key, is_warning=True)
     return Lamp("DRIVES ON", snapshot.powered, key)
 
 
@@ -150,12 +150,12 @@ def find_plane_position(snapshot: Snapshot, swivel: PlanePosition) -> tuple[floa
     )
 
 
-def find_home_position(snapshot: Snapshot, swivel: PlanePosition) -> tuple[float, ...]:
+def find_home_distances(snapshot: Snapshot, swivel: PlanePosition) -> tuple[float, ...]:
     """Return the distances of the linear axes from home in mm, and of the rotary axes in degrees."""
     return (*_slides(snapshot.actual), *_find_shown_position(snapshot, swivel, {}))
 
 
-def find_remaining_distance(snapshot: Snapshot, swivel: PlanePosition) -> tuple[float, ...]:
+def find_remaining_distances(snapshot: Snapshot, swivel: PlanePosition) -> tuple[float, ...]:
     """Return the remaining distance to the block end for each working-plane axis and rotary axis.
 
     Values are in mm and degrees.
@@ -171,7 +171,7 @@ def find_remaining_distance(snapshot: Snapshot, swivel: PlanePosition) -> tuple[
     )
 
 
-def name_system(swivel: PlanePosition | None) -> str:
+def get_coordinate_system_name(swivel: PlanePosition | None) -> str:
     """Return the name of the coordinate system of the displayed positions."""
     if swivel is None:
         return tr("MACHINE")
@@ -249,7 +249,7 @@ class PositionReadout:
     axes: tuple[AxisReadout, ...]
 
 
-def find_coordinates(snapshot: Snapshot, readout: ReadoutKind) -> tuple[float, ...]:
+def find_readout_values(snapshot: Snapshot, readout: ReadoutKind) -> tuple[float, ...]:
     """Return the values of a readout in the order of ``snapshot.axes``, in mm or degrees. X is a radius."""
     actual, swivel = snapshot.actual, snapshot.swivel
     if swivel is not None:
@@ -267,14 +267,14 @@ def find_coordinates(snapshot: Snapshot, readout: ReadoutKind) -> tuple[float, .
 
 _MILL_SYSTEMS = {
     ReadoutKind.POSITION: find_plane_position,
-    ReadoutKind.TO_GO: find_remaining_distance,
-    ReadoutKind.HOME: find_home_position,
+    ReadoutKind.TO_GO: find_remaining_distances,
+    ReadoutKind.HOME: find_home_distances,
 }
 
 
 def _wrap_angles(at: tuple[float, ...], snapshot: Snapshot) -> tuple[float, ...]:
     """Return the position, with C from 0 to 360 degrees if C wraps in the modal state."""
-    if not snapshot.modal.is_c_modulo:
+    if not snapshot.modal.is_c_axis_modulo:
         return at
     return (*at[:-1], round(at[-1], formats.ANGLE_DECIMALS) % 360.0)
 
@@ -314,7 +314,7 @@ def _find_x_label(snapshot: Snapshot, readout: ReadoutKind) -> str:
     system.
     """
     if snapshot.axes != LATHE_AXES:
-        return name_system(None if readout is ReadoutKind.HOME else snapshot.swivel)
+        return get_coordinate_system_name(None if readout is ReadoutKind.HOME else snapshot.swivel)
     words = tr("X IS A DIAMETER") if snapshot.shows_diameter else tr("X IS A RADIUS")
     if snapshot.shows_diameter == snapshot.modal.diameter:
         return words
@@ -338,7 +338,7 @@ def _figures(snapshot: Snapshot, readout: ReadoutKind, metric: bool, diameter: b
     turning = () if snapshot.axes == LATHE_AXES and snapshot.modal.is_c_linear else ROTARY_AXES
     return [
         angle(value) if name in turning else formats.format_length(_doubled(name, value, diameter), metric)
-        for name, value in zip(snapshot.axes, find_coordinates(snapshot, readout), strict=True)
+        for name, value in zip(snapshot.axes, find_readout_values(snapshot, readout), strict=True)
     ]
 
 
@@ -372,7 +372,7 @@ class SpindleReadout:
     commanded_rpm: str
     measured_rpm: str
     surface_speed: str
-    surface_label: str
+    surface_speed_label: str
     override_fraction: float
     is_auto: bool
     is_known: bool = True  # False: the spindle does not respond and may be turning.
@@ -428,7 +428,7 @@ def make_spindle_readout(snapshot: Snapshot, is_metric: bool, program_language: 
             commanded_rpm=UNKNOWN_VALUE,
             measured_rpm=UNKNOWN_VALUE,
             surface_speed=UNKNOWN_VALUE,
-            surface_label="M/MIN" if is_metric else "SFM",
+            surface_speed_label="M/MIN" if is_metric else "SFM",
             override_fraction=snapshot.spindle_override,
             is_auto=snapshot.spindle_auto,
             is_known=False,
@@ -447,7 +447,7 @@ def make_spindle_readout(snapshot: Snapshot, is_metric: bool, program_language: 
         commanded_rpm=formats.rpm(command),
         measured_rpm=formats.rpm(snapshot.rpm_actual),
         surface_speed=formats.format_surface_speed(surface, is_metric),
-        surface_label="M/MIN" if is_metric else "SFM",
+        surface_speed_label="M/MIN" if is_metric else "SFM",
         override_fraction=snapshot.spindle_override,
         is_auto=snapshot.spindle_auto,
         load_text=f"{snapshot.spindle_load:.0f} %" if snapshot.spindle_load is not None else "",

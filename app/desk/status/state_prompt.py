@@ -21,7 +21,7 @@ def make_page_prompt(desk: Desk, snapshot: Snapshot, loaded: LoadedProgram, page
 
     ``page_prompt`` is the prompt of the current page. An alarm or an E-stop replaces this prompt.
     """
-    desk.prompt_answers.remove_expired(snapshot)
+    desk.prompt_line.remove_expired_texts(snapshot)
     if desk.desk_control.silence_watch.is_silent:
         return (
             prompt_line.CONTROL_SILENT
@@ -80,7 +80,7 @@ def find_start_refusal(desk: Desk, snapshot: Snapshot) -> str:
     return prompt_line.find_start_obstacle(snapshot, desk.program_loader.loaded_program)
 
 
-def find_time_left(snapshot: Snapshot, loaded: LoadedProgram) -> float:
+def find_remaining_time_s(snapshot: Snapshot, loaded: LoadedProgram) -> float:
     """Return the remaining cycle time at the current override, in seconds.
 
     The time is inf if it is unknown.

@@ -21,8 +21,8 @@ from app.desk.stop_keys.stop_records import (
     MAX_RECORD_BYTES,
     NO_FOCUS,
     FocusRecord,
+    StopKeyPress,
     StopKind,
-    StopPress,
     make_press_number,
 )
 
@@ -49,12 +49,12 @@ class KeyWatcher:
             poll.register(each.fileno(), select.POLLIN)
         while True:
             ready = dict(poll.poll())
-            if self._screen.fileno() in ready and not self.read_focus():
+            if self._screen.fileno() in ready and not self.read_focus_records():
                 return
-            for key in self._keys.read_presses():
-                self.handle_press(key)
+            for key in self._keys.read_key_presses():
+                self.handle_key_press(key)
 
-    def read_focus(self) -> bool:
+    def read_focus_records(self) -> bool:
         """Read the focus record that the screen has sent. Return False if the screen has ended."""
         try:
             while record := self._screen.recv(MAX_RECORD_BYTES, socket.MSG_DONTWAIT):
@@ -65,14 +65,14 @@ class KeyWatcher:
             return False
         return False
 
-    def handle_press(self, key: RawKey) -> None:
+    def handle_key_press(self, key: RawKey) -> None:
         """Send a stop if the pressed key is a stop key and a window of TurnDesk has the keyboard focus.
 
         The X server does not send raw events for key repeats.
         """
         kind = self._kind(key.key_code)
         if kind is not None and self._keys.find_focus_window() in self._focus.window_ids:
-            self._send(StopPress(kind, make_press_number(key.key_code, key.time_ms)))
+            self._send(StopKeyPress(kind, make_press_number(key.key_code, key.time_ms)))
 
     def _kind(self, code: int) -> StopKind | None:
         if code in STOP_KEY_CODES:
@@ -81,7 +81,7 @@ class KeyWatcher:
             return StopKind.ESC
         return None
 
-    def _send(self, stop: StopPress) -> None:
+    def _send(self, stop: StopKeyPress) -> None:
         for end in (self._line, self._screen):
             with suppress(OSError):  # The control may have ended, or the screen may hang.
                 end.send(stop.to_bytes(), socket.MSG_DONTWAIT)

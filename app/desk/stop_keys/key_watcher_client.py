@@ -12,7 +12,7 @@ from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
 
-from app.desk.stop_keys.stop_records import MAX_RECORD_BYTES, NO_FOCUS, FocusRecord, StopPress
+from app.desk.stop_keys.stop_records import MAX_RECORD_BYTES, NO_FOCUS, FocusRecord, StopKeyPress
 from core.process_environment import make_module_environment
 
 OpenStopChannel = Callable[[], socket.socket | None]
@@ -41,8 +41,8 @@ class KeyWatcherClient:
                 start_new_session=True,  # Ctrl+C must reach the screen only.
             )
         self._shown = NO_FOCUS
-        self._sent: deque[StopPress] = deque(maxlen=_MAX_SENT)
-        self._news: list[StopPress] = []
+        self._sent: deque[StopKeyPress] = deque(maxlen=_MAX_SENT)
+        self._news: list[StopKeyPress] = []
 
     def send_focus(self, focus: FocusRecord) -> None:
         """Send the focus record to the watcher if it has changed.
@@ -54,13 +54,13 @@ class KeyWatcherClient:
                 self._screen.send(focus.to_bytes())
                 self._shown = focus
 
-    def read_stops(self) -> list[StopPress]:
+    def read_sent_stops(self) -> list[StopKeyPress]:
         """Return the stop key presses that the watcher has sent to the control since the last call."""
         self._read()
         found, self._news = self._news, []
         return found
 
-    def was_sent(self, press: int) -> bool:
+    def was_press_sent(self, press: int) -> bool:
         """Return whether the watcher has sent this key press to the control."""
         self._read()
         return press != 0 and any(stop.press_number == press for stop in self._sent)
@@ -68,7 +68,7 @@ class KeyWatcherClient:
     def _read(self) -> None:
         with suppress(OSError):
             while record := self._screen.recv(MAX_RECORD_BYTES):
-                stop = StopPress.from_bytes(record)
+                stop = StopKeyPress.from_bytes(record)
                 self._sent.append(stop)
                 self._news.append(stop)
 

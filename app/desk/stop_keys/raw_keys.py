@@ -106,7 +106,7 @@ class RawKeyReader:
             raise OSError
         self._x.XSync(self._display, 0)
 
-    def read_presses(self) -> Iterator[RawKey]:
+    def read_key_presses(self) -> Iterator[RawKey]:
         """Yield the key presses that have arrived, without waiting."""
         event = _Event()
         while self._x.XPending(self._display):

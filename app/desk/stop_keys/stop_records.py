@@ -37,7 +37,7 @@ def make_press_number(key_code: int, time_ms: int) -> int:
     return key_code << 32 | time_ms & 0xFFFFFFFF if time_ms else 0
 
 
-class StopPress(NamedTuple):
+class StopKeyPress(NamedTuple):
     """One press of a stop key, with its kind of stop and its press number."""
 
     stop_kind: StopKind
@@ -48,7 +48,7 @@ class StopPress(NamedTuple):
         return _STOP.pack(self.stop_kind, self.press_number)
 
     @classmethod
-    def from_bytes(cls, record: bytes) -> StopPress:
+    def from_bytes(cls, record: bytes) -> StopKeyPress:
         """Return the stop that a record contains. Raises ValueError if the record is invalid."""
         if len(record) != _STOP.size:
             raise ValueError(f"{len(record)} bytes are not a stop")

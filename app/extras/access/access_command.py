@@ -9,7 +9,7 @@ import sys
 import time
 from typing import TYPE_CHECKING
 
-from app.cli.change_author import RESET, add_as_option, get_change_author, require_terminal
+from app.cli.change_author import RESET, add_author_option, get_change_author, require_terminal_confirmation
 from app.cli.store_command import open_store
 from app.desk.command_errors import EXIT_OK, CommandError, convert_to_command_error
 from core.access.access_table import ACCESS_RULES, AccessLevel, ProtectedChange
@@ -79,7 +79,7 @@ def add_parser(subparsers: SubParsers) -> None:
     gone = actions.add_parser("remove", help="remove a user; removing the last user turns access levels off")
     gone.add_argument("name", metavar="NAME")
     for each in (add, pin, gone):
-        add_as_option(each)
+        add_author_option(each)
     actions.add_parser(
         "reset",
         help="delete all users and PINs, which turns access levels off; works without a PIN, only "
@@ -96,7 +96,7 @@ def run(args: argparse.Namespace) -> int:
         sys.stdout.write(_table(json_wanted=args.json))
         return EXIT_OK
     if args.action == "reset":
-        require_terminal(
+        require_terminal_confirmation(
             Message(
                 "All users and their PINs will be deleted, and this will be logged. Type {reset} to "
                 "continue: ",
@@ -111,11 +111,11 @@ def run(args: argparse.Namespace) -> int:
 def _table(*, json_wanted: bool) -> str:
     if json_wanted:
         rules = {
-            act.value: {"level": rule.level.name, "what": rule.description}
+            act.value: {"level": rule.minimum_level.name, "what": rule.description}
             for act, rule in ACCESS_RULES.items()
         }
         return json.dumps(rules) + "\n"
-    return "".join(f"{rule.level.name:<9} {rule.description}\n" for rule in ACCESS_RULES.values())
+    return "".join(f"{rule.minimum_level.name:<9} {rule.description}\n" for rule in ACCESS_RULES.values())
 
 
 def _list(store: Store, args: argparse.Namespace) -> str:
@@ -210,7 +210,13 @@ def require_pin(store: Store, row: UserRow, remedy: str) -> None:
 
     Raises CommandError if no PIN is stored or the PIN is wrong. Wrong PINs are logged.
     """
-    from core.extras.access.pins import PinHash, calculate_delay, hash_pin, is_hash_outdated, matches_hash
+    from core.extras.access.pins import (
+        PinHash,
+        calculate_retry_delay,
+        hash_pin,
+        is_hash_outdated,
+        is_pin_correct,
+    )
 
     if not row.has_pin:
         raise CommandError(
@@ -218,14 +224,14 @@ def require_pin(store: Store, row: UserRow, remedy: str) -> None:
         )
     kept = store.settings.read_setting(_WRONG)
     wrong = kept if isinstance(kept, int) else 0
-    if pause := calculate_delay(wrong):
+    if pause := calculate_retry_delay(wrong):
         sys.stderr.write(f"turndesk: {wrong} wrong PINs in a row; try again in {pause:.0f} s\n")
         time.sleep(pause)
     pin = read_pin(Message("PIN for {row}: ", row=row.name))
     # counted before the check, so that ending TurnDesk does not avoid the wait
     store.settings.save_setting(_WRONG, wrong + 1).result()
     stored = PinHash(row.salt, row.hash)
-    if matches_hash(pin, stored):
+    if is_pin_correct(pin, stored):
         if is_hash_outdated(stored):
             renewed = row._replace(**hash_pin(pin)._asdict())
             store.people.save_user(renewed).result()

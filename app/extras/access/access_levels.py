@@ -10,7 +10,7 @@ from app.desk.access import UserAccess
 from app.desk.desk import Desk
 from app.desk.pages.table_content import FunctionKey, InputField, TableContent, TableRow, following
 from app.desk.persistence import Persistence
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.desk.translation import mark_untranslated, tr
 from app.extras.access.sign_in import TIMEOUT_CHOICES_MIN, AccessReset, PinSignIn
 from app.special.special_functions import SpecialFunction
@@ -25,7 +25,7 @@ _DOT = "●"
 
 
 @dataclass(slots=True)
-class _Draft:
+class _EntryDraft:
     """Unfinished entry with several steps: the PIN for signing in, or the data of a user."""
 
     entry_step: str  # sign in, name, level, pin or again
@@ -47,33 +47,33 @@ class AccessLevelsFunction(SpecialFunction):
         super().__init__(desk)
         self.persistence, self.session = persistence, sign_in
         self.entry = InputField()
-        self.draft: _Draft | None = None
+        self.draft: _EntryDraft | None = None
         self.shows_levels = False
         self.service_reset = AccessReset(sign_in, desk.say, self._remove_all_users)
 
     @property
-    def access(self) -> UserAccess:
+    def user_access(self) -> UserAccess:
         """Return the current user access of TurnDesk."""
         return self.desk.user_access
 
     @property
     def row_count(self) -> int:
         """Return the number of rows in the displayed table."""
-        return len(ACCESS_RULES) if self.shows_levels else len(self.access.user_list.rows)
+        return len(ACCESS_RULES) if self.shows_levels else len(self.user_access.user_list.rows)
 
     @property
     def selected_user(self) -> UserRow | None:
         """Return the selected user, or None if no user is selected."""
-        rows = self.access.user_list.rows
+        rows = self.user_access.user_list.rows
         return rows[min(self.marked, len(rows) - 1)] if rows and not self.shows_levels else None
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the displayed table: the users, or the access level required for each type of change."""
         if self.shows_levels:
-            rows = tuple(TableRow((act.value, rule.level.name)) for act, rule in ACCESS_RULES.items())
+            rows = tuple(TableRow((act.value, rule.minimum_level.name)) for act, rule in ACCESS_RULES.items())
             heads, shares, raw = ("TYPE OF CHANGE", "LEVEL"), (0.65, 0.35), frozenset[int]()
         else:
-            rows = tuple(self._row(each) for each in self.access.user_list.rows)
+            rows = tuple(self._row(each) for each in self.user_access.user_list.rows)
             heads, shares, raw = ("WHO", "LEVEL"), (0.65, 0.35), frozenset({0})
         question = self._question()
         text = (
@@ -86,18 +86,18 @@ class AccessLevelsFunction(SpecialFunction):
         )
 
     def _row(self, row: UserRow) -> TableRow:
-        here = row.name == self.access.user_name
-        return TableRow((row.name, AccessLevel(row.level).name), here, Tone.RUN)
+        here = row.name == self.user_access.user_name
+        return TableRow((row.name, AccessLevel(row.level).name), here, StatusTone.RUN)
 
     def _notes(self) -> tuple[str, ...]:
-        if not self.access.user_list.is_access_restricted:
+        if not self.user_access.user_list.is_access_restricted:
             return (
                 "Access levels are off: anyone can change anything, and no PIN is required.",
                 "F3 adds the first user, with SERVICE level, and turns access levels on.",
             )
         minutes = tr("After {minutes} minutes without input, the level returns to OPERATOR.")
         return (
-            tr(Message(minutes, minutes=self.session.timeout_min)),
+            tr(Message(minutes, minutes=self.session.timeout_minutes)),
             "E-stop, feed hold, Reset and Drives Off work at every level.",
         )
 
@@ -119,7 +119,7 @@ class AccessLevelsFunction(SpecialFunction):
             return tr("PINS WILL BE REMOVED. RELEASE E-STOP OR SIGN IN TO CANCEL")
         if self.draft is not None:
             return tr("TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL")
-        if not self.access.user_list.is_access_restricted:
+        if not self.user_access.user_list.is_access_restricted:
             return tr("F3: ADD USER, TURN ACCESS LEVELS ON   ESC: BACK TO THE LIST")
         return tr("SELECT YOUR NAME   ENTER: SIGN IN   F2: SIGN OUT   ESC: BACK")
 
@@ -131,13 +131,13 @@ class AccessLevelsFunction(SpecialFunction):
             "F3": FunctionKey("NEW", self.add_user),
             "F5": FunctionKey("USERS" if self.shows_levels else "LEVELS", self._turn),
         }
-        if self.access.user_list.is_access_restricted:
+        if self.user_access.user_list.is_access_restricted:
             keys |= {
                 "F2": FunctionKey("SIGN OUT", self.sign_out),
                 "F4": FunctionKey("PIN", self.change_pin),
                 "F6": FunctionKey("REMOVE", self.remove_user),
                 "F8": FunctionKey("TIME", self.select_next_timeout),
-                "F9": FunctionKey("RESET", self.ask_pin_reset),
+                "F9": FunctionKey("RESET", self.ask_for_pin_reset),
             }
         return keys
 
@@ -170,11 +170,11 @@ class AccessLevelsFunction(SpecialFunction):
             self.entry.handle_key(key)
         return True
 
-    def execute_row(self) -> bool:
+    def activate_selected_row(self) -> bool:
         """Ask for the PIN of the selected user and return whether a user is selected."""
         row = self.selected_user
         if row is not None:
-            self._ask(_Draft("sign in", row.name))
+            self._ask(_EntryDraft("sign in", row.name))
         return row is not None
 
     def handle_escape(self) -> bool:
@@ -188,13 +188,13 @@ class AccessLevelsFunction(SpecialFunction):
 
     # --- entry in steps ------------------------------------------------------------------------------
 
-    def _ask(self, draft: _Draft) -> None:
+    def _ask(self, draft: _EntryDraft) -> None:
         self.desk.clear_prompt_line()
         self.draft, self.entry, self.shows_levels = draft, InputField(words=draft.entry_step == "name"), False
 
-    def _enter(self, draft: _Draft) -> None:
+    def _enter(self, draft: _EntryDraft) -> None:
         text = self.entry.text
-        steps: dict[str, Callable[[_Draft, str], None]] = {
+        steps: dict[str, Callable[[_EntryDraft, str], None]] = {
             "sign in": self._sign_in,
             "name": self._named,
             "level": self._levelled,
@@ -207,38 +207,38 @@ class AccessLevelsFunction(SpecialFunction):
             self.entry.text = ""
             self.desk.show_refusal(str(error))
 
-    def _sign_in(self, draft: _Draft, pin: str) -> None:
-        row = self.access.user_list.find_user(draft.name)
+    def _sign_in(self, draft: _EntryDraft, pin: str) -> None:
+        row = self.user_access.user_list.find_user(draft.name)
         self.handle_escape()
         if row is not None and pin:
             self.session.sign_in(row, pin)
 
-    def _named(self, draft: _Draft, text: str) -> None:
+    def _named(self, draft: _EntryDraft, text: str) -> None:
         draft.name = normalize_user_name(text)
-        if self.access.user_list.find_user(draft.name) is not None:
+        if self.user_access.user_list.find_user(draft.name) is not None:
             raise StoreError(
                 Message("{draft} already exists; press F4 to change the PIN", draft=draft.name), "name-in-use"
             )
-        draft.entry_step = "level" if self.access.user_list.is_access_restricted else "pin"
+        draft.entry_step = "level" if self.user_access.user_list.is_access_restricted else "pin"
         self._ask(draft)
 
-    def _levelled(self, draft: _Draft, text: str) -> None:
+    def _levelled(self, draft: _EntryDraft, text: str) -> None:
         if text not in {str(level.value) for level in AccessLevel}:
             raise StoreError("the level must be 1, 2 or 3", "invalid-level")
         draft.level, draft.entry_step = AccessLevel(int(text)), "pin"
         self._ask(draft)
 
-    def _first(self, draft: _Draft, pin: str) -> None:
+    def _first(self, draft: _EntryDraft, pin: str) -> None:
         check_pin(pin)
         draft.pin, draft.entry_step = pin, "again"
         self._ask(draft)
 
-    def _again(self, draft: _Draft, pin: str) -> None:
+    def _again(self, draft: _EntryDraft, pin: str) -> None:
         if pin != draft.pin:
             self.draft = None
             raise PinError("the two PINs do not match; nothing was saved. Enter the PIN again")
         self.handle_escape()
-        if draft.name != self.access.user_name and self.desk.is_refused(ProtectedChange.PEOPLE):
+        if draft.name != self.user_access.user_name and self.desk.is_refused(ProtectedChange.PEOPLE):
             return  # the user who started the entry was signed out in the meantime
         row = UserRow(draft.name, draft.level, b"", b"")
         said = tr(
@@ -267,18 +267,18 @@ class AccessLevelsFunction(SpecialFunction):
     def _change(self, work: Callable[[], None], said: str, noted: str) -> None:
         """Change the users on the worker and reload them. Show the change, and log it with the user name."""
 
-        def done(_none: None) -> None:
-            self.access.log_access(noted)
-            self.access.reload()
+        def report_change(_none: None) -> None:
+            self.user_access.log_access(noted)
+            self.user_access.reload()
             self.desk.show_success(said)
 
-        self.session.worker.enqueue_work(work, done, self.desk.show_refusal)
+        self.session.worker.enqueue_work(work, report_change, self.desk.show_refusal)
 
     # --- users ---------------------------------------------------------------------------------------
 
     def sign_out(self) -> None:
         """Sign out the user (F2)."""
-        self.access.sign_out()
+        self.user_access.sign_out()
         self.desk.show_success(tr("SIGNED OUT: OPERATOR LEVEL IS ACTIVE"))
 
     def add_user(self) -> None:
@@ -287,7 +287,7 @@ class AccessLevelsFunction(SpecialFunction):
         The first user has SERVICE level.
         """
         if not self.desk.is_refused(ProtectedChange.PEOPLE):
-            self._ask(_Draft("name"))
+            self._ask(_EntryDraft("name"))
 
     def change_pin(self) -> None:
         """Start the entry of a new PIN for the selected user (F4).
@@ -296,10 +296,10 @@ class AccessLevelsFunction(SpecialFunction):
         """
         row = self.selected_user
         if row is None or (
-            row.name != self.access.user_name and self.desk.is_refused(ProtectedChange.PEOPLE)
+            row.name != self.user_access.user_name and self.desk.is_refused(ProtectedChange.PEOPLE)
         ):
             return
-        self._ask(_Draft("pin", row.name, AccessLevel(row.level)))
+        self._ask(_EntryDraft("pin", row.name, AccessLevel(row.level)))
 
     def remove_user(self) -> None:
         """Remove the selected user after confirmation (F6).
@@ -311,25 +311,25 @@ class AccessLevelsFunction(SpecialFunction):
             return
         said = tr(Message("{name} REMOVED", name=mark_untranslated(row.name)))
 
-        def work() -> None:
+        def delete_stored_user() -> None:
             self.persistence.require_store().people.remove_user(row.name).result()
 
         asked = tr(
             Message("PRESS Y TO REMOVE {name}, N TO KEEP THE USER AND PIN", name=mark_untranslated(row.name))
         )
         self.desk.ask_operator(
-            asked, partial(self._change, work, said, Message("{row} removed", row=row.name))
+            asked, partial(self._change, delete_stored_user, said, Message("{row} removed", row=row.name))
         )
 
     def select_next_timeout(self) -> None:
         """Select the next choice for the automatic sign-out timeout (F8)."""
         if not self.desk.is_refused(ProtectedChange.PEOPLE):
             self.desk.clear_prompt_line()
-            self.session.set_timeout(following(TIMEOUT_CHOICES_MIN, self.session.timeout_min))
+            self.session.set_timeout(following(TIMEOUT_CHOICES_MIN, self.session.timeout_minutes))
 
     # --- service reset -------------------------------------------------------------------------------
 
-    def ask_pin_reset(self) -> None:
+    def ask_for_pin_reset(self) -> None:
         """Ask for confirmation, and then start the reset of all PINs (F9).
 
         The E-stop must stay pressed during the reset.
@@ -347,12 +347,12 @@ class AccessLevelsFunction(SpecialFunction):
         If the store is unreadable, access levels are turned off only until TurnDesk closes.
         """
 
-        def remove() -> None:
-            if not self.access.has_read_failed:
+        def delete_stored_users() -> None:
+            if not self.user_access.has_read_failed:
                 self.persistence.require_store().people.remove_all_users().result()
 
-        def done(_none: None) -> None:
-            self.access.remove_levels()
+        def report_removal(_none: None) -> None:
+            self.user_access.remove_access_levels()
             self.desk.show_success(tr("ALL PINS REMOVED. ACCESS LEVELS OFF: ALL FUNCTIONS UNLOCKED"))
 
-        self.session.worker.enqueue_work(remove, done, self.desk.show_refusal)
+        self.session.worker.enqueue_work(delete_stored_users, report_removal, self.desk.show_refusal)

@@ -31,18 +31,20 @@ class AccessExtra(OptionalFeature):
         self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
     ) -> None:
         """Create the PIN sign-in, and attach it to the user access of TurnDesk."""
-        from app.extras.access.sign_in import get_sign_in
+        from app.extras.access.sign_in import get_pin_sign_in
 
-        get_sign_in(desk.user_access)
+        get_pin_sign_in(desk.user_access)
 
     def list_special_functions(
         self, desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker
     ) -> Sequence[tuple[SpecialFunction, str]]:
         """Return the ACCESS LEVELS function, paired with the function that it follows in the F10 list."""
         from app.extras.access.access_levels import AccessLevelsFunction
-        from app.extras.access.sign_in import get_sign_in
+        from app.extras.access.sign_in import get_pin_sign_in
 
-        return ((AccessLevelsFunction(desk, persistence, get_sign_in(desk.user_access)), "LAMPS AND SOUND"),)
+        return (
+            (AccessLevelsFunction(desk, persistence, get_pin_sign_in(desk.user_access)), "LAMPS AND SOUND"),
+        )
 
     def require_pin(self, store: Store, user_row: UserRow, remedy: str) -> bool:
         """Ask for the user's PIN on the command line. Return True because this feature supports PINs.

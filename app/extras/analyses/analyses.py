@@ -29,8 +29,8 @@ from app.extras.analyses.analysis_tables import (
 )
 from app.extras.analyses.axis_response import draw_response, find_last_move
 from app.extras.analyses.drawing import AnalysisDrawing
-from app.extras.analyses.drive_test_results import calculate_results, find_test_path
-from app.extras.analyses.spindle_response import draw_spindle_response, find_last_run_up
+from app.extras.analyses.drive_test_results import calculate_test_results, find_test_path
+from app.extras.analyses.spindle_response import draw_spindle_response, find_last_speed_change
 from app.scope.scope_model import ScopeModel
 from core.extras.analyses.path_error import (
     analyze_ball_bar,
@@ -62,7 +62,7 @@ class AnalysesModel:
     linear_axes: Mapping[str, Axis] = field(default_factory=dict)  # by letter
     spindle: SpindleModel | None = None
     worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("editing-analyses"))
-    kind: AnalysisKind = AnalysisKind.PATH
+    analysis_kind: AnalysisKind = AnalysisKind.PATH
     arc_index: int = 0
     magnification: float = 100.0
     selected_row: int = 0
@@ -87,7 +87,7 @@ class AnalysesModel:
         Selecting the same analysis again uses newer samples.
         """
         self.desk.clear_prompt_line()
-        self.kind, self.arc_index, self.selected_row = kind, 0, 0
+        self.analysis_kind, self.arc_index, self.selected_row = kind, 0, 0
         self.restart_analysis()
 
     def select_next_arc(self) -> None:
@@ -96,7 +96,7 @@ class AnalysesModel:
         If another type of analysis is selected, this method selects the ball-bar analysis instead.
         """
         self.desk.clear_prompt_line()
-        if self.kind is not AnalysisKind.BALL_BAR:
+        if self.analysis_kind is not AnalysisKind.BALL_BAR:
             self.choose_analysis(AnalysisKind.BALL_BAR)
             return
         self.arc_index += 1
@@ -126,34 +126,34 @@ class AnalysesModel:
         """
         self.worker.deliver_results()
         if self._of is None and not self.worker.is_busy:
-            kind, arc, drives, spindle = self.kind, self.arc_index, self.linear_axes, self.spindle
+            kind, arc, drives, spindle = self.analysis_kind, self.arc_index, self.linear_axes, self.spindle
             self._of = (kind, arc)
             frozen, window, live = self.scope.frozen_curves, self.scope.time_window, self.scope.live_samples
 
-            def work(_request: object) -> Found:
+            def run_analysis(_request: object) -> Found:
                 if frozen is not None:
-                    begin, end = frozen.zero_s + window.begin_s, frozen.zero_s + window.end_s
+                    begin, end = frozen.zero_time_s + window.begin_s, frozen.zero_time_s + window.end_s
                     return analyze_record(
-                        kind, frozen.record.select_between(begin, end), arc, drives, spindle
+                        kind, frozen.record.select_time_range(begin, end), arc, drives, spindle
                     )
                 if live is None or not math.isfinite(live.newest_time_s):
                     return Found(kind, tr("NO SCOPE DATA ON THIS MACHINE. F9: OPEN A SCOPE RECORD"))
                 names = {each.name for each in live.channels if each.unit in {"mm", "deg"}}
                 names |= {"line", "spindle turns", "spindle speed", "spindle command"}
-                record = live.read_between(
-                    live.newest_time_s - live.buffer_length_s, live.newest_time_s, names
+                record = live.read_samples_between(
+                    live.newest_time_s - live.buffer_duration_s, live.newest_time_s, names
                 )
                 cut = (
                     record
                     if kind in {AnalysisKind.AXIS_RESPONSE, AnalysisKind.SPINDLE_RESPONSE}
-                    else find_last_run(record)
+                    else find_last_program_run(record)
                 )
                 return analyze_record(kind, cut, arc, drives, spindle)
 
-            self.worker.request_work(work, self._take, self.desk.say)
+            self.worker.request_work(run_analysis, self._take, self.desk.say)
 
     def _take(self, found: Found) -> None:
-        if found.kind is self.kind:
+        if found.analysis_kind is self.analysis_kind:
             self.result = found
 
     def close(self) -> None:
@@ -165,28 +165,30 @@ class AnalysesModel:
     def make_drawing(self) -> AnalysisDrawing:
         """Return the drawing of the result, or an empty drawing if there is no result."""
         found = self.result
-        if found is None or found.missing_reason:
+        if found is None or found.unavailable_reason:
             return AnalysisDrawing()
         if found.path_error is not None:
             return _path_drawing(found, self.magnification, self.selected_row)
-        if found.thread is not None:
+        if found.thread_analysis is not None:
             return _thread_drawing(found)
-        if found.ball_bar is not None:
+        if found.ball_bar_result is not None:
             return _ball_drawing(found, self.magnification)
         return _response_drawing(found)
 
     def make_table(self) -> TableContent:
         """Return the table of the result."""
         found, metric = self.result, self.scope.metric
-        title = tr(self.kind.value)
+        title = tr(self.analysis_kind.value)
         if found is None:
             return TableContent(title, ("",), (1.0,), (), notes=(tr("CALCULATING …"),))
         if found.path_error is not None:
             return make_path_table(title, found, metric, self.selected_row)
-        if found.thread is not None:
-            return make_thread_table(title, found.thread, found.max_speed_mm_s, metric, self.selected_row)
-        if found.ball_bar is not None:
-            return make_ball_bar_table(title, found.ball_bar, found, metric)
+        if found.thread_analysis is not None:
+            return make_thread_table(
+                title, found.thread_analysis, found.max_speed_mm_s, metric, self.selected_row
+            )
+        if found.ball_bar_result is not None:
+            return make_ball_bar_table(title, found.ball_bar_result, found, metric)
         return choose_response_table(title, found, metric)
 
     @property
@@ -195,18 +197,18 @@ class AnalysesModel:
         found = self.result
         if found is None:
             return tr("CALCULATING …")
-        if found.missing_reason:
-            return found.missing_reason
-        if found.thread is not None:
+        if found.unavailable_reason:
+            return found.unavailable_reason
+        if found.thread_analysis is not None:
             return tr("thread passes overlaid by spindle angle: deviation from the thread, and spindle speed")
-        if found.kind in {AnalysisKind.AXIS_RESPONSE, AnalysisKind.SPINDLE_RESPONSE}:
+        if found.analysis_kind in {AnalysisKind.AXIS_RESPONSE, AnalysisKind.SPINDLE_RESPONSE}:
             return describe_response(found, self.scope.metric)
         return tr(
             Message("error magnified {times}x; press Z to change the scale", times=f"{self.magnification:g}")
         )
 
 
-def find_last_run(record: ScopeRecord) -> ScopeRecord:
+def find_last_program_run(record: ScopeRecord) -> ScopeRecord:
     """Return the part of a record that contains the last program run.
 
     If the record contains no program run, the whole record is returned.
@@ -218,7 +220,7 @@ def find_last_run(record: ScopeRecord) -> ScopeRecord:
     times = record.times_s[on]
     gaps = np.flatnonzero(np.diff(times) > _PAUSE)
     first = on[gaps[-1] + 1] if len(gaps) else on[0]
-    return record.select_between(float(record.times_s[first]), float(record.times_s[on[-1]]))
+    return record.select_time_range(float(record.times_s[first]), float(record.times_s[on[-1]]))
 
 
 def analyze_record(
@@ -230,11 +232,11 @@ def analyze_record(
 ) -> Found:
     """Return the result of an analysis.
 
-    If the analysis is not possible, ``missing_reason`` of the result contains the reason.
+    If the analysis is not possible, ``unavailable_reason`` of the result contains the reason.
     """
     try:
         if kind is AnalysisKind.SPINDLE_RESPONSE:
-            return Found(kind, spindle_response=find_last_run_up(record, spindle))
+            return Found(kind, spindle_response=find_last_speed_change(record, spindle))
         return _analysed(kind, record, arc_number, linear_axes)
     except AnalysisError as error:
         return Found(kind, str(error))
@@ -244,7 +246,7 @@ def _analysed(kind: AnalysisKind, record: ScopeRecord, arc: int, drives: Mapping
     if kind is AnalysisKind.AXIS_RESPONSE:
         played = find_test_path(record)
         if played is not None:
-            return Found(kind, drive_test=calculate_results(record, played, drives))
+            return Found(kind, drive_test_results=calculate_test_results(record, played, drives))
         return Found(kind, axis_response=find_last_move(record, drives))
     columns = record.values_by_channel
     letters = [each.name[0] for each in record.channels if each.name[1:] == " demand" and each.unit == "mm"]
@@ -272,7 +274,9 @@ def _analysed(kind: AnalysisKind, record: ScopeRecord, arc: int, drives: Mapping
         vmax = drives[axes[0]].max_speed if axes[0] in drives else 0.0
         thread = analyze_thread(turns, actual[:, 0], actual[:, 1], speed)
         speeds = tuple(speed[each.first_sample : each.last_sample + 1] for each in thread.passes)
-        return Found(kind, thread=thread, pass_speeds_rpm=speeds, max_speed_mm_s=vmax, axis_names=axes)
+        return Found(
+            kind, thread_analysis=thread, pass_speeds_rpm=speeds, max_speed_mm_s=vmax, axis_names=axes
+        )
     return _analyze_ball_bar(slides, demand, actual, np.where(np.isfinite(lines), lines, 0.0), arc)
 
 
@@ -304,7 +308,7 @@ def _analyze_ball_bar(
     ball = analyze_ball_bar(part[moved], actual[cut][:, pair][moved])
     axes = slides[pair[0]], slides[pair[1]]
     return Found(
-        AnalysisKind.BALL_BAR, ball_bar=ball, selected_arc=(number, len(arcs), line), axis_names=axes
+        AnalysisKind.BALL_BAR, ball_bar_result=ball, selected_arc=(number, len(arcs), line), axis_names=axes
     )
 
 
@@ -333,7 +337,7 @@ def _path_drawing(found: Found, factor: float, marked: int) -> AnalysisDrawing:
     if marked < len(found.worst_deviations):
         worst = found.worst_deviations[marked]
         place = path.magnify_deviation(factor)[worst.sample_index][seen]
-        marks = ((float(place[0]), float(place[1]), tr(Message("line {line}", line=worst.line))),)
+        marks = ((float(place[0]), float(place[1]), tr(Message("line {line}", line=worst.line_number))),)
     soft, curve = (
         _thinned(path.nearest_path_points[:, seen]),
         _thinned(path.magnify_deviation(factor)[:, seen]),
@@ -347,14 +351,14 @@ def _axis_names(found: Found) -> tuple[str, str, str]:
 
 
 def _thread_drawing(found: Found) -> AnalysisDrawing:
-    assert found.thread is not None
+    assert found.thread_analysis is not None
     curves = tuple(
         _thinned(np.column_stack([each.spindle_revolutions, each.deviations_mm]))
-        for each in found.thread.passes[:8]
+        for each in found.thread_analysis.passes[:8]
     )
     below = tuple(
         _thinned(np.column_stack([each.spindle_revolutions, speed]))
-        for each, speed in zip(found.thread.passes[:8], found.pass_speeds_rpm, strict=False)
+        for each, speed in zip(found.thread_analysis.passes[:8], found.pass_speeds_rpm, strict=False)
         if np.isfinite(speed).all()
     )
     names = tr("THREAD DEVIATION") + "  {unit}", Message("{title}  rpm", title=tr("SPINDLE")), tr("turns")
@@ -364,12 +368,12 @@ def _thread_drawing(found: Found) -> AnalysisDrawing:
 def _response_drawing(found: Found) -> AnalysisDrawing:
     if found.spindle_response is not None:
         return draw_spindle_response(found.spindle_response)
-    move = found.drive_test.motion if found.drive_test is not None else found.axis_response
+    move = found.drive_test_results.motion if found.drive_test_results is not None else found.axis_response
     return draw_response(move) if move is not None else AnalysisDrawing()
 
 
 def _ball_drawing(found: Found, factor: float) -> AnalysisDrawing:
-    ball = found.ball_bar
+    ball = found.ball_bar_result
     assert ball is not None
     angles = np.radians(ball.angles_deg)
     out = np.column_stack([np.cos(angles), np.sin(angles)])

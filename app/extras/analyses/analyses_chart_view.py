@@ -40,8 +40,8 @@ class AnalysisChart(Chart):
         if not drawing.upper_curves:
             return True
         upper = self.add_plot()
-        upper.vb.invertY(drawing.is_inverted)
-        self._fill(upper, drawing.command_points, drawing.upper_curves)
+        upper.vb.invertY(drawing.is_vertical_axis_inverted)
+        self._fill(upper, drawing.commanded_points, drawing.upper_curves)
         if drawing.lower_curves:
             self._fill(self.add_plot(), np.empty((0, 2)), drawing.lower_curves)
         self.set_left_axis_width(_LEFT)
@@ -65,7 +65,7 @@ class AnalysisChart(Chart):
     def _fit(self) -> None:
         self.ci.layout.activate()
         drawing = self.drawing
-        _range(self.plots[0], [drawing.command_points, *drawing.upper_curves], equal=drawing.has_equal_axes)
+        _range(self.plots[0], [drawing.commanded_points, *drawing.upper_curves], equal=drawing.has_equal_axes)
         if drawing.lower_curves:
             _range(self.plots[1], list(drawing.lower_curves), equal=False)
 

@@ -120,16 +120,16 @@ class AnalysesPage(ListPage):
     """Screen page for the analyses."""
 
     NAME = page_table.ANALYSES
-    model: _Keys
+    model: _AnalysesKeyAdapter
 
     def __init__(self, host: PageHost, analyses: AnalysesModel, parent: QWidget) -> None:
-        super().__init__(host, _Keys(analyses), parent)
+        super().__init__(host, _AnalysesKeyAdapter(analyses), parent)
         self.analyses = analyses
         self.description = DescriptionLine(self.theme, self)
         self.drawing = DrawingArea(self.theme, analyses.worker, self.desk.say, self)
         self.table = TablePanel(self.theme, analyses.select_row, self)
 
-    def prepare_slice(self) -> bool:
+    def continue_preparation(self) -> bool:
         """Create a part of the chart in advance, and return whether more parts must be created."""
         self.analyses.worker.deliver_results()
         return not self.drawing.is_ready()
@@ -207,7 +207,7 @@ class AnalysesPage(ListPage):
         self.table.setGeometry(left + gap, 0, side, self.height())
 
 
-class _Keys:
+class _AnalysesKeyAdapter:
     """Adapter that passes key presses on the page to the model."""
 
     def __init__(self, analyses: AnalysesModel) -> None:

@@ -31,20 +31,20 @@ class AnalysisKind(Enum):
 class Found:
     """Result of an analysis.
 
-    Only the field for this type of analysis is set. If there is no result, ``missing_reason`` is the
+    Only the field for this type of analysis is set. If there is no result, ``unavailable_reason`` is the
     reason.
     """
 
-    kind: AnalysisKind
-    missing_reason: str = ""
+    analysis_kind: AnalysisKind
+    unavailable_reason: str = ""
     path_error: PathError | None = None
     worst_deviations: tuple[WorstDeviation, ...] = ()
-    thread: ThreadAnalysis | None = None
+    thread_analysis: ThreadAnalysis | None = None
     pass_speeds_rpm: tuple[FloatArray, ...] = ()  # of the passes, rpm
-    ball_bar: BallBarResult | None = None
+    ball_bar_result: BallBarResult | None = None
     axis_response: AxisResponse | None = None
     spindle_response: SpindleResponse | None = None
-    drive_test: DriveTestResults | None = None  # the record is one of a drive test
+    drive_test_results: DriveTestResults | None = None  # the record is one of a drive test
     selected_arc: tuple[int, int, int] = (0, 0, 0)  # its number, of how many, its line
     max_speed_mm_s: float = 0.0  # of the slide along a thread, mm/s
     axis_names: tuple[str, str] = ("Z", "X")  # that are drawn

@@ -12,7 +12,7 @@ from app.extras.analyses.axis_response import make_response_table
 from app.extras.analyses.drive_test_results import describe_test_path, make_results_table
 from app.extras.analyses.spindle_response import make_spindle_table
 from core.extras.analyses.path_error import BallBarResult
-from core.extras.analyses.thread_passes import ThreadAnalysis, calculate_max_rpm
+from core.extras.analyses.thread_passes import ThreadAnalysis, calculate_max_threading_rpm
 from core.message import Message
 
 
@@ -27,7 +27,7 @@ def make_path_table(title: str, found: Found, metric: bool, marked: int) -> Tabl
     rows = tuple(
         TableRow(
             (
-                str(each.line),
+                str(each.line_number),
                 *(formats.format_length(value, metric) for value in (each.distance_mm, *each.position)),
             )
         )
@@ -46,7 +46,7 @@ def make_path_table(title: str, found: Found, metric: bool, marked: int) -> Tabl
     shares = (0.16, 0.3, 0.27, 0.27) if lathe else (0.11, 0.23, 0.22, 0.22, 0.22)
     number_columns = frozenset(range(1, len(heads)))
     return TableContent(
-        title, heads, shares, rows, min(marked, len(rows) - 1), notes=notes, number_columns=number_columns
+        title, heads, shares, rows, min(marked, len(rows) - 1), notes=notes, numeric_columns=number_columns
     )
 
 
@@ -66,7 +66,7 @@ def make_thread_table(
         )
         for number, each in enumerate(thread.passes, 1)
     )
-    limit = calculate_max_rpm(thread.reference_lead_mm, vmax) if vmax else math.inf
+    limit = calculate_max_threading_rpm(thread.reference_lead_mm, vmax) if vmax else math.inf
     notes = (
         tr(Message("Lead: {lead} per revolution", lead=_length(abs(thread.reference_lead_mm), metric))),
         tr(
@@ -82,14 +82,14 @@ def make_thread_table(
     shares = (0.12, 0.24, 0.2, 0.24, 0.2)
     number_columns = frozenset({1, 2, 3, 4})
     return TableContent(
-        title, heads, shares, rows, min(marked, len(rows) - 1), notes=notes, number_columns=number_columns
+        title, heads, shares, rows, min(marked, len(rows) - 1), notes=notes, numeric_columns=number_columns
     )
 
 
 def choose_response_table(title: str, found: Found, metric: bool) -> TableContent:
     """Return the table of the analyzed response: drive test, spindle or axis."""
-    if found.drive_test is not None:
-        return make_results_table(title, found.drive_test, metric)
+    if found.drive_test_results is not None:
+        return make_results_table(title, found.drive_test_results, metric)
     if found.spindle_response is not None:
         return make_spindle_table(title, found.spindle_response)
     if found.axis_response is not None:
@@ -99,8 +99,8 @@ def choose_response_table(title: str, found: Found, metric: bool) -> TableConten
 
 def describe_response(found: Found, metric: bool) -> str:
     """Return the description that is shown above the drawing of a response."""
-    if found.drive_test is not None:
-        return describe_test_path(found.drive_test.test_path, metric)
+    if found.drive_test_results is not None:
+        return describe_test_path(found.drive_test_results.test_path, metric)
     if found.spindle_response is not None:
         return tr("last spindle speed change: commanded and actual speed over time in seconds")
     return tr("last move: commanded position, actual position and following error over time in seconds")
@@ -110,7 +110,7 @@ def make_ball_bar_table(title: str, ball: BallBarResult, found: Found, metric: b
     """Return the table of a ball-bar plot."""
     u, v = found.axis_names
 
-    def lean(value: float) -> str:
+    def format_mm_per_meter(value: float) -> str:
         return (
             Message("{fixed} mm/m", fixed=formats.format_fixed(value, 3))
             if math.isfinite(value)
@@ -126,9 +126,12 @@ def make_ball_bar_table(title: str, ball: BallBarResult, found: Found, metric: b
         TableRow((tr(Message("BACKLASH {axis}", axis=v)), format_deviation(ball.backlash_mm[1]))),
         TableRow((tr(Message("REVERSAL SPIKE {axis}", axis=u)), format_deviation(ball.reversal_spike_mm[0]))),
         TableRow((tr(Message("REVERSAL SPIKE {axis}", axis=v)), format_deviation(ball.reversal_spike_mm[1]))),
-        TableRow((tr("SQUARENESS ERROR"), lean(ball.squareness_error_mm_m))),
+        TableRow((tr("SQUARENESS ERROR"), format_mm_per_meter(ball.squareness_error_mm_m))),
         TableRow(
-            (tr(Message("SCALE OF {value} RELATIVE TO {v}", value=u, v=v)), lean(ball.scale_error_mm_m))
+            (
+                tr(Message("SCALE OF {value} RELATIVE TO {v}", value=u, v=v)),
+                format_mm_per_meter(ball.scale_error_mm_m),
+            )
         ),
         TableRow((tr("RADIUS ERROR"), format_deviation(ball.size_error_mm))),
     )
@@ -147,4 +150,4 @@ def make_ball_bar_table(title: str, ball: BallBarResult, found: Found, metric: b
         tr("A dash means that the arc is too short to calculate the value."),
         tr("The encoder cannot measure backlash between the encoder and the tool."),
     )
-    return TableContent(title, ("", ""), (0.52, 0.48), rows, notes=notes, number_columns=frozenset({1}))
+    return TableContent(title, ("", ""), (0.52, 0.48), rows, notes=notes, numeric_columns=frozenset({1}))

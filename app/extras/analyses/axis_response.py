@@ -20,7 +20,7 @@ from app.extras.analyses.drawing import AnalysisDrawing
 from core.extras.analyses.step_response import (
     StepResponse,
     analyze_step,
-    find_narrowest_limit,
+    find_smallest_error_limit,
     find_speed_at_limit,
     find_trip_time,
     fit_lag,
@@ -54,7 +54,7 @@ class AxisMotion:
     setpoints: FloatArray
     positions: FloatArray
     max_speed_mm_s: float
-    lag_s: float  # seconds, from the part of the error that is proportional to the speed
+    following_lag_s: float  # seconds, from the part of the error that is proportional to the speed
     axis: Axis
 
     @property
@@ -62,7 +62,7 @@ class AxisMotion:
         """Return the following error in mm at each sample as an array (n,)."""
         return self.setpoints - self.positions
 
-    def predict_error(self, factor: float) -> FloatArray:
+    def predict_following_error(self, factor: float) -> FloatArray:
         """Return the following error expected at ``factor`` times the recorded speed."""
         return scale_error_to_speed(
             np.nan_to_num(calculate_velocity(self.times_s, self.setpoints)), self.following_error, factor
@@ -76,7 +76,7 @@ class AxisResponse(AxisMotion):
     step_response: StepResponse
 
 
-def make_motion(
+def make_axis_motion(
     letter: str, axis: Axis, record: ScopeRecord, sample_range: slice, start_time_s: float
 ) -> AxisMotion:
     """Return the motion of an axis in one part of a record.
@@ -104,7 +104,7 @@ def find_last_move(record: ScopeRecord, linear_axes: Mapping[str, Axis]) -> Axis
         demand = record.values_by_channel.get(Message("{item} demand", item=letter))
         if linear_axes[letter].is_rotary or demand is None or not np.isfinite(demand).all():
             continue
-        spans = find_moves(record.times_s, demand)
+        spans = find_completed_moves(record.times_s, demand)
         if spans and (found is None or spans[-1][1] > found[1]):
             found = (*spans[-1], letter)
     if found is None:
@@ -122,7 +122,7 @@ def find_last_move(record: ScopeRecord, linear_axes: Mapping[str, Axis]) -> Axis
     return _response(letter, linear_axes[letter], record, slice(begin, end), float(times[first]))
 
 
-def find_moves(times_s: FloatArray, setpoints: FloatArray) -> list[tuple[int, int]]:
+def find_completed_moves(times_s: FloatArray, setpoints: FloatArray) -> list[tuple[int, int]]:
     """Return the first and last sample index of every completed move, oldest move first."""
     moving = np.flatnonzero(np.abs(np.diff(setpoints)) > _STILL)
     if not len(moving):
@@ -136,7 +136,7 @@ def find_moves(times_s: FloatArray, setpoints: FloatArray) -> list[tuple[int, in
 
 
 def _response(letter: str, axis: Axis, record: ScopeRecord, cut: slice, zero: float) -> AxisResponse:
-    found = make_motion(letter, axis, record, cut, zero)
+    found = make_axis_motion(letter, axis, record, cut, zero)
     step = analyze_step(found.times_s, found.setpoints, found.positions, axis.in_position_tolerance)
     return AxisResponse(
         letter,
@@ -144,7 +144,7 @@ def _response(letter: str, axis: Axis, record: ScopeRecord, cut: slice, zero: fl
         found.setpoints,
         found.positions,
         found.max_speed_mm_s,
-        found.lag_s,
+        found.following_lag_s,
         axis,
         step_response=step,
     )
@@ -160,7 +160,7 @@ def draw_response(response: AxisMotion) -> AnalysisDrawing:
     error = np.column_stack([response.times_s, response.following_error])
     names = f"{response.axis_letter}  {{unit}}", tr("FOLLOWING ERROR") + "  {unit}", "s"
     return AnalysisDrawing(
-        asked, (done,), (error,), has_equal_axes=False, is_lower_length=True, axis_labels=names
+        asked, (done,), (error,), has_equal_axes=False, has_lower_length_axis=True, axis_labels=names
     )
 
 
@@ -213,8 +213,8 @@ def make_limit_rows(response: AxisMotion, units: UnitFormat) -> list[tuple[str, 
     """
     axis, times, error = response.axis, response.times_s, response.following_error
 
-    def trips(error: FloatArray, window: float) -> str:
-        at = find_trip_time(times, error, window, axis.following_time_s)
+    def describe_trip_time(error: FloatArray, window: float) -> str:
+        at = find_trip_time(times, error, window, axis.following_error_time_s)
         return (
             tr("no trip")
             if at is None
@@ -222,23 +222,25 @@ def make_limit_rows(response: AxisMotion, units: UnitFormat) -> list[tuple[str, 
         )
 
     limit, greatest = axis.compute_max_following_error(response.max_speed_mm_s), float(np.abs(error).max())
-    least = find_narrowest_limit(times, error, axis.following_time_s)
+    least = find_smallest_error_limit(times, error, axis.following_error_time_s)
     reached = find_speed_at_limit(
-        abs(response.lag_s), axis.standstill_tolerance, axis.following_window, axis.max_speed
+        abs(response.following_lag_s), axis.standstill_tolerance, axis.following_error_window, axis.max_speed
     )
     rows = [
-        (tr("FOLLOWING LAG"), "", units.format_milliseconds(response.lag_s)),
+        (tr("FOLLOWING LAG"), "", units.format_milliseconds(response.following_lag_s)),
         (tr("LARGEST ERROR"), "", units.format_length(greatest)),
-        (tr("ERROR LIMIT AT THIS SPEED"), trips(error, limit), units.format_length(limit)),
+        (tr("ERROR LIMIT AT THIS SPEED"), describe_trip_time(error, limit), units.format_length(limit)),
         (tr("SMALLEST LIMIT WITHOUT A TRIP"), "", units.format_length(least)),
     ]
     for share in LIMIT_FACTORS:
         name = tr(Message("LIMIT REDUCED TO {share}", share=formats.format_percent(share)))
-        rows.append((name, trips(error, share * limit), units.format_length(share * limit)))
+        rows.append((name, describe_trip_time(error, share * limit), units.format_length(share * limit)))
     for factor in SPEED_FACTORS:
-        faster = response.predict_error(factor)
+        faster = response.predict_following_error(factor)
         name = tr(Message("AT {share} SPEED", share=formats.format_percent(factor)))
-        verdict = trips(faster, axis.compute_max_following_error(factor * response.max_speed_mm_s))
+        verdict = describe_trip_time(
+            faster, axis.compute_max_following_error(factor * response.max_speed_mm_s)
+        )
         rows.append((name, verdict, units.format_length(float(np.abs(faster).max()))))
     at = (
         units.format_speed(reached)
@@ -271,5 +273,5 @@ def make_response_table(title: str, response: AxisResponse, metric: bool) -> Tab
         ),
     )
     return TableContent(
-        title, ("", "", ""), COLUMN_WIDTH_RATIOS, tuple(rows), notes=notes, number_columns=frozenset({1, 2})
+        title, ("", "", ""), COLUMN_WIDTH_RATIOS, tuple(rows), notes=notes, numeric_columns=frozenset({1, 2})
     )

@@ -16,24 +16,24 @@ FloatArray = npt.NDArray[np.float64]
 class AnalysisDrawing:
     """Drawing of an analysis in one or two plots.
 
-    - ``command_points`` (n, 2) is the commanded curve.
+    - ``commanded_points`` (n, 2) is the commanded curve.
     - ``upper_curves`` are in the first plot, and ``lower_curves`` are in the second plot.
     - ``has_equal_axes`` means that both axes are lengths with the same scale.
     - ``axis_labels`` are for the vertical axis, the second vertical axis, and the horizontal axis.
     - ``labeled_points`` are points with labels. In a label, {unit} is replaced by the unit of length.
     """
 
-    command_points: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
+    commanded_points: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
     upper_curves: tuple[FloatArray, ...] = ()
     lower_curves: tuple[FloatArray, ...] = ()
     labeled_points: tuple[tuple[float, float, str], ...] = ()
     has_equal_axes: bool = True
-    is_length: bool = True  # the vertical axis is a length
-    is_lower_length: bool = False  # the vertical axis of the second plot is a length
+    has_upper_length_axis: bool = True  # the vertical axis is a length
+    has_lower_length_axis: bool = False  # the vertical axis of the second plot is a length
     axis_labels: tuple[str, str, str] = ("", "", "")
 
     @property
-    def is_inverted(self) -> bool:
+    def is_vertical_axis_inverted(self) -> bool:
         """Return whether the vertical axis points down, as the operator sees the X axis of a lathe."""
         return self.has_equal_axes and self.axis_labels[0].startswith("X")
 
@@ -44,18 +44,22 @@ def scale_drawing(drawing: AnalysisDrawing, factor: float) -> AnalysisDrawing:
     Axes that share a scale are both multiplied by ``factor``. Otherwise only a vertical axis that is a
     length is multiplied.
     """
-    by = np.array([factor if drawing.has_equal_axes else 1.0, factor if drawing.is_length else 1.0])
+    by = np.array(
+        [factor if drawing.has_equal_axes else 1.0, factor if drawing.has_upper_length_axis else 1.0]
+    )
     marks = tuple((x * by[0], y * by[1], word) for x, y, word in drawing.labeled_points)
     curves = tuple(each * by for each in drawing.upper_curves)
     below = (
-        tuple(each * by for each in drawing.lower_curves) if drawing.is_lower_length else drawing.lower_curves
+        tuple(each * by for each in drawing.lower_curves)
+        if drawing.has_lower_length_axis
+        else drawing.lower_curves
     )
     unit = "mm" if factor == 1.0 else tr("in")
     upper, lower, across = (each.replace("{unit}", unit) for each in drawing.axis_labels)
-    soft, names = drawing.command_points * by, (upper, lower, across)
+    soft, names = drawing.commanded_points * by, (upper, lower, across)
     return replace(
         drawing,
-        command_points=soft,
+        commanded_points=soft,
         upper_curves=curves,
         labeled_points=marks,
         lower_curves=below,

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 from app.desk.desk import Desk
-from app.desk.late_presses import StartingAction
+from app.desk.late_presses import BlockedLateAction
 from app.desk.pages.table_content import TableContent, TableRow, following
 from app.desk.status import formats
 from app.desk.status.formats import MM_PER_INCH
@@ -24,10 +24,10 @@ from app.extras.analyses.drive_test_results import (
     REST_BEFORE_TEST_S,
     TEST_PATH_KEY,
     DriveTestResults,
-    ResultsPart,
-    calculate_results,
+    ResultsSection,
+    calculate_test_results,
     describe_test_path,
-    encode_test_path,
+    format_test_path_json,
     make_results_table,
 )
 from app.jog.held_jog import ActiveJog, HeldJog, JogDirection, JogSpeeds, make_jog_directions
@@ -57,11 +57,12 @@ TestDirection = tuple[str, int]  # axis and sign
 class HeldTestKey(HeldJog):
     """Key that must be held down during a drive test.
 
-    ``make_path`` returns the test path, and ``requested_direction`` is the direction whose travel is shown.
+    ``make_test_path`` returns the test path, and ``requested_direction`` is the direction whose travel is
+    shown.
     """
 
-    starting_action: ClassVar[StartingAction] = StartingAction.DRIVE_TEST
-    make_path: Callable[[str, int], DriveTestMotion] = field(kw_only=True)
+    starting_action: ClassVar[BlockedLateAction] = BlockedLateAction.DRIVE_TEST
+    make_test_path: Callable[[str, int], DriveTestMotion] = field(kw_only=True)
     requested_direction: TestDirection | None = None
 
     def _start_jog(self, source: str, axis: str, sign: int, rapid: bool) -> None:
@@ -74,32 +75,36 @@ class HeldTestKey(HeldJog):
         else:
             self.requested_direction = None
             self._hold(
-                source, axis, float(sign), False, RunDriveTest(self.make_path(axis, sign), self.lease_s)
+                source,
+                axis,
+                float(sign),
+                False,
+                RunDriveTest(self.make_test_path(axis, sign), self.motion_lease_s),
             )
 
     def _renewal(self, _held: ActiveJog, /) -> Command:
-        return RenewDriveTest(self.lease_s)
+        return RenewDriveTest(self.motion_lease_s)
 
 
 @dataclass(slots=True)
 class DriveTestModel:
     """Model of the drive test page.
 
-    ``linear_axes`` contains the linear axes by letter. ``displayed_part`` is the part of the last results
+    ``linear_axes`` contains the linear axes by letter. ``displayed_section`` is the part of the last results
     that is displayed, or None while the page shows the selection.
     """
 
     desk: Desk
     scope: ScopeModel
     machine: Machine
-    shape: Shape = Shape.STEP
+    test_shape: Shape = Shape.STEP
     size_index: int = 2
     ramp_index: int = 1
     speed_index: int = 1
     frequency_index: int = 0  # 0 for the series, otherwise the number of a single sine
-    displayed_part: ResultsPart | None = None
+    displayed_section: ResultsSection | None = None
     results: DriveTestResults | None = None
-    saved_record_text: str = ""  # file of the last test
+    saved_record_name: str = ""  # file of the last test
     held_jog: HeldTestKey = field(init=False)
     directions: tuple[JogDirection, ...] = ()
     linear_axes: Mapping[str, Axis] = field(default_factory=dict)
@@ -110,18 +115,18 @@ class DriveTestModel:
         desk, machine = self.desk, self.machine
         self.linear_axes = {axis.name: axis for axis in machine.axes if not axis.is_rotary}
         self.directions = tuple(
-            each for each in make_jog_directions(machine) if each.axis in self.linear_axes
+            each for each in make_jog_directions(machine) if each.axis_name in self.linear_axes
         )
         self.held_jog = HeldTestKey(
             JogSpeeds(machine),
-            min(machine.timing.lease, MAX_LEASE_S),
+            min(machine.timing.motion_lease_s, MAX_LEASE_S),
             desk.post,
             desk.say,
             desk.clear_prompt_line,
             self._now,
             self.find_test_refusal,
             refuses_late_press=desk.window_state.late_presses.refuse_late_press,
-            make_path=self.make_test_path,
+            make_test_path=self.make_test_path,
         )
 
     def _now(self) -> float:
@@ -143,21 +148,23 @@ class DriveTestModel:
 
     def make_test_path(self, axis: str, sign: int) -> DriveTestMotion:
         """Return the test path for the current settings, an axis and a direction."""
-        if self.shape is Shape.RAMP:
+        if self.test_shape is Shape.RAMP:
             size = self._get_series_length(INCH_RAMPS, MM_RAMPS, self.ramp_index)
             return DriveTestMotion(
                 axis,
-                self.shape,
+                self.test_shape,
                 sign * size,
                 self._get_series_length(INCH_SPEEDS, MM_SPEEDS, self.speed_index) / 60,
             )
         size = sign * self._get_series_length(INCH_SIZES, MM_SIZES, self.size_index)
-        if self.shape is Shape.STEP:
-            return DriveTestMotion(axis, self.shape, size)
+        if self.test_shape is Shape.STEP:
+            return DriveTestMotion(axis, self.test_shape, size)
         fastest = self._limits(axis).max_sine_frequency_hz
         series = tuple(each for each in SINE_FREQUENCIES_HZ if each <= fastest)
         one = (SINE_FREQUENCIES_HZ[self.frequency_index - 1],)
-        return DriveTestMotion(axis, self.shape, size, frequencies_hz=one if self.frequency_index else series)
+        return DriveTestMotion(
+            axis, self.test_shape, size, frequencies_hz=one if self.frequency_index else series
+        )
 
     def _limits(self, axis: str) -> AxisTestLimits:
         machine, model = self.machine, self.machine.find_axis(axis)
@@ -167,12 +174,12 @@ class DriveTestModel:
     def select_next_shape(self) -> None:
         """Select the next shape: step, ramp or sine (F2)."""
         self._choose()
-        self.shape = following(Shape, self.shape)
+        self.test_shape = following(Shape, self.test_shape)
 
     def select_next_size(self) -> None:
         """Select the next larger size, or the smallest size after the largest (F3)."""
         self._choose()
-        if self.shape is Shape.RAMP:
+        if self.test_shape is Shape.RAMP:
             self.ramp_index = (self.ramp_index + 1) % len(INCH_RAMPS)
         else:
             self.size_index = (self.size_index + 1) % len(INCH_SIZES)
@@ -180,9 +187,9 @@ class DriveTestModel:
     def select_next_speed(self) -> None:
         """Select the next speed of a ramp or the next frequency of a sine (F4)."""
         self._choose()
-        if self.shape is Shape.RAMP:
+        if self.test_shape is Shape.RAMP:
             self.speed_index = (self.speed_index + 1) % len(INCH_SPEEDS)
-        elif self.shape is Shape.SINE:
+        elif self.test_shape is Shape.SINE:
             self.frequency_index = (self.frequency_index + 1) % (len(SINE_FREQUENCIES_HZ) + 1)
 
     def show_next_results(self) -> None:
@@ -191,28 +198,28 @@ class DriveTestModel:
         if self.results is None:
             self.desk.say(tr("NO TEST VALUES YET. RUN A TEST FIRST"))
         else:
-            self.displayed_part = following(
-                (None, ResultsPart.RESPONSE, ResultsPart.LIMITS), self.displayed_part
+            self.displayed_section = following(
+                (None, ResultsSection.RESPONSE, ResultsSection.LIMITS), self.displayed_section
             )
 
     def change_setting(self, row: int) -> None:
         """Select the next value of the setting in the touched row."""
-        if self.displayed_part is None:
+        if self.displayed_section is None:
             actions = (self.select_next_shape, self.select_next_size, self.select_next_speed)
             if row < len(actions):
                 actions[row]()
 
     def _choose(self) -> None:
         self.desk.clear_prompt_line()
-        self.held_jog.release_all(tr("TEST STOPPED: ANOTHER TEST WAS SELECTED"))
-        self.held_jog.requested_direction, self.displayed_part = None, None
+        self.held_jog.release_all_keys(tr("TEST STOPPED: ANOTHER TEST WAS SELECTED"))
+        self.held_jog.requested_direction, self.displayed_section = None, None
 
     # --- conditions and travel -------------------------------------------------------------------------
 
     def find_test_refusal(self) -> str:
         """Return the reason why no test can start now, or an empty string."""
         snapshot = self.desk.read_snapshot()
-        if self.desk.window_state.is_stop_held():
+        if self.desk.window_state.is_stop_key_held():
             return tr(RELEASE_STOP_KEY)
         if snapshot.drive_test.barred:
             return tr(Message("DRIVE TEST NOT POSSIBLE: {why}", why=snapshot.drive_test.barred))
@@ -231,7 +238,7 @@ class DriveTestModel:
         if not snapshot.homed[index]:
             return tr(Message("{axis} NOT HOMED, SO TRAVEL CANNOT BE CHECKED. HOME IT FIRST", axis=axis))
         path, limits = self.make_test_path(axis, sign), self._limits(axis)
-        if why := path.find_refusal(limits):
+        if why := path.find_refusal_reason(limits):
             return why
         low, high = drive_test.compute_position_range(path.make_ramps(limits))
         here = snapshot.demand[index]
@@ -268,7 +275,7 @@ class DriveTestModel:
             return ""
         if why := self.find_test_refusal() or self.find_direction_refusal(asked):
             return why
-        key = next(each.label for each in self.directions if (each.axis, each.direction_sign) == asked)
+        key = next(each.label for each in self.directions if (each.axis_name, each.direction_sign) == asked)
         return tr(
             Message(
                 "{travel}: HOLD {key} TO RUN THE TEST, RELEASE TO STOP",
@@ -291,7 +298,10 @@ class DriveTestModel:
         test_status = snapshot.drive_test
         if self.held_jog.active_jog is not None and (self._begun is None or test_status.tested_axis == ""):
             held = self.held_jog.active_jog
-            self._begun = self.make_test_path(held.axis, 1 if held.velocity > 0.0 else -1), test_status.number
+            self._begun = (
+                self.make_test_path(held.axis_name, 1 if held.velocity > 0.0 else -1),
+                test_status.number,
+            )
             self._whole = test_status.completed_test_count
         elif (
             self._begun is not None
@@ -321,34 +331,34 @@ class DriveTestModel:
         live, shelf, drives = self.scope.live_samples, self.scope.recording_store, self.linear_axes
         assert live is not None
 
-        def work() -> tuple[DriveTestResults | str, str]:
-            record = live.read_between(began - 2.0 * REST_BEFORE_TEST_S, live.newest_time_s)
+        def calculate_and_save_results() -> tuple[DriveTestResults | str, str]:
+            record = live.read_samples_between(began - 2.0 * REST_BEFORE_TEST_S, live.newest_time_s)
             instant = began - float(record.times_s[0]) if len(record.times_s) else 0.0
             metadata = {
                 **record.about,
-                TEST_PATH_KEY: encode_test_path(path),
+                TEST_PATH_KEY: format_test_path_json(path),
                 ZERO_INSTANT_KEY: f"{instant:.6f}",
             }
-            return _figures(replace(record, about=metadata), path, drives), shelf.save_named(
+            return _figures(replace(record, about=metadata), path, drives), shelf.save_dated_record(
                 replace(record, about=metadata),
                 Message("drive test {axis} {shape}", axis=path.axis, shape=path.shape.value),
             ).name
 
-        self.scope.file_worker.enqueue_work(work, self._take, self.desk.show_refusal)
+        self.scope.file_worker.enqueue_work(calculate_and_save_results, self._take, self.desk.show_refusal)
 
     def _take(self, answer: tuple[DriveTestResults | str, str]) -> None:
-        found, self.saved_record_text = answer
+        found, self.saved_record_name = answer
         if isinstance(found, str):
             self.desk.say(found)
             return
-        self.results, self.displayed_part = found, ResultsPart.RESPONSE
-        self.desk.say(tr(Message("SAVED: {path}", path=self.saved_record_text)))
+        self.results, self.displayed_section = found, ResultsSection.RESPONSE
+        self.desk.say(tr(Message("SAVED: {path}", path=self.saved_record_name)))
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def press_direction(self, key_source: str, axis: str, direction_sign: int) -> None:
+    def handle_direction_press(self, key_source: str, axis: str, direction_sign: int) -> None:
         """Handle a touch or mouse press on a direction arrow."""
-        self.held_jog.press_direction(key_source, axis, direction_sign, is_rapid=False)
+        self.held_jog.handle_direction_press(key_source, axis, direction_sign, is_rapid=False)
 
     def handle_key(self, _key: str) -> bool:
         """Return False because this page has no entry field."""
@@ -365,7 +375,7 @@ class DriveTestModel:
     def handle_escape(self) -> bool:
         """Stop the motion or clear the question, and return False if the page can close."""
         if self.held_jog.active_jog is not None:
-            self.held_jog.release_all()
+            self.held_jog.release_all_keys()
             return True
         asked, self.held_jog.requested_direction = self.held_jog.requested_direction, None
         return asked is not None
@@ -375,14 +385,14 @@ class DriveTestModel:
         """Return whether a test key is held down."""
         return self.held_jog.active_jog is not None
 
-    def release_all(self) -> None:
+    def release_all_keys(self) -> None:
         """Stop the motion when the page loses the keyboard focus, because key releases are then lost."""
-        self.held_jog.release_all(tr("TEST STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
+        self.held_jog.release_all_keys(tr("TEST STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
         self.held_jog.requested_direction = None
 
     def stop_test(self) -> None:
         """Stop all motion and clear the question when the page closes."""
-        self.held_jog.release_all()
+        self.held_jog.release_all_keys()
         if self.desk.read_snapshot().state is MachineState.JOG:
             self.desk.post(StopJog())
         self.held_jog.requested_direction = None
@@ -412,25 +422,25 @@ class DriveTestModel:
         """Return the description of the drawing."""
         if self.results is None:
             return tr("no test has been run yet")
-        return describe_test_path(self.results.test_path, self.is_metric) + "  ·  " + self.saved_record_text
+        return describe_test_path(self.results.test_path, self.is_metric) + "  ·  " + self.saved_record_name
 
     def make_table(self) -> TableContent:
         """Return the table of the test settings, or of the results of the last test."""
-        if self.displayed_part is not None and self.results is not None:
-            return make_results_table(tr("DRIVE TEST"), self.results, self.is_metric, self.displayed_part)
+        if self.displayed_section is not None and self.results is not None:
+            return make_results_table(tr("DRIVE TEST"), self.results, self.is_metric, self.displayed_section)
         units = UnitFormat(self.is_metric)
         path = self.make_test_path(next(iter(self.linear_axes)), 1)
         speed = ""
-        if self.shape is Shape.RAMP:
+        if self.test_shape is Shape.RAMP:
             speed = units.format_speed(path.speed)
-        elif self.shape is Shape.SINE:
+        elif self.test_shape is Shape.SINE:
             speed = Message("{item} Hz", item=", ".join(f"{each:g}" for each in path.frequencies_hz))
         rows = [
-            TableRow((tr("SHAPE"), "F2", tr(SHAPE_NAMES[self.shape]))),
+            TableRow((tr("SHAPE"), "F2", tr(SHAPE_NAMES[self.test_shape]))),
             TableRow((tr("SIZE"), "F3", units.format_length(abs(path.travel_mm)))),
             TableRow(
                 (
-                    tr("FREQUENCY") if self.shape is Shape.SINE else tr("SPEED"),
+                    tr("FREQUENCY") if self.test_shape is Shape.SINE else tr("SPEED"),
                     "F4",
                     speed or tr("as fast as possible"),
                 )
@@ -449,7 +459,7 @@ class DriveTestModel:
         )
         heads, shares = ("", tr("KEY"), tr("SETTING")), (0.34, 0.16, 0.5)
         return TableContent(
-            tr("DRIVE TEST"), heads, shares, tuple(rows), notes=notes, number_columns=frozenset({2})
+            tr("DRIVE TEST"), heads, shares, tuple(rows), notes=notes, numeric_columns=frozenset({2})
         )
 
     def _axis_rows(self, units: UnitFormat) -> list[TableRow]:
@@ -460,11 +470,11 @@ class DriveTestModel:
                     tr(Message("FOLLOWING ERROR LIMIT {axis}", axis=name)),
                     "",
                     f"{units.format_length(axis.standstill_tolerance)} … "
-                    f"{units.format_length(axis.following_window)}",
+                    f"{units.format_length(axis.following_error_window)}",
                 )
             )
             for name, axis in self.linear_axes.items()
-            if math.isfinite(axis.following_window)
+            if math.isfinite(axis.following_error_window)
         ]
 
 
@@ -472,6 +482,6 @@ def _figures(
     record: ScopeRecord, path: DriveTestMotion, drives: Mapping[str, Axis]
 ) -> DriveTestResults | str:
     try:
-        return calculate_results(record, path, drives)
+        return calculate_test_results(record, path, drives)
     except AnalysisError as error:
         return str(error)

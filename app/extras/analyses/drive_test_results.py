@@ -21,9 +21,9 @@ from app.extras.analyses.axis_response import (
     COLUMN_WIDTH_RATIOS,
     AxisMotion,
     UnitFormat,
-    find_moves,
+    find_completed_moves,
+    make_axis_motion,
     make_limit_rows,
-    make_motion,
     make_step_rows,
 )
 from core.executor.hand_motion.drive_test import PAUSE_BETWEEN_MOVES_S, DriveTestMotion, Shape
@@ -47,7 +47,7 @@ _REST_AFTER_MOVE_S = 0.9 * PAUSE_BETWEEN_MOVES_S  # seconds of rest after a move
 _SHAPE_NAMES = {Shape.STEP: "STEP", Shape.RAMP: "RAMP", Shape.SINE: "SINE"}
 
 
-def encode_test_path(path: DriveTestMotion) -> str:
+def format_test_path_json(path: DriveTestMotion) -> str:
     """Return the test path as a JSON text for the record."""
     path_fields = (path.axis, path.shape.value, path.travel_mm, path.speed, path.frequencies_hz)
     return json.dumps(path_fields)
@@ -79,7 +79,7 @@ class DriveTestResults:
     sine_responses: tuple[SineResponse, ...] = ()
 
 
-def calculate_results(
+def calculate_test_results(
     record: ScopeRecord, path: DriveTestMotion, linear_axes: Mapping[str, Axis]
 ) -> DriveTestResults:
     """Calculate the results from the record of a complete test.
@@ -90,7 +90,7 @@ def calculate_results(
     name, axis = Message("{item} demand", item=path.axis), linear_axes.get(path.axis)
     if axis is None or name not in record.values_by_channel:
         raise AnalysisError(tr(Message("this machine has no {axis} axis", axis=path.axis)), "no-axis")
-    found = find_moves(record.times_s, record.values_by_channel[name])
+    found = find_completed_moves(record.times_s, record.values_by_channel[name])
     ways = len(path.frequencies_hz) if path.shape is Shape.SINE else 2
     if len(found) < ways:
         raise AnalysisError(
@@ -100,7 +100,7 @@ def calculate_results(
     found = found[-ways:]
     times, zero = record.times_s, float(record.times_s[found[0][0]])
     whole = _about(times, zero - REST_BEFORE_TEST_S, float(times[found[-1][1]]) + _REST_AFTER_MOVE_S)
-    move = make_motion(path.axis, axis, record, whole, zero)
+    move = make_axis_motion(path.axis, axis, record, whole, zero)
     if path.shape is Shape.SINE:
         sines = tuple(
             _sine(record, path, first, last, frequency)
@@ -108,7 +108,7 @@ def calculate_results(
         )
         return DriveTestResults(path, move, sine_responses=sines)
     parts = [
-        make_motion(
+        make_axis_motion(
             path.axis,
             axis,
             record,
@@ -164,7 +164,7 @@ def describe_test_path(path: DriveTestMotion, metric: bool) -> str:
     return words
 
 
-class ResultsPart(Enum):
+class ResultsSection(Enum):
     """Part of the results that the page shows at one time, because a small screen cannot show all."""
 
     RESPONSE = "response"
@@ -173,28 +173,28 @@ class ResultsPart(Enum):
 
 
 def make_results_table(
-    title: str, results: DriveTestResults, metric: bool, displayed_part: ResultsPart = ResultsPart.ALL
+    title: str, results: DriveTestResults, metric: bool, displayed_part: ResultsSection = ResultsSection.ALL
 ) -> TableContent:
     """Return the table of the responses, followed by the effect of other following-error limits."""
     units = UnitFormat(metric)
     rows = (
         [TableRow(cells) for cells in _responses(results, units)]
-        if displayed_part is not ResultsPart.LIMITS
+        if displayed_part is not ResultsSection.LIMITS
         else []
     )
     rows += (
         map(TableRow, make_limit_rows(results.motion, units))
-        if displayed_part is not ResultsPart.RESPONSE
+        if displayed_part is not ResultsSection.RESPONSE
         else ()
     )
     heads = (
         ("", tr("GAIN"), tr("PHASE LAG")) if results.sine_responses else ("", tr("OUTBOUND"), tr("RETURN"))
     )
-    if displayed_part is ResultsPart.LIMITS:
+    if displayed_part is ResultsSection.LIMITS:
         heads = ("", "", "")
     notes = (describe_test_path(results.test_path, metric), tr("Nothing was written to the drive."))
     return TableContent(
-        title, heads, COLUMN_WIDTH_RATIOS, tuple(rows), notes=notes, number_columns=frozenset({1, 2})
+        title, heads, COLUMN_WIDTH_RATIOS, tuple(rows), notes=notes, numeric_columns=frozenset({1, 2})
     )
 
 
@@ -234,7 +234,7 @@ def _sine_rows(found: DriveTestResults) -> list[tuple[str, ...]]:
     ]
     seen, most = calculate_bandwidth(found.sine_responses), found.sine_responses[-1].frequency_hz
 
-    def at(hertz: float | None) -> str:
+    def format_frequency(hertz: float | None) -> str:
         return (
             Message("{item} Hz", item=formats.format_fixed(hertz, 1))
             if hertz is not None
@@ -243,8 +243,8 @@ def _sine_rows(found: DriveTestResults) -> list[tuple[str, ...]]:
 
     if len(found.sine_responses) > 1:
         rows += [
-            (tr("BANDWIDTH, −3 dB"), "", at(seen.gain_bandwidth_hz)),
-            (tr("90° PHASE LAG"), "", at(seen.phase_bandwidth_hz)),
+            (tr("BANDWIDTH, −3 dB"), "", format_frequency(seen.gain_bandwidth_hz)),
+            (tr("90° PHASE LAG"), "", format_frequency(seen.phase_bandwidth_hz)),
         ]
     late = found.sine_responses[0].lag_s
     rows.append(

@@ -34,7 +34,7 @@ class DriveTestPad(JogCross):
     displayed_state: RedrawingAttribute[object] = RedrawingAttribute(None)
 
     def __init__(self, theme: ScreenTheme, model: DriveTestModel, parent: QWidget) -> None:
-        super().__init__(theme, model.held_jog, model.directions, model.press_direction, parent)
+        super().__init__(theme, model.held_jog, model.directions, model.handle_direction_press, parent)
         self._model = model
 
     def draw(self, painter: ThemedPainter) -> None:
@@ -67,7 +67,7 @@ class DriveTestPage(HeldKeysPage):
         self.jog_cross: DriveTestPad = DriveTestPad(self.theme, model, self)
         self.table = TablePanel(self.theme, model.change_setting, self)
 
-    def prepare_slice(self) -> bool:
+    def continue_preparation(self) -> bool:
         """Create a part of the chart in advance, and return whether more parts must be created."""
         self.model.scope.file_worker.deliver_results()
         return not self.drawing.is_ready()
@@ -100,23 +100,23 @@ class DriveTestPage(HeldKeysPage):
         """Return whether the page shows live measurements because a test key is held down."""
         return self.model.is_active
 
-    def try_leave(self) -> bool:
+    def try_leave_page(self) -> bool:
         """Stop all motion, and return True because the page can always close."""
-        self.jog_cross.release_all()
+        self.jog_cross.release_all_controls()
         self.model.stop_test()
         return True
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
         """Renew the jog lease while a key is held down, and update the page."""
         if not self._has_keyboard():
-            self.release_if_active()
+            self.stop_if_active()
         model = self.model
         model.update(snapshot)
         self.description.description_text = model.describe_drawing()
         self.table.show_table(model.make_table())
         self.jog_cross.displayed_state = (
             model.held_jog.requested_direction,
-            model.held_jog.active_jog and model.held_jog.active_jog.key_source,
+            model.held_jog.active_jog and model.held_jog.active_jog.input_source,
             snapshot.state,
         )
         self.drawing.show_drawing(

@@ -52,8 +52,8 @@ class AnalysesExtra(OptionalFeature):
         self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
     ) -> None:
         """Register the models of the analyses and the drive test. Each model is created at its first use."""
-        desk.page_registry.attach_lazily(_ANALYSES, partial(_analyses, desk, machine))
-        desk.page_registry.attach_lazily(_DRIVE_TESTS, partial(_drive_tests, desk, machine))
+        desk.page_registry.attach_lazy_model(_ANALYSES, partial(_analyses, desk, machine))
+        desk.page_registry.attach_lazy_model(_DRIVE_TESTS, partial(_drive_tests, desk, machine))
 
 
 def _scope_of(desk: Desk) -> ScopeModel:

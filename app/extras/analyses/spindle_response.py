@@ -36,16 +36,16 @@ class SpindleResponse:
     - ``commanded_rpm`` (n,) and ``measured_rpm`` (n,) are the speeds at these times.
     - ``step_responses`` are for the at-speed tolerance of the machine file and for each of
       ``TOLERANCE_RATIOS``.
-    - ``variation_rpm`` is the peak-to-peak variation over the last second.
-    - ``mean_error_rpm`` is the mean error over the last second.
+    - ``speed_variation_rpm`` is the peak-to-peak variation over the last second.
+    - ``mean_speed_error_rpm`` is the mean error over the last second.
     """
 
     times_s: FloatArray
     commanded_rpm: FloatArray
     measured_rpm: FloatArray
     step_responses: tuple[StepResponse, ...]
-    variation_rpm: float
-    mean_error_rpm: float
+    speed_variation_rpm: float
+    mean_speed_error_rpm: float
     spindle_model: SpindleModel
 
     @property
@@ -58,7 +58,7 @@ class SpindleResponse:
         return 0.8 * abs(step.step_size_mm) / step.rise_time_s if step.rise_time_s > 0.0 else np.inf
 
 
-def find_last_run_up(record: ScopeRecord, model: SpindleModel | None) -> SpindleResponse:
+def find_last_speed_change(record: ScopeRecord, model: SpindleModel | None) -> SpindleResponse:
     """Return the response to the last change to a speed other than 0.
 
     A change counts only if it exceeds twice the at-speed tolerance of the new speed and twice each of
@@ -104,7 +104,9 @@ def _response(
     model: SpindleModel,
 ) -> SpindleResponse:
     target = asked[last]
-    there = np.flatnonzero((np.abs(turned - target) <= model.at_speed * abs(target)) & (times >= times[last]))
+    there = np.flatnonzero(
+        (np.abs(turned - target) <= model.at_speed_tolerance * abs(target)) & (times >= times[last])
+    )
     if len(there):
         end = min(end, float(times[there[0]]) + _BEHIND)
     cut = slice(
@@ -117,12 +119,12 @@ def _response(
 
 
 def _shares(model: SpindleModel) -> tuple[float, ...]:
-    return model.at_speed, *TOLERANCE_RATIOS
+    return model.at_speed_tolerance, *TOLERANCE_RATIOS
 
 
 def _stayed(step: StepResponse, times: FloatArray, model: SpindleModel) -> StepResponse:
     """Return the response with a settling time of nan if the speed did not stay within the tolerance."""
-    if times[-1] - step.settling_time_s >= model.at_speed_time:
+    if times[-1] - step.settling_time_s >= model.at_speed_time_s:
         return step
     return replace(step, settling_time_s=math.nan)
 
@@ -133,7 +135,9 @@ def draw_spindle_response(response: SpindleResponse) -> AnalysisDrawing:
         np.column_stack([response.times_s, each]) for each in (response.commanded_rpm, response.measured_rpm)
     )
     names = Message("{title}  rpm", title=tr("SPINDLE")), "", "s"
-    return AnalysisDrawing(asked, (turned,), has_equal_axes=False, is_length=False, axis_labels=names)
+    return AnalysisDrawing(
+        asked, (turned,), has_equal_axes=False, has_upper_length_axis=False, axis_labels=names
+    )
 
 
 def make_spindle_table(title: str, response: SpindleResponse) -> TableContent:
@@ -166,11 +170,11 @@ def make_spindle_table(title: str, response: SpindleResponse) -> TableContent:
         ),
         (
             tr("MEAN SPEED ERROR"),
-            Message("{speed} rpm", speed=formats.format_fixed(response.mean_error_rpm, 1)),
+            Message("{speed} rpm", speed=formats.format_fixed(response.mean_speed_error_rpm, 1)),
         ),
         (
             tr("SPEED VARIATION"),
-            Message("{speed} rpm", speed=formats.format_fixed(response.variation_rpm, 1)),
+            Message("{speed} rpm", speed=formats.format_fixed(response.speed_variation_rpm, 1)),
         ),
     )
     notes = (
@@ -178,8 +182,8 @@ def make_spindle_table(title: str, response: SpindleResponse) -> TableContent:
             Message(
                 "The acceleration in the machine file is {accel} rpm/s; a speed within {share} "
                 "of the target counts as reached.",
-                accel=formats.format_fixed(model.accel, 0),
-                share=formats.format_percent(model.at_speed),
+                accel=formats.format_fixed(model.acceleration_rpm_s, 0),
+                share=formats.format_percent(model.at_speed_tolerance),
             )
         ),
         tr(
@@ -189,7 +193,7 @@ def make_spindle_table(title: str, response: SpindleResponse) -> TableContent:
         tr("Last change of spindle speed. These values are for information only; no setting was changed."),
     )
     return TableContent(
-        title, ("", ""), _SHARES, tuple(map(TableRow, rows)), notes=notes, number_columns=frozenset({1})
+        title, ("", ""), _SHARES, tuple(map(TableRow, rows)), notes=notes, numeric_columns=frozenset({1})
     )
 
 

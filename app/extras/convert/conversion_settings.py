@@ -32,9 +32,9 @@ def make_options(control: SourceControl, settings: ConversionSettings, machine: 
         diameter=settings.is_diameter,
         front=settings.has_front_tool_post,
         skipped_m_codes=settings.skipped_m_codes,
-        has_comments=settings.has_comments,
+        writes_comments=settings.has_comments,
         rapid=machine.limits.max_feed * 60,
         max_rpm=machine.spindle.max_rpm,
         max_feed_mm_min=machine.limits.max_feed * 60,
-        m_codes=frozenset(machine.m_codes),
+        m_codes=frozenset(machine.m_code_outputs),
     )

@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.change_author import add_as_option, get_permitted_user, log_user_change
+from app.cli.change_author import add_author_option, get_permitted_user, log_user_change
 from app.cli.program_options import parse_output_path
 from app.cli.store_command import open_store
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, convert_to_command_error
@@ -66,7 +66,7 @@ def add_parser(subparsers: SubParsers) -> None:
     parser.add_argument(
         "--out", type=parse_output_path, metavar="FILE", help="program file to write (default: stdout)"
     )
-    add_as_option(parser)
+    add_author_option(parser)
     parser.add_argument("--json", action="store_true", help="print only JSON on stdout")
 
 

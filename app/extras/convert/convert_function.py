@@ -15,7 +15,7 @@ from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
 from app.desk.pages.table_content import FunctionKey, TableContent, TableRow, following
 from app.desk.programs.program_loading import LoadedProgram
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.desk.translation import tr
 from app.extras.convert.conversion_settings import ConversionSettings, make_options
 from app.programs.atomic_files import write_new_file
@@ -45,7 +45,11 @@ _SCREEN_HINTS: Mapping[str, str] = {
     "m-code": "PRESS ENTER ON M CODES LEFT OUT TO LEAVE IT OUT.",
 }
 """Remedies on the screen by code of the finding, in place of options of the command."""
-_TONES = {Severity.ERROR: Tone.ALARM, Severity.WARNING: Tone.WAIT, Severity.NOTE: Tone.READY}
+_TONES = {
+    Severity.ERROR: StatusTone.ALARM,
+    Severity.WARNING: StatusTone.WAIT,
+    Severity.NOTE: StatusTone.READY,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +114,7 @@ class ConvertFunction(SpecialFunction):
         self.marked = max(0, min(self.marked, len(rows) - 1))
         return TableContent(
             title, ("", ""), (0.3, 0.7), tuple(rows), self.marked, notes=(self._summary(),),
-            raw_columns=frozenset({0, 1}),
+            untranslated_columns=frozenset({0, 1}),
         )  # fmt: skip
 
     def _summary(self) -> str:
@@ -189,7 +193,7 @@ class ConvertFunction(SpecialFunction):
         conversion = self._result.conversion if self._result is not None else None
         return conversion is not None and not conversion.errors
 
-    def execute_row(self) -> bool:
+    def activate_selected_row(self) -> bool:
         """Change the selected setting, and return whether a setting was selected."""
         if self.loaded_source is None or self.marked >= _SETTING_COUNT:
             return False
@@ -228,7 +232,9 @@ class ConvertFunction(SpecialFunction):
         path = self.desk.program_loader.loaded_program.path
         if conversion is None or conversion.errors or path is None:
             self.desk.say("THE PROGRAM IS NOT CONVERTED")
-        elif self.desk.program_choice.can_choose() and not self.desk.is_refused(ProtectedChange.PROGRAMS):
+        elif self.desk.program_choice.can_choose_program() and not self.desk.is_refused(
+            ProtectedChange.PROGRAMS
+        ):
             folder = self.desk.program_choice.program_folders.folders[0]
             target = folder / f"{path.stem}-omniturn.nc"
             work = partial(_save, target, conversion.text)

@@ -20,18 +20,18 @@ from app.extras.drawings.drawing_plan import (
     DrawingPlan,
     DrawingPlanner,
     PlanRequest,
-    draw_plan,
     get_contour_number,
+    make_plan_sketch,
 )
-from app.extras.shapes.shape_form import AddedForm, ShapeForm, ShowForm
+from app.extras.shapes.shape_form import AdditionalForm, ShapeForm, ShowForm
 from core.extras.drawings.drawing_file import has_drawing_suffix
 from core.extras.drawings.drawing_placement import ContourSide, FaceEnd, ZeroPosition
-from core.extras.drawings.drawing_process import read_in_process
+from core.extras.drawings.drawing_process import read_drawing_in_process
 from core.extras.drawings.part_comparison import DrawingComparison
 from core.extras.drawings.profile_description import describe_program
 from core.extras.drawings.unit_check import UNIT_SIZES_MM
 from core.extras.shapes.cutting_data import CUTTING_DATA
-from core.extras.shapes.editor_shape import FilledShape, Shape
+from core.extras.shapes.editor_shape import Shape, ShapeInstance
 from core.extras.shapes.lines.code_lines import CodeWriter
 from core.extras.shapes.shape_fields import (
     FieldKind,
@@ -60,7 +60,7 @@ def _outside(values: FieldValues) -> bool:
     return not _inside(values)
 
 
-def _picture(_filled: FilledShape) -> Sketch:
+def _picture(_filled: ShapeInstance) -> Sketch:
     shaft = (
         (0, 0),
         (0, 5),
@@ -81,8 +81,8 @@ def _picture(_filled: FilledShape) -> Sketch:
     )
 
 
-def _written(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter) -> None:
-    assert isinstance(filled, FilledDrawing)
+def _written(filled: ShapeInstance, _setting: ProgramSettings, code: CodeWriter) -> None:
+    assert isinstance(filled, FilledDrawingForm)
     code.append_lines(*filled.program_lines)
 
 
@@ -122,7 +122,7 @@ DRAWING_SHAPE = Shape(
 
 
 @dataclass(frozen=True, slots=True)
-class FilledDrawing(FilledShape):
+class FilledDrawingForm(ShapeInstance):
     """Values that are entered in the form of a drawing.
 
     ``program_lines`` contains the program lines of several shapes.
@@ -150,7 +150,7 @@ class DrawingForm(ShapeForm):
 
     drawing_files: Mapping[str, Path] = field(default_factory=dict)
     preceding_lines: tuple[str, ...] = ()
-    plan: DrawingPlan | None = None
+    drawing_plan: DrawingPlan | None = None
     pending_request: PlanRequest | None = None
     comparison: DrawingComparison | None = None
     is_canceled: bool = False
@@ -168,7 +168,7 @@ class DrawingForm(ShapeForm):
             if value is not None:
                 values[word] = value
         self._fill(values)
-        path = self.drawing_files.get(text(self.filled_shape.values, "FILE"))
+        path = self.drawing_files.get(text(self.filled_shape.field_values, "FILE"))
         if path is None:
             self.error_texts["FILE"] = NO_DRAWINGS_MESSAGE
         elif not self.error_texts:
@@ -189,7 +189,7 @@ class DrawingForm(ShapeForm):
             ShapeForm.apply_settings(self, settings)  # super() fails in a dataclass with slots
 
     def _ask(self, asked: PlanRequest) -> None:
-        if self.plan is None or self.plan.request != asked:
+        if self.drawing_plan is None or self.drawing_plan.request != asked:
             self.pending_request = asked
             self.remarks, self.comparison = (), None
 
@@ -197,12 +197,12 @@ class DrawingForm(ShapeForm):
         proposed: dict[str, FieldValue] = (
             {"FILE": next(iter(self.drawing_files))} if self.drawing_files else {}
         )
-        if self.plan is not None:
-            proposed |= self.plan.proposals
+        if self.drawing_plan is not None:
+            proposed |= self.drawing_plan.proposed_values
         known = {
-            each.word: each.default for each in self.shape.fields if isinstance(each.default, str | float)
+            each.name: each.default for each in self.shape.fields if isinstance(each.default, str | float)
         }
-        self.filled_shape = FilledDrawing(self.shape, {**known, **proposed, **values})
+        self.filled_shape = FilledDrawingForm(self.shape, {**known, **proposed, **values})
 
     def cancel(self) -> None:
         """Cancel reading the drawing.
@@ -216,7 +216,7 @@ class DrawingForm(ShapeForm):
 
     def show_plan(self, plan: DrawingPlan) -> None:
         """Show the program plan that the worker has calculated."""
-        self.plan, self.pending_request = plan, None
+        self.drawing_plan, self.pending_request = plan, None
         self.calculation_count += 1
         values = {word: v for word in self.entered_texts if (v := self._value(word)) is not None}
         self.error_texts = {}
@@ -224,35 +224,35 @@ class DrawingForm(ShapeForm):
         self._show()
 
     def _show(self) -> None:
-        plan = self.plan
+        plan = self.drawing_plan
         if plan is None or self.pending_request is not None:
             self.program_lines = []
             return
-        self.error_texts = {**plan.errors, **self.error_texts}
+        self.error_texts = {**plan.field_errors, **self.error_texts}
         made = plan.program
         self.program_lines = list(made.lines) if made is not None and not self.error_texts else []
-        self.filled_shape = FilledDrawing(
-            self.shape, self.filled_shape.values, program_lines=tuple(self.program_lines)
+        self.filled_shape = FilledDrawingForm(
+            self.shape, self.filled_shape.field_values, program_lines=tuple(self.program_lines)
         )
 
-    def show_trial(self, comparison: DrawingComparison | None, errors: tuple[str, ...]) -> None:
+    def show_trial_result(self, comparison: DrawingComparison | None, errors: tuple[str, ...]) -> None:
         """Show the result of the trial: the errors of the proof, and the comparison with the drawing."""
-        plan = self.plan
+        plan = self.drawing_plan
         if plan is None or plan.program is None or plan.profile is None:
             return
         self.calculation_count += 1
         self.comparison = comparison
         metric = self.settings.metric
         self.remarks = (*errors, *describe_program(plan.program, comparison, plan.profile, is_metric=metric))
-        number = get_contour_number(self.filled_shape.values.get("CONTOUR"))
-        self.plan = replace(plan, sketch=draw_plan(plan, number, comparison))
+        number = get_contour_number(self.filled_shape.field_values.get("CONTOUR"))
+        self.drawing_plan = replace(plan, sketch=make_plan_sketch(plan, number, comparison))
 
     @property
     def current_sketch(self) -> Sketch:
         """Return the sketch of the drawing with the selected contour."""
         return (
-            self.plan.sketch
-            if self.plan is not None and self.plan.elements
+            self.drawing_plan.sketch
+            if self.drawing_plan is not None and self.drawing_plan.placed_elements
             else DRAWING_SHAPE.make_sketch(self.filled_shape)
         )
 
@@ -263,18 +263,18 @@ class DrawingForm(ShapeForm):
 
     def list_choices(self, field: ShapeField) -> tuple[str, ...]:
         """Return the choices of a field, including choices from the drawing."""
-        if field.word == "FILE":
+        if field.name == "FILE":
             return tuple(self.drawing_files)
-        if field.choices or self.plan is None:
+        if field.choices or self.drawing_plan is None:
             return field.choices
-        return self.plan.choices.get(field.word, ())
+        return self.drawing_plan.field_choices.get(field.name, ())
 
     def is_translatable(self, field: ShapeField, choice: str) -> bool:
         """Return whether a choice is a screen text that is translated.
 
         Layer names are not translated.
         """
-        return choice in field.choices or choice in _WORDS.get(field.word, ())
+        return choice in field.choices or choice in _WORDS.get(field.name, ())
 
     def get_dimension_text(self, word: str) -> str:
         """Return the text of a dimension in the sketch. For a contour, this is its number."""
@@ -284,22 +284,22 @@ class DrawingForm(ShapeForm):
             else ShapeForm.get_dimension_text(self, word)
         )
 
-    def select_word(self, word: str) -> None:
+    def select_field_by_name(self, word: str) -> None:
         """Select a field by its word, or a contour by its number in the drawing."""
         if word.startswith("CONTOUR "):
             self._set("CONTOUR", word.removeprefix("CONTOUR "))
             word = "CONTOUR"
-        ShapeForm.select_word(self, word)
+        ShapeForm.select_field_by_name(self, word)
 
     def handle_touch(self, point: tuple[float, float]) -> None:
         """Select the touched contour, or the touched line while the AXIS field is selected."""
-        plan = self.plan
-        if plan is None or not plan.elements:
+        plan = self.drawing_plan
+        if plan is None or not plan.placed_elements:
             return
-        by_line = self.selected_word == "AXIS"
+        by_line = self.selected_field_name == "AXIS"
         there = [
             p
-            for p in plan.elements
+            for p in plan.placed_elements
             if (p.line_number and len(p.points) == 2 if by_line else p.contour_number)
         ]
         nearest = min(there, key=lambda p: _distance(point, p.points), default=None)
@@ -339,7 +339,7 @@ def skip_trial(
     return None, ()
 
 
-class AddedDrawingForm(AddedForm):
+class AdditionalDrawingForm(AdditionalForm):
     """Entry for the drawing form in the list of shapes.
 
     ``find_drawing_files`` returns the available drawings, and ``run_trial`` tests a program.
@@ -351,7 +351,7 @@ class AddedDrawingForm(AddedForm):
         self, find_drawing_files: Callable[[], Mapping[str, Path]], run_trial: TrialFunction = skip_trial
     ) -> None:
         self.find_drawing_files, self.run_trial = find_drawing_files, run_trial
-        self.planner = DrawingPlanner(read_in_process)
+        self.planner = DrawingPlanner(read_drawing_in_process)
         self.plan_worker, self.trial_worker = (
             LatestRequestWorker("planning-drawing"),
             LatestRequestWorker("trying-drawing"),
@@ -379,16 +379,18 @@ class AddedDrawingForm(AddedForm):
             return
         asked = form.pending_request
 
-        def planned(plan: DrawingPlan) -> None:
+        def handle_plan(plan: DrawingPlan) -> None:
             if form.pending_request == asked:
                 form.show_plan(plan)
-                self._try(form, plan, show_form(form), failed)
+                self._try(form, plan, show_form(form), handle_failure)
 
-        def failed(why: str) -> None:
+        def handle_failure(why: str) -> None:
             show_message(tr(Message("THE DRAWING CANNOT BE PROCESSED: {why}", why=why)))
 
         self.trial_worker.cancel_request()
-        self.plan_worker.request_work(lambda watch: self.planner.make_plan(asked, watch), planned, failed)
+        self.plan_worker.request_work(
+            lambda watch: self.planner.make_plan(asked, watch), handle_plan, handle_failure
+        )
 
     def _try(
         self, form: DrawingForm, plan: DrawingPlan, text: str | None, failed: Callable[[str], None]
@@ -400,11 +402,13 @@ class AddedDrawingForm(AddedForm):
         if not form.program_lines or text is None:
             return
 
-        def tried(found: tuple[DrawingComparison | None, tuple[str, ...]]) -> None:
-            if form.plan is plan:
-                form.show_trial(*found)
+        def handle_trial_result(found: tuple[DrawingComparison | None, tuple[str, ...]]) -> None:
+            if form.drawing_plan is plan:
+                form.show_trial_result(*found)
 
-        self.trial_worker.request_work(lambda watch: self.run_trial(text, plan, watch), tried, failed)
+        self.trial_worker.request_work(
+            lambda watch: self.run_trial(text, plan, watch), handle_trial_result, failed
+        )
 
     def cancel(self, form: ShapeForm) -> None:
         """Cancel reading a drawing (F6 or Esc) and end the process that reads it."""
@@ -412,17 +416,19 @@ class AddedDrawingForm(AddedForm):
             self.plan_worker.cancel_request()
             form.cancel()
 
-    def function_keys(self, form: ShapeForm, show_form: ShowForm) -> Mapping[int, FunctionKey]:
+    def make_function_keys(self, form: ShapeForm, show_form: ShowForm) -> Mapping[int, FunctionKey]:
         """Return the key F6, which cancels reading the drawing or starts reading it again."""
 
-        def read_again() -> None:
+        def reread_drawing() -> None:
             form.calculate()
             show_form(form)
 
         if form.is_calculating:
             return {6: FunctionKey("CANCEL", lambda: self.cancel(form))}
         return (
-            {6: FunctionKey("READ", read_again)} if isinstance(form, DrawingForm) and form.is_canceled else {}
+            {6: FunctionKey("READ", reread_drawing)}
+            if isinstance(form, DrawingForm) and form.is_canceled
+            else {}
         )
 
     def prompt_text(self, form: ShapeForm) -> str:

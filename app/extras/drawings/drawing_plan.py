@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from app.desk.background_work import ProgressCallback
 from core.extras.drawings.contour_tracing import ElementGroup
-from core.extras.drawings.drawing import Drawing, DrawingError, limit_work
+from core.extras.drawings.drawing import Drawing, DrawingError, limit_processor_time
 from core.extras.drawings.drawing_placement import (
     ContourProfile,
     ContourSide,
@@ -27,7 +27,7 @@ from core.extras.drawings.drawing_placement import (
     place_elements,
     select_axis,
 )
-from core.extras.drawings.profile_description import propose_fields
+from core.extras.drawings.profile_description import propose_program_fields
 from core.extras.drawings.profile_program import ProfileProgram, make_profile_program
 from core.extras.drawings.unit_check import UNIT_SIZES_MM, detect_wrong_unit
 from core.extras.shapes.shape_fields import FieldValue, FieldValues, ProgramSettings
@@ -79,10 +79,10 @@ class DrawingPlan:
     """
 
     request: PlanRequest
-    proposals: Mapping[str, FieldValue] = field(default_factory=dict)
-    choices: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    errors: Mapping[str, str] = field(default_factory=dict)
-    elements: tuple[PlacedElement, ...] = ()
+    proposed_values: Mapping[str, FieldValue] = field(default_factory=dict)
+    field_choices: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    field_errors: Mapping[str, str] = field(default_factory=dict)
+    placed_elements: tuple[PlacedElement, ...] = ()
     sketch: Sketch = field(default_factory=Sketch)
     program: ProfileProgram | None = None
     profile: ContourProfile | None = None
@@ -107,8 +107,8 @@ class DrawingPlanner:
         try:
             drawing = self._drawing(request.drawing_path, report_progress)
         except DrawingError as error:
-            return DrawingPlan(request, errors={"FILE": str(error)})
-        with limit_work(report_progress):
+            return DrawingPlan(request, field_errors={"FILE": str(error)})
+        with limit_processor_time(report_progress):
             return _PlanBuilder(drawing, request).make_plan()
 
     def _drawing(self, path: Path, watch: ProgressCallback) -> Drawing:
@@ -179,7 +179,7 @@ class _PlanBuilder:
             if one.shape.has_point_table:
                 fields["ROUGH"] = one.get_number("ROUGH")
         self.proposals |= {name: fields[name] for name in _NUMBERS if name in fields}
-        troubles = {_find_form_field(each.field_word): each.text for each in reversed(made.errors)}
+        troubles = {_find_form_field(each.field_name): each.message for each in reversed(made.errors)}
         return self._plan(troubles, made, chosen)
 
     def _plan(
@@ -198,7 +198,7 @@ class _PlanBuilder:
         plan = DrawingPlan(
             self.request, self.proposals, self.choices, troubles, placed, program=good, profile=chosen
         )
-        return replace(plan, sketch=draw_plan(plan, number))
+        return replace(plan, sketch=make_plan_sketch(plan, number))
 
     def _layer(self) -> str:
         self.choices["LAYER"] = (
@@ -297,7 +297,9 @@ class _PlanBuilder:
         if "FROM" in given:
             given["BAR"] = given["FROM"]
         now = asked.settings
-        fields = propose_fields(chosen, given, now.shop.tools, is_metric=now.metric, dialect=now.dialect)
+        fields = propose_program_fields(
+            chosen, given, now.shop.tools, is_metric=now.metric, dialect=now.dialect
+        )
         if chosen.side is ContourSide.INSIDE and not given.get("HOLE"):
             raise DrawingError("Boring needs a predrilled hole: enter its diameter.", "no-hole")
         return make_profile_program(chosen, fields, asked.preceding_lines, asked.settings), fields
@@ -350,31 +352,38 @@ def _turned(points: Iterable[tuple[float, float]]) -> tuple[tuple[float, float],
     return tuple((z, r) for r, z in points)
 
 
-def draw_plan(plan: DrawingPlan, contour_number: int, comparison: DrawingComparison | None = None) -> Sketch:
+def make_plan_sketch(
+    plan: DrawingPlan, contour_number: int, comparison: DrawingComparison | None = None
+) -> Sketch:
     """Return the sketch of the drawing with its axis of rotation and the selected contour.
 
     Contour sections that the program does not cut, or cuts incorrectly, are red.
     """
-    drawn = [Outline(each.points, "part") for each in plan.elements if each.line_number]
+    drawn = [Outline(each.points, "part") for each in plan.placed_elements if each.line_number]
     outlines = [
         *drawn,
         *(
             Outline(p.points, "far")
-            for p in plan.elements
+            for p in plan.placed_elements
             if p.contour_number and p.contour_number != contour_number
         ),
     ]
-    here = [Outline(each.points, "cut") for each in plan.elements if each.contour_number == contour_number]
+    here = [
+        Outline(each.points, "cut") for each in plan.placed_elements if each.contour_number == contour_number
+    ]
     ends = [z for each in (*outlines, *here) for z, _ in each.points] or [0.0, 1.0]
     room = 0.05 * (max(ends) - min(ends) or 1.0)
     axis = Outline(((min(ends) - room, 0.0), (max(ends) + room, 0.0)), "axis")
     tops = [
         Dimension(
             Message("CONTOUR {item}", item=each),
-            max((p for o in plan.elements if o.contour_number == each for p in o.points), key=lambda p: p[1]),
+            max(
+                (p for o in plan.placed_elements if o.contour_number == each for p in o.points),
+                key=lambda p: p[1],
+            ),
         )
-        for each in range(1, len(plan.choices.get("CONTOUR", ())) + 1)
-        if any(o.contour_number == each for o in plan.elements)
+        for each in range(1, len(plan.field_choices.get("CONTOUR", ())) + 1)
+        if any(o.contour_number == each for o in plan.placed_elements)
     ]
     left = list(_find_deviating_sections(plan, contour_number, comparison))
     return Sketch((axis, *outlines, *here, *left), tuple(tops[:9]))
@@ -389,7 +398,7 @@ def _find_deviating_sections(
     spans = [(each.back_z_mm, each.front_z_mm) for each in plan.program.uncut_ranges]
     if comparison is not None:
         spans = [(each.back_z_mm - 0.02, each.front_z_mm + 0.02) for each in comparison.deviations]
-    ends = [z for each in plan.elements if each.contour_number == number for z, _ in each.points]
+    ends = [z for each in plan.placed_elements if each.contour_number == number for z, _ in each.points]
     shift = (max(ends) if ends else 0.0) - plan.profile.front_z_mm
     for each in plan.profile.elements:
         points = [(z + shift, r) for z, r in _polyline(each)]

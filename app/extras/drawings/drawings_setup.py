@@ -9,7 +9,7 @@ from pathlib import Path
 from app.compose.stored_offsets import try_read_shapes
 from app.desk.background_work import ProgressCallback
 from app.desk.desk import Desk
-from app.extras.drawings.drawing_form import AddedDrawingForm
+from app.extras.drawings.drawing_form import AdditionalDrawingForm
 from app.extras.drawings.drawing_plan import DrawingPlan
 from app.extras.drawings.profile_trial import TrialStock, run_profile_trial
 from app.extras.shapes.shapes_model import ShapesModel
@@ -22,16 +22,16 @@ from core.part.tool_shape import ToolShape
 def add_drawing_form(shapes: ShapesModel, desk: Desk, machine: Machine) -> None:
     """Add the drawing form to the list of shapes."""
 
-    def files() -> dict[str, Path]:
+    def list_drawing_files() -> dict[str, Path]:
         return {each.name: each.path for each in desk.program_choice.program_folders.list_drawings()}
 
-    shapes.added_forms = (
-        *shapes.added_forms,
-        AddedDrawingForm(files, partial(run_trial, machine, try_read_shapes)),
+    shapes.additional_forms = (
+        *shapes.additional_forms,
+        AdditionalDrawingForm(list_drawing_files, partial(run_drawing_trial, machine, try_read_shapes)),
     )
 
 
-def run_trial(
+def run_drawing_trial(
     machine: Machine,
     read_tool_shapes: Callable[[], Mapping[int, ToolShape]],
     program_text: str,
@@ -46,12 +46,12 @@ def run_trial(
     if made is None or chosen is None:
         return None, ()
 
-    def length(word: str) -> float:
-        value = plan.request.entered_values.get(word, plan.proposals.get(word, 0.0))
+    def get_length_mm(word: str) -> float:
+        value = plan.request.entered_values.get(word, plan.proposed_values.get(word, 0.0))
         return 0.0 if isinstance(value, str) else value * mm
 
-    bar = length("FROM") or 1.5 * find_max_diameter(chosen)
-    stock = TrialStock(bar, length("STOCK"), length("HOLE"))
+    bar = get_length_mm("FROM") or 1.5 * find_max_diameter(chosen)
+    stock = TrialStock(bar, get_length_mm("STOCK"), get_length_mm("HOLE"))
     trial = run_profile_trial(
         program_text,
         chosen,

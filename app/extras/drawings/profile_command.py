@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.change_author import add_as_option
+from app.cli.change_author import add_author_option
 from app.cli.program_options import parse_output_path
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, convert_to_command_error
 from app.extras.shapes.shapes_command import authorize_writing, save_generated_program
@@ -52,7 +52,7 @@ def add_parser(subparsers: SubParsers) -> None:
         metavar="FILE",
         help="program file to write: .nc is OmniTurn, .mpf is SINUMERIK (default: stdout)",
     )
-    add_as_option(parser)
+    add_author_option(parser)
     parser.add_argument("--json", action="store_true", help="print only JSON on stdout")
 
 
@@ -144,16 +144,16 @@ def run(args: argparse.Namespace) -> int:
 
     Returns exit status 1 if the program has errors.
     """
-    from core.extras.drawings.drawing import DrawingError, limit_work
+    from core.extras.drawings.drawing import DrawingError, limit_processor_time
 
-    with convert_to_command_error(DrawingError), limit_work(lambda _seconds: None):
+    with convert_to_command_error(DrawingError), limit_processor_time(lambda _seconds: None):
         return _run(args)
 
 
 def _run(args: argparse.Namespace) -> int:
     from app.cli.proofs.progress_bar import ProgressBar
     from app.compose.machine.machine_setup import read_machine
-    from core.extras.drawings.drawing_process import read_in_process
+    from core.extras.drawings.drawing_process import read_drawing_in_process
 
     machine = read_machine(args.machine)
     if not args.list:
@@ -165,7 +165,7 @@ def _run(args: argparse.Namespace) -> int:
     args.metric = args.metric or not machine.is_inch
     args.dialect = _language(args, machine)
     with ProgressBar(Message("time to read {file}, in seconds", file=args.file)) as progress:
-        drawing = read_in_process(Path(args.file), progress.report_progress)
+        drawing = read_drawing_in_process(Path(args.file), progress.report_progress)
     if args.layer and args.layer not in drawing.layers:
         raise CommandError(
             Message(
@@ -297,7 +297,7 @@ def _list(drawing: Drawing, view: DrawingPlacement, found: list[ElementGroup], *
             for net in found
             for low, high, r in (net.extent_mm,)
         ],
-        "left_out": dict(drawing.omitted_counts),
+        "left_out": dict(drawing.omitted_object_counts),
     }
     if as_json:
         sys.stdout.write(json.dumps(result) + "\n")
@@ -321,11 +321,11 @@ def _list(drawing: Drawing, view: DrawingPlacement, found: list[ElementGroup], *
                 "  contour {number}, axis {axis}: {words}", number=number, axis=view.axis.name, words=words
             )
         )
-    if drawing.omitted_counts:
+    if drawing.omitted_object_counts:
         lines.append(
             Message(
                 "  ignored: {number}",
-                number=", ".join((f"{n} {kind}" for kind, n in drawing.omitted_counts.items())),
+                number=", ".join((f"{n} {kind}" for kind, n in drawing.omitted_object_counts.items())),
             )
         )
     sys.stdout.write("\n".join(lines) + "\n")
@@ -343,7 +343,7 @@ def _make(
     typed = _typed(chosen, args, shapes)
     made = _program(chosen, typed, args, machine, shapes)
     if made.errors:
-        raise CommandError(f"{drawing.name}: {made.errors[0].text}", "refused-shape")
+        raise CommandError(f"{drawing.name}: {made.errors[0].message}", "refused-shape")
     text = "\n".join([*made.lines, "M30"]) + "\n"
     bar = float(typed["BAR"]) * mm
     stock = TrialStock(bar, float(typed.get("STOCK", 0.0)) * mm, (args.hole or 0.0) * mm)
@@ -370,7 +370,7 @@ def _typed(
 
     Lengths are in the length unit of the program.
     """
-    from core.extras.drawings.profile_description import propose_fields
+    from core.extras.drawings.profile_description import propose_program_fields
 
     said: dict[str, FieldValue | None] = {
         "BAR": args.bar,
@@ -383,7 +383,7 @@ def _typed(
         "MATERIAL": args.material,
     }
     given = {word: value for word, value in said.items() if value is not None}
-    return propose_fields(chosen, given, shapes, is_metric=args.metric, dialect=args.dialect)
+    return propose_program_fields(chosen, given, shapes, is_metric=args.metric, dialect=args.dialect)
 
 
 def _program(

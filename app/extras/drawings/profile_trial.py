@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
-from app.compose.machine.machine_setup import create_setup
-from app.compose.part_data import read_known_part
+from app.compose.machine.machine_setup import create_power_up_setup
+from app.compose.part_data import make_part_settings
 from core.extras.drawings.drawing_placement import ContourProfile, ContourSide
-from core.extras.drawings.part_comparison import DrawingComparison, compare_part
+from core.extras.drawings.part_comparison import DrawingComparison, compare_part_with_drawing
 from core.extras.drawings.profile_program import NoseOffset
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.diagnostics import Diagnostic, Severity
@@ -17,8 +17,8 @@ from core.machine.machine_model import Machine
 from core.message import Message
 from core.part.stock_spec import StockSpec
 from core.part.tool_shape import ToolShape
-from core.proving.part_proof import prove_with_part
-from core.tool_edges import make_row_number
+from core.proving.part_proof import prove_program_and_part
+from core.tool_edges import make_edge_row_number
 
 _SPARE = 10.0  # mm of stock beyond the part
 _HOME = ToolOffset(12.7, -76.2)
@@ -67,14 +67,14 @@ def run_profile_trial(
     tools = dict.fromkeys(range(1, 33), _HOME)
     if nose_offset is not None and of_edge:
         edge = replace(_HOME, nose_radius=nose_offset.nose_radius, quadrant=nose_offset.quadrant)
-        tools |= {make_row_number(n, nose_offset.offset_number): edge for n in tools}
-    setup = create_setup(machine, tool_offsets=tools, secondary_offsets=secondary)
-    setting = read_known_part(machine, {}, tool_shapes)
+        tools |= {make_edge_row_number(n, nose_offset.offset_number): edge for n in tools}
+    setup = create_power_up_setup(machine, tool_offsets=tools, secondary_offsets=secondary)
+    setting = make_part_settings(machine, {}, tool_shapes)
     front = profile.front_z_mm + stock.face_stock_mm
     length = front - profile.back_z_mm + _SPARE
     bar = StockSpec("bar", stock.bar_diameter_mm, stock.hole_diameter_mm, length, front)
     setting = replace(setting, stock=bar, clamping=None, gang={}, travel=None)
-    report, part = prove_with_part(
+    report, part = prove_program_and_part(
         ProgramSource("drawing", program_text, dialect),
         setup,
         machine,
@@ -90,7 +90,7 @@ def run_profile_trial(
         if profile.side is ContourSide.INSIDE
         else made.outside_profile
     )
-    return TrialResult(compare_part(profile, side) if side else None, errors)
+    return TrialResult(compare_part_with_drawing(profile, side) if side else None, errors)
 
 
 def _said(found: Diagnostic) -> str:

@@ -10,7 +10,7 @@ import json
 import sys
 from typing import TYPE_CHECKING
 
-from app.cli.change_author import COMMAND_LINE_USER, add_as_option, get_change_author
+from app.cli.change_author import COMMAND_LINE_USER, add_author_option, get_change_author
 from app.cli.store_command import open_store
 from app.desk.command_errors import EXIT_OK, CommandError
 from core.access.access_table import ProtectedChange
@@ -49,7 +49,7 @@ def add_parser(subparsers: SubParsers) -> None:
     gone.add_argument("place", type=int, metavar="PLACE")
     clear = actions.add_parser("clear", help="remove finished jobs")
     for each in (more, move, gone, clear):
-        add_as_option(each)
+        add_author_option(each)
     clear.add_argument("--all", action="store_true", help="remove all jobs, finished or not")
 
 

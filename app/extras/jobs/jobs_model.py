@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 from functools import partial
 from textwrap import wrap
 
-from app.desk.arithmetic import EntryError
+from app.desk.arithmetic import InvalidEntryError
 from app.desk.desk import Desk
 from app.desk.pages.page_entry import find_program_refusal
 from app.desk.pages.table_content import ROW_STEPS, FunctionKey, InputField, TableContent, TableRow, refused
 from app.desk.status.formats import NO_VALUE, format_duration
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
 from app.extras.jobs.jobs_watch import (
@@ -23,7 +23,7 @@ from app.extras.jobs.jobs_watch import (
     count_open_items,
     list_job_tools,
     make_tool_label,
-    select_findings,
+    select_important_findings,
 )
 from app.special.counter_functions import parse_part_count
 from core.access.access_table import ProtectedChange
@@ -53,7 +53,7 @@ class JobsModel:
     selected_row: int = 0
     entry_kind: str = ""  # "count", "note" or empty
     entry_program: str = ""  # program of the job that is being added
-    entry: InputField = field(default_factory=InputField)
+    entry_field: InputField = field(default_factory=InputField)
     _notes: tuple[str, tuple[str, ...]] = ("", ())
     _sheets: tuple[object, TableContent, TableContent] | None = None
 
@@ -70,9 +70,9 @@ class JobsModel:
         return self.jobs[self.selected_row] if self.selected_row < len(self.jobs) else None
 
     @property
-    def storage_refusal(self) -> str:
+    def storage_refusal_reason(self) -> str:
         """Return the reason why jobs cannot be stored, or an empty string."""
-        book = self.job_watch.parts_watch.parts_book
+        book = self.job_watch.parts_watch.production_records
         return (
             ""
             if book.store is not None
@@ -111,23 +111,27 @@ class JobsModel:
             (0.05, 0.36, 0.15, 0.12, 0.32),
             rows,
             self.selected_row if rows else -1,
-            question=question,
-            text=self.entry.text,
-            notes=(self.storage_refusal,) if self.storage_refusal else () if rows else (NO_JOBS_MESSAGE,),
-            raw_columns=frozenset({0, 1, 2, 3}),
-            number_columns=frozenset({2, 3}),
+            entry_prompt=question,
+            text=self.entry_field.text,
+            notes=(self.storage_refusal_reason,)
+            if self.storage_refusal_reason
+            else ()
+            if rows
+            else (NO_JOBS_MESSAGE,),
+            untranslated_columns=frozenset({0, 1, 2, 3}),
+            numeric_columns=frozenset({2, 3}),
             has_tall_rows=True,
         )
 
     def _row(self, number: int, job: JobRow, snapshot: Snapshot) -> TableRow:
-        made, state, tone = self.find_proof(job), self._state(job), Tone.READY
+        made, state, tone = self.find_proof(job), self._state(job), StatusTone.READY
         if job.is_done:
-            tone = Tone.RUN
+            tone = StatusTone.RUN
         elif isinstance(made, str) or (
             isinstance(made, ProvedJob)
             and count_open_items(made, self.job_watch.tool_lives, job.remaining_part_count)
         ):
-            tone = Tone.PAUSE
+            tone = StatusTone.PAUSE
         cycle = made.setup_sheet.cycle_time_s if isinstance(made, ProvedJob) else 0.0
         if job.is_active and self.desk.program_runs.part_counter.program_name == job.program:
             cycle = snapshot.last_cycle or cycle
@@ -173,14 +177,14 @@ class JobsModel:
             ("", "", ""),
             (0.13, 0.45, 0.42),
             rows,
-            raw_columns=frozenset({0, 1, 2}),
+            untranslated_columns=frozenset({0, 1, 2}),
             has_tall_rows=True,
         )
 
     def _setup_rows(self, job: JobRow) -> Iterator[TableRow]:
         made = self.find_proof(job)
         if isinstance(made, str):
-            yield TableRow((tr("PROOF"), _folded(made), ""), True, Tone.ALARM)
+            yield TableRow((tr("PROOF"), _folded(made), ""), True, StatusTone.ALARM)
         elif made is None:
             words = tr("PROVING …")
             if self.job_watch.is_active_and_loaded(job) or job.is_done:
@@ -199,9 +203,9 @@ class JobsModel:
         sheet = made.setup_sheet
         for station in list_job_tools(made, self.job_watch.tool_lives, job.remaining_part_count):
             yield self._station(station, made)
-        for each in select_findings(sheet):
+        for each in select_important_findings(sheet):
             name = tr(Message("LINE {line}", line=each.line)) if each.line else tr("PROOF")
-            tone = Tone.ALARM if each.severity is Severity.ERROR else Tone.PAUSE
+            tone = StatusTone.ALARM if each.severity is Severity.ERROR else StatusTone.PAUSE
             yield TableRow((name, _folded(tr(each.message)), _folded(tr(each.hint))), True, tone)
         yield TableRow((tr("STOCK"), sheet.stock_text, ""))
         for name, words in sheet.clamping_texts:
@@ -211,9 +215,9 @@ class JobsModel:
     def _station(station: JobTool, made: ProvedJob) -> TableRow:
         tool = station.tool
         lacks = _folded("; ".join(station.required_actions)) or tr("ready")
-        words = f"{made.setup_sheet.describe_shape(tool)}\n{made.setup_sheet.format_offset(tool)}"
+        words = f"{made.setup_sheet.describe_tool_shape(tool)}\n{made.setup_sheet.format_offset(tool)}"
         return TableRow((make_tool_label(tool.tool_number), words, lacks), bool(station.required_actions),
-                   Tone.PAUSE if station.required_actions else Tone.RUN)  # fmt: skip
+                   StatusTone.PAUSE if station.required_actions else StatusTone.RUN)  # fmt: skip
 
     def read_setup_notes(self, program: str) -> Sequence[str]:
         """Return the notes that are stored for the setup sheet of a program."""
@@ -234,13 +238,13 @@ class JobsModel:
             return "TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL"
         if self.selected_job is None:
             return NO_JOBS_MESSAGE if self.desk.program_loader.loaded_program.name else NO_PROGRAM_MESSAGE
-        if self.load_refusal:
+        if self.load_refusal_reason:
             return "CANNOT LOAD: MACHINE MOVING OR PROGRAM RUNNING. ESC: BACK"
         return "F2: LOAD JOB ONLY   CYCLE START: RUN   ESC: AUTOMATIC"
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys.
 
         During an entry there are no function keys, because Enter or Esc ends the entry.
@@ -260,15 +264,15 @@ class JobsModel:
         }
 
     @property
-    def load_refusal(self) -> str:
+    def load_refusal_reason(self) -> str:
         """Return the reason why the selected job cannot be loaded, or an empty string."""
         return (
             NO_JOBS_MESSAGE if self.selected_job is None else find_program_refusal(self.desk.read_snapshot())
         )
 
-    def check_loadable(self) -> bool:
+    def can_load_job(self) -> bool:
         """Return whether the selected job can be loaded. If it cannot, show the reason."""
-        if why := self.load_refusal:
+        if why := self.load_refusal_reason:
             self.desk.say(why)
         return not why
 
@@ -287,12 +291,12 @@ class JobsModel:
         if not name:
             self.desk.say(NO_PROGRAM_MESSAGE)
             return
-        self.add_program(name)
+        self.start_job_entry(name)
 
-    def add_program(self, name: str) -> None:
+    def start_job_entry(self, name: str) -> None:
         """Start the entry of a job for the given program by asking for the number of parts."""
         self.desk.clear_prompt_line()
-        self.entry_kind, self.entry_program, self.entry = "count", name, InputField()
+        self.entry_kind, self.entry_program, self.entry_field = "count", name, InputField()
 
     def _ask(self, what: str) -> None:
         job = self.selected_job
@@ -303,7 +307,7 @@ class JobsModel:
         else:
             self.desk.clear_prompt_line()
             text = job.note if what == "note" else ""
-            self.entry_kind, self.entry_program, self.entry = (
+            self.entry_kind, self.entry_program, self.entry_field = (
                 what,
                 "",
                 InputField(words=what == "note", text=text),
@@ -361,7 +365,7 @@ class JobsModel:
         change: str = "finished jobs removed from the job queue",
     ) -> None:
         self.desk.clear_prompt_line()
-        self.job_watch.parts_watch.parts_book.write_change(
+        self.job_watch.parts_watch.production_records.write_change(
             ProtectedChange.JOBS, operation, done, self.job_watch.parts_watch.report_refusal, change
         )
 
@@ -377,28 +381,28 @@ class JobsModel:
             return False
         if key == "Enter":
             self._answer()
-        elif self.entry_kind == "note" and len(self.entry.text) >= MAX_NOTE_LENGTH and len(key) == 1:
+        elif self.entry_kind == "note" and len(self.entry_field.text) >= MAX_NOTE_LENGTH and len(key) == 1:
             self.desk.say(tr(Message("NOTE TOO LONG: {maximum} CHARACTERS AT MOST", maximum=MAX_NOTE_LENGTH)))
-        elif self.entry.handle_key(key):
+        elif self.entry_field.handle_key(key):
             self.desk.clear_prompt_line()
         else:
             return False
         return True
 
     def _answer(self) -> None:
-        text, job = self.entry.text.strip(), self.selected_job
+        text, job = self.entry_field.text.strip(), self.selected_job
         if self.entry_kind == "note":
             if job is not None:
                 self._write(
-                    lambda c: job_queue.change_job(c, job.id, job.parts_to_make, text),
+                    lambda c: job_queue.edit_job(c, job.id, job.parts_to_make, text),
                     change=Message("job {program}: {text}", program=job.program, text=text),
                 )
             self.entry_kind = ""
             return
         try:
             wanted = parse_part_count(text)
-        except EntryError as error:
-            self.entry.text = refused(self.entry.text)
+        except InvalidEntryError as error:
+            self.entry_field.text = refused(self.entry_field.text)
             self.desk.show_refusal(str(error))
             return
         program, last = self.entry_program, len(self.jobs)
@@ -410,7 +414,7 @@ class JobsModel:
             )
         elif job is not None:
             self._write(
-                lambda c: job_queue.change_job(c, job.id, wanted, job.note),
+                lambda c: job_queue.edit_job(c, job.id, wanted, job.note),
                 change=Message(
                     "job {program}: quantity changed: {expected} → {expected2} parts",
                     program=job.program,
@@ -422,7 +426,7 @@ class JobsModel:
 
     def accepts_key(self, key: str) -> bool:
         """Return whether a character can be entered in the open entry."""
-        return bool(self.entry_kind) and self.entry.accepts_key(key)
+        return bool(self.entry_kind) and self.entry_field.accepts_key(key)
 
     def select_row(self, row: int) -> None:
         """Select a job by its row number, unless an entry is open."""

@@ -17,12 +17,12 @@ from app.desk.stored_part import load_stored_part
 from app.desk.translation import tr
 from app.extras.jobs.jobs_model import JobsModel
 from app.extras.jobs.jobs_watch import BOOK_KEY, JobProofs, JobWatch, ProvedJob
-from app.production.parts_watch import PartsWatch
+from app.production.parts_watch import ProductionMonitor
 from core.machine.machine_model import Machine
 from core.message import Message
-from core.store.store_rows import ToolRow
+from core.store.store_rows import ToolOffsetRow
 
-LastStartReader = Callable[[str], tuple[str, dict[int, ToolRow]]]
+LastStartReader = Callable[[str], tuple[str, dict[int, ToolOffsetRow]]]
 """Function that returns the time of the last start of a program and its tools at that time.
 
 It is called on the worker thread.
@@ -31,19 +31,19 @@ It is called on the worker thread.
 
 def attach_jobs(desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps) -> None:
     """Attach the job queue to TurnDesk, with its page and its key in the program list."""
-    parts = desk.page_registry.find_model(PartsWatch)
+    parts = desk.page_registry.find_model(ProductionMonitor)
     if parts is None:
         return
     kept = partial(load_stored_part, (journal or Persistence()).read_setting)
     of_part = PartProver(machine, try_read_shapes, kept, loading_steps.read_source)
     before = journal.read_last_run_tools if journal is not None else _never
-    parts.parts_book.feature_readers[BOOK_KEY] = lambda store, _program: store.jobs.read_jobs()
+    parts.production_records.feature_readers[BOOK_KEY] = lambda store, _program: store.jobs.read_jobs()
     watch = JobWatch(desk, parts, JobProofs(partial(_proved, desk, machine, loading_steps, of_part, before)))
     desk.page_registry.attach_model(watch)
     desk.page_registry.add_run_watcher(watch)
     model = JobsModel(desk, watch)
     desk.page_registry.attach_model(model)
-    desk.page_registry.add_program_key("F10", ProgramKey("JOB", "JOBS", model.add_program))
+    desk.page_registry.add_program_key("F10", ProgramKey("JOB", "JOBS", model.start_job_entry))
     desk.page_registry.set_notice_finder(watch.make_notice)
 
 
@@ -71,11 +71,11 @@ def _proved(
             tr(Message("{name} IS NOT IN THE PROGRAM LIST. F1, THEN F6: CHECK LIST", name=program))
         )
     job = steps.make_job(steps.read_source(path), False)
-    setting = of_part.read_settings(job, watch)[0] if machine.kind == "lathe" else PartSettings()
+    setting = of_part.read_part_settings(job, watch)[0] if machine.kind == "lathe" else PartSettings()
     return ProvedJob(
         make_setup_sheet(job.shared_program, job.setup, machine, setting, watch), *before(program)
     )
 
 
-def _never(_program: str) -> tuple[str, dict[int, ToolRow]]:
+def _never(_program: str) -> tuple[str, dict[int, ToolOffsetRow]]:
     return "", {}

@@ -37,11 +37,11 @@ class JobsPage(ListPage):
 
     def find_disabled_keys(self) -> frozenset[str]:
         """Return the disabled function keys, including F2 if the selected job cannot be loaded."""
-        return super().find_disabled_keys() | ({"F2"} if self.model.load_refusal else set())
+        return super().find_disabled_keys() | ({"F2"} if self.model.load_refusal_reason else set())
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys of the model."""
-        return self.model.function_keys()
+        return self.model.make_function_keys()
 
     def make_key_labels(self) -> tuple[str, ...]:
         """Return the labels of F2 and of the function keys of the model."""
@@ -61,7 +61,7 @@ class JobsPage(ListPage):
         The Automatic page is opened first because loading can show a question about an interrupted job.
         """
         model = self.model
-        if model.check_loadable() and self.host.open_page(page_table.AUTOMATIC):
+        if model.can_load_job() and self.host.open_page(page_table.AUTOMATIC):
             model.load_job()
 
     def _chosen(self, row: int) -> None:

@@ -19,8 +19,8 @@ from app.desk.status.formats import NO_VALUE, format_local_time
 from app.desk.status.interrupted_notice import NoticeRow
 from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
-from app.production.parts_watch import PartsWatch
-from app.special.special_functions import PageFunction
+from app.production.parts_watch import ProductionMonitor
+from app.special.special_functions import SeparatePageFunction
 from core.access.access_table import ProtectedChange
 from core.executor.snapshot import Snapshot
 from core.language.diagnostics import Diagnostic, Severity
@@ -28,11 +28,11 @@ from core.message import Message
 from core.production.tool_life import ToolLife, ToolLifeState
 from core.store.production import job_queue
 from core.store.production.job_queue import JobRow
-from core.store.store_rows import ToolRow
+from core.store.store_rows import ToolOffsetRow
 from core.tool_edges import format_edge_name
 
 if TYPE_CHECKING:
-    from app.special.setup_sheet import SetupSheet, SetupTool
+    from app.special.setup_sheet import SetupSheet, SetupSheetTool
 
 
 _SAME = 1e-4  # mm: smaller differences of nose radii are ignored
@@ -49,7 +49,7 @@ class ProvedJob:
 
     setup_sheet: SetupSheet
     last_start_utc: str = ""
-    tools_at_last_start: Mapping[int, ToolRow] = field(default_factory=dict)
+    tools_at_last_start: Mapping[int, ToolOffsetRow] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +59,7 @@ class JobTool:
     ``required_actions`` are the actions that the operator must perform for this tool, as display text.
     """
 
-    tool: SetupTool
+    tool: SetupSheetTool
     required_actions: tuple[str, ...] = ()
 
 
@@ -87,13 +87,13 @@ def count_open_items(job: ProvedJob, tool_lives: Mapping[int, ToolLife], parts_t
     )
 
 
-def select_findings(sheet: SetupSheet) -> tuple[Diagnostic, ...]:
+def select_important_findings(sheet: SetupSheet) -> tuple[Diagnostic, ...]:
     """Return the first errors and warnings of the proof, errors first."""
     worth = [each for each in sheet.diagnostics if each.severity is not Severity.NOTE]
     return tuple(sorted(worth, key=lambda each: (each.severity is not Severity.ERROR, each.line))[:_TOLD])
 
 
-def _lacks(tool: SetupTool, job: ProvedJob, life: ToolLife | None, parts: int) -> Iterator[str]:
+def _lacks(tool: SetupSheetTool, job: ProvedJob, life: ToolLife | None, parts: int) -> Iterator[str]:
     if tool.tool_offset is None:
         yield tr("no offset set: touch off the tool")
         return
@@ -101,13 +101,13 @@ def _lacks(tool: SetupTool, job: ProvedJob, life: ToolLife | None, parts: int) -
     yield from _list_tip_actions(tool, job)
 
 
-def _of_life(tool: SetupTool, life: ToolLife | None, parts: int) -> Iterator[str]:
+def _of_life(tool: SetupSheetTool, life: ToolLife | None, parts: int) -> Iterator[str]:
     if life is None or life.state is ToolLifeState.NO_LIMIT:
         return
     if life.state is ToolLifeState.USED_UP:
         yield tr(Message("tool life used up, {words}: change the insert", words=tr(life.words)))
         return
-    left = _parts_left(life, tool.tool_time.cutting_s)
+    left = _parts_left(life, tool.tool_times.cutting_s)
     if left is not None and left < parts:
         yield tr(Message("remaining tool life covers {left} of {parts} parts", left=left, parts=parts))
 
@@ -123,7 +123,7 @@ def _parts_left(life: ToolLife, seconds: float) -> int | None:
     return max(0, min(left)) if left else None
 
 
-def _list_tip_actions(tool: SetupTool, job: ProvedJob) -> Iterator[str]:
+def _list_tip_actions(tool: SetupSheetTool, job: ProvedJob) -> Iterator[str]:
     """Yield a required action if the tip of a tool has changed since the last start of the program."""
     then, now = job.tools_at_last_start.get(tool.tool_number), tool.tool_offset
     if then is None or now is None:
@@ -158,7 +158,7 @@ def make_tool_label(number: int) -> str:
 JOBS_PAGE = "JOBS"  # name of the page in app.screen.page_table
 
 
-class JobsFunction(PageFunction):
+class JobsFunction(SeparatePageFunction):
     """Special function that shows the number of waiting jobs and the next job."""
 
     name = "JOBS"
@@ -169,7 +169,7 @@ class JobsFunction(PageFunction):
         "from the main menu."
     )
 
-    def make_fact_rows(self) -> tuple[TableRow, ...]:
+    def make_information_rows(self) -> tuple[TableRow, ...]:
         """Return the rows for the active job, the next job and the number of waiting jobs."""
         watch = self.desk.page_registry.find_model(JobWatch)
         if watch is None:
@@ -251,11 +251,11 @@ JOBS_KEY = "Shift+F6"  # name of the key in app.screen.window.key_table
 class JobWatch:
     """Monitor of the job queue, which tracks the active job and requests proofs of waiting jobs.
 
-    ``observe`` must be called once per frame. Only the operator loads and starts jobs.
+    ``observe_frame`` must be called once per frame. Only the operator loads and starts jobs.
     """
 
     desk: Desk
-    parts_watch: PartsWatch
+    parts_watch: ProductionMonitor
     proofs: JobProofs
     selected_program: str = ""  # program of the job that is selected on the page, which is proved too
     _counted: tuple[str, int] = ("", 0)
@@ -266,7 +266,9 @@ class JobWatch:
     @property
     def jobs(self) -> tuple[JobRow, ...]:
         """Return the stored jobs of the queue."""
-        jobs: tuple[JobRow, ...] = self.parts_watch.parts_book.current_data.feature_data.get(BOOK_KEY, ())
+        jobs: tuple[JobRow, ...] = self.parts_watch.production_records.current_data.feature_data.get(
+            BOOK_KEY, ()
+        )
         return jobs
 
     @property
@@ -292,9 +294,9 @@ class JobWatch:
     @property
     def tool_lives(self) -> Mapping[int, ToolLife]:
         """Return the tool life of all tools by tool number."""
-        return self.parts_watch.tool_life_watch.read_lives()
+        return self.parts_watch.tool_life_monitor.find_tool_lives()
 
-    def observe(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
+    def observe_frame(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Update the active job, its part target and the proofs.
 
         This method is called once per frame.
@@ -302,7 +304,7 @@ class JobWatch:
         counter = self.desk.program_runs.part_counter
         if (counter.program_name, counter.part_count) != self._counted:
             self._counted = counter.program_name, counter.part_count
-            self.parts_watch.parts_book.request_reload()
+            self.parts_watch.production_records.request_reload()
         self._begin(loaded)
         job = self.active_job
         counter.job_target_count = (
@@ -329,7 +331,7 @@ class JobWatch:
 
         Parts count for the job only after its program is loaded.
         """
-        if not self.desk.program_choice.can_choose():
+        if not self.desk.program_choice.can_choose_program():
             return
         path = self.desk.program_choice.program_folders.find_path(job.program)
         if path is None:
@@ -352,14 +354,14 @@ class JobWatch:
         if self.desk.program_loader.load_count != loads:
             self._loading = None
             if loaded.path == path:
-                self.parts_watch.parts_book.write_change(
+                self.parts_watch.production_records.write_change(
                     ProtectedChange.JOBS,
                     lambda connection: job_queue.activate_job(connection, job.id),
                     _nothing,
                     self.parts_watch.report_refusal,
                     Message("job {program} started", program=job.program),
                 )
-        elif not self.desk.confirm_key:
+        elif not self.desk.confirmation_key:
             self._loading = None
 
     # --- messages ------------------------------------------------------------------------------------
@@ -369,7 +371,7 @@ class JobWatch:
 
         Jobs that were complete before TurnDesk started are shown only in the notice.
         """
-        if not self.parts_watch.parts_book.load_count:
+        if not self.parts_watch.production_records.load_count:
             return
         done = job.id if job is not None and job.is_done else 0
         if done and done != self._told and self._known and job is not None:

@@ -56,13 +56,13 @@ def start_headless_adapter(
     not made. Returns None if the adapter is not started.
     """
 
-    def tell(why: str) -> None:
+    def report_adapter_error(why: str) -> None:
         report_error(Message("no data is reported to the shop floor: {why}", why=why))
 
     if is_adapter_enabled(machine) and not is_real_time:
-        tell("this run is faster than real time; use --realtime")
+        report_adapter_error("this run is faster than real time; use --realtime")
         return None
-    return start_adapter(machine, read_snapshot, tell)
+    return start_adapter(machine, read_snapshot, report_adapter_error)
 
 
 def is_adapter_enabled(machine: Machine) -> bool:
@@ -77,7 +77,7 @@ def check_adapter(machine: Machine, table: MtconnectTable) -> None:
     Raises DriverError if one of these checks fails.
     """
     open_listening_socket(table.bind, table.port).close()
-    make_device_model(machine, get_utc_now())
+    make_devices_document(machine, get_utc_now())
 
 
 def make_adapter(
@@ -87,17 +87,17 @@ def make_adapter(
 
     The adapter gets all its data from snapshots of the machine state.
     """
-    device = make_device(machine, table.device)
+    device = make_device_component(machine, table.device)
     reader = MachineReader(machine, time.monotonic)
     return MtconnectAdapter(
         table,
         tuple(device.iterate_items()),
-        lambda: _report(reader.read_snapshot(read_snapshot())),
+        lambda: _report(reader.make_reading(read_snapshot())),
         RealClock(),
     )
 
 
-def make_device_model(machine: Machine, creation_time: datetime) -> str:
+def make_devices_document(machine: Machine, creation_time: datetime) -> str:
     """Return the document ``Devices.xml`` for the agent.
 
     Raises DriverError if the [mtconnect] table is missing or the device name is invalid.
@@ -110,13 +110,13 @@ def make_device_model(machine: Machine, creation_time: datetime) -> str:
             source=machine.source,
         )
     return make_devices_xml(
-        make_device(machine, model.device),
+        make_device_component(machine, model.device),
         Message("{machine}, {kind}", machine=machine.name, kind=machine.kind),
         creation_time,
     )
 
 
-def make_device(machine: Machine, name: str) -> Component:
+def make_device_component(machine: Machine, name: str) -> Component:
     """Return the device model of a machine, with the given device name.
 
     On a lathe, the spindle is also the C axis unless C has a separate drive.

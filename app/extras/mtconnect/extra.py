@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from app.compose.optional_features import CloseFunction, OptionalFeature, ReportFunction
 
 if TYPE_CHECKING:
-    from app.compose.backends.backend_entry import CheckResults
+    from app.compose.backends.backend_entry import MachineCheckResults
     from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
     from core.executor.snapshot import Snapshot
@@ -39,7 +39,7 @@ class MtconnectExtra(OptionalFeature):
 
         return start_adapter(desk.machine.machine, desk.read_snapshot, report_reason)
 
-    def start_headless(
+    def start_headless_services(
         self,
         machine: Machine,
         read_snapshot: Callable[[], Snapshot],
@@ -58,15 +58,15 @@ class MtconnectExtra(OptionalFeature):
 
         return start_headless_adapter(machine, read_snapshot, report_reason, is_real_time=is_real_time)
 
-    def add_check_rows(self, machine: Machine, results: CheckResults) -> None:
+    def add_check_rows(self, machine: Machine, results: MachineCheckResults) -> None:
         """Add a row that shows whether MTConnect agents can connect and the device model is valid.
 
         No row is added if the machine file has no [mtconnect] table.
         """
         if _TABLE in machine.hardware.tables:
-            from app.extras.mtconnect.mtconnect_command import check_mtconnect
+            from app.extras.mtconnect.mtconnect_command import add_mtconnect_check_row
 
-            check_mtconnect(machine, results)
+            add_mtconnect_check_row(machine, results)
 
 
 EXTRA = MtconnectExtra()

@@ -15,7 +15,7 @@ from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.compose.backends.backend_entry import CheckResults
+    from app.compose.backends.backend_entry import MachineCheckResults
     from core.machine.machine_model import Machine
 
 
@@ -33,21 +33,21 @@ def run(args: argparse.Namespace) -> int:
     Raises CommandError if the machine file or the device model is invalid.
     """
     from app.compose.machine.machine_setup import read_machine
-    from app.extras.mtconnect.adapter_setup import is_adapter_enabled, make_device_model
+    from app.extras.mtconnect.adapter_setup import is_adapter_enabled, make_devices_document
     from core.ports import DriverError
 
     file = args.file
     machine = read_machine(file)
     with convert_to_command_error(DriverError):
-        sys.stdout.write(make_device_model(machine, datetime.now(UTC)))
+        sys.stdout.write(make_devices_document(machine, datetime.now(UTC)))
     if not is_adapter_enabled(machine):
         sys.stderr.write(f"turndesk: {file}: [mtconnect] enabled = false, so no agent can find the adapter\n")
     return EXIT_OK
 
 
-def check_mtconnect(machine: Machine, results: CheckResults) -> None:
+def add_mtconnect_check_row(machine: Machine, results: MachineCheckResults) -> None:
     """Add a check row that shows whether agents can connect and whether the device model is valid."""
-    from app.compose.backends.backend_entry import CheckRow
+    from app.compose.backends.backend_entry import MachineCheckRow
     from app.extras.mtconnect.adapter_setup import check_adapter
     from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
     from core.ports import DriverError
@@ -59,7 +59,9 @@ def check_mtconnect(machine: Machine, results: CheckResults) -> None:
     try:
         check_adapter(machine, model)
     except DriverError as error:
-        results.rows.append(CheckRow("mtconnect", at, "fault", str(error)))
+        results.rows.append(MachineCheckRow("mtconnect", at, "fault", str(error)))
         results.faults.append(str(error))
     else:
-        results.rows.append(CheckRow("mtconnect", at, "ok", Message("device {device}", device=model.device)))
+        results.rows.append(
+            MachineCheckRow("mtconnect", at, "ok", Message("device {device}", device=model.device))
+        )

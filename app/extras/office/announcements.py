@@ -21,17 +21,17 @@ _FAULTS = frozenset({"ALARM", "E-STOP", "CONTROL SILENT"})
 class Announcement:
     """Announcement of an event.
 
-    ``kind`` is part, stop, alarm, tool-life or runs. ``text`` describes the event in a sentence, and
+    ``event_kind`` is part, stop, alarm, tool-life or runs. ``text`` describes the event in a sentence, and
     ``status`` is the machine status at that time.
     """
 
-    kind: str
+    event_kind: str
     text: str
     status: StatusDocument
 
     def make_json(self) -> bytes:
         """Return the announcement as JSON: the machine status, and the kind and text of the event."""
-        return json.dumps({"event": self.kind, "text": self.text, **self.status}).encode()
+        return json.dumps({"event": self.event_kind, "text": self.text, **self.status}).encode()
 
 
 def find_events(previous: Mapping[str, Any], current: StatusDocument) -> Iterator[Announcement]:

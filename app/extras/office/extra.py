@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from app.compose.optional_features import CloseFunction, OptionalFeature, ReportFunction
 
 if TYPE_CHECKING:
-    from app.compose.backends.backend_entry import CheckResults
+    from app.compose.backends.backend_entry import MachineCheckResults
     from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
     from core.json_keys import JsonOutput
@@ -42,9 +42,9 @@ class OfficeExtra(OptionalFeature):
         """
         if desk.machine.machine is None or _TABLES.isdisjoint(desk.machine.machine.hardware.tables):
             return None
-        from app.extras.office.office_setup import start_office
+        from app.extras.office.office_setup import start_office_services
 
-        return start_office(desk, desk.machine.machine, journal, report_reason)
+        return start_office_services(desk, desk.machine.machine, journal, report_reason)
 
     def list_shop_outputs(self) -> Sequence[JsonOutput]:
         """Return declarations of the data on the office status page and in announcements."""
@@ -52,15 +52,15 @@ class OfficeExtra(OptionalFeature):
 
         return OUTPUTS
 
-    def add_check_rows(self, machine: Machine, results: CheckResults) -> None:
+    def add_check_rows(self, machine: Machine, results: MachineCheckResults) -> None:
         """Add rows that show whether the status page can be opened and the MQTT broker responds.
 
         No row is added if the machine file has neither a [status_page] table nor an [announce] table.
         """
         if not _TABLES.isdisjoint(machine.hardware.tables):
-            from app.extras.office.office_check import check_office
+            from app.extras.office.office_check import add_office_check_rows
 
-            check_office(machine, results)
+            add_office_check_rows(machine, results)
 
 
 EXTRA = OfficeExtra()

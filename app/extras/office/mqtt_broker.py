@@ -16,7 +16,7 @@ import paho.mqtt.client as mqtt
 from paho.mqtt.enums import CallbackAPIVersion, MQTTErrorCode
 
 from app.extras.office.announcements import MAX_QUEUED, Announcement
-from app.extras.office.timed_http import NO_RESPONSE_TEXT, DeliveryErrorLog, find_cause
+from app.extras.office.timed_http import NO_RESPONSE_TEXT, DeliveryErrorLog, describe_connection_error
 from app.shopfloor.status_file import StatusDocument
 from core.extras.office.shop_network_tables import AnnounceTable, parse_broker_address
 from core.message import Message
@@ -43,7 +43,7 @@ _log = logging.getLogger(__name__)
 class _Client(mqtt.Client):
     """Paho MQTT client that reports why a connection has failed."""
 
-    on_failed: Callable[[Exception], None]
+    on_connection_failed: Callable[[Exception], None]
 
     def reconnect(self) -> MQTTErrorCode:
         """Reconnect to the broker, and report the reason if this fails.
@@ -53,7 +53,7 @@ class _Client(mqtt.Client):
         try:
             return super().reconnect()
         except (OSError, ValueError) as error:  # ValueError: an invalid name
-            self.on_failed(error)
+            self.on_connection_failed(error)
             raise OSError(str(error)) from error
 
 
@@ -79,7 +79,7 @@ class MqttReceiver:
         client.on_disconnect = self._disconnected
         host, port = parse_broker_address(table.mqtt)
         self._trouble = DeliveryErrorLog(_log, Message("the MQTT broker {host}:{port}", host=host, port=port))
-        client.on_failed = lambda error: self._trouble.log_cause(find_cause(error))
+        client.on_connection_failed = lambda error: self._trouble.log_cause(describe_connection_error(error))
         client.connect_async(host, port, KEEP_ALIVE_S)
         client.loop_start()
 

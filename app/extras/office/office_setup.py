@@ -15,17 +15,17 @@ from typing import TYPE_CHECKING
 from app.compose.program_proving import create_thumbnail_drawer
 from app.compose.stored_offsets import try_read_shapes
 from app.desk.status.prompt_line import ACTIVE_STATES
-from app.desk.status.state_prompt import find_time_left
+from app.desk.status.state_prompt import find_remaining_time_s
 from app.desk.stored_part import load_stored_part
 from app.extras.office.page_server import StatusPageServer, open_listening_socket
-from app.production.parts_watch import PartsWatch
+from app.production.parts_watch import ProductionMonitor
 from app.shopfloor.machine_reading import MachineReader
 from app.shopfloor.status_file import StatusDocument, make_status
 from core.executor.snapshot import Snapshot
 from core.extras.office.shop_network_tables import AnnounceTable, StatusPageTable
 from core.message import Message
 from core.ports import DriverError
-from core.store.production.part_cycles import StopRow
+from core.store.production.part_cycles import ProductionStopRow
 
 if TYPE_CHECKING:
     from app.compose.runs.journal import Journal
@@ -44,15 +44,15 @@ MAX_LISTED_STOPS = 6  # number of latest stops
 class StatusSource:
     """Source of the machine status for the status page and the announcements.
 
-    Any thread can read the status. ``calculate_time_left`` returns seconds, or inf while the machine is
-    stopped.
+    Any thread can read the status. ``calculate_remaining_time_s`` returns seconds, or inf while the machine
+    is stopped.
     """
 
     machine_name: str
-    floor_reader: MachineReader
+    machine_reader: MachineReader
     read_snapshot: Callable[[], Snapshot]
-    calculate_time_left: Callable[[Snapshot], float]
-    read_stops: Callable[[], Sequence[StopRow]]
+    calculate_remaining_time_s: Callable[[Snapshot], float]
+    read_stop_rows: Callable[[], Sequence[ProductionStopRow]]
     get_current_utc: Callable[[], datetime]
 
     def read_status(self) -> StatusDocument:
@@ -61,16 +61,16 @@ class StatusSource:
         Times are in seconds. None means that a value is not known.
         """
         snapshot = self.read_snapshot()
-        reading = self.floor_reader.read_snapshot(snapshot)
+        reading = self.machine_reader.make_reading(snapshot)
         status = {
             "updated": self.get_current_utc().isoformat(timespec="seconds"),
             **make_status(self.machine_name, reading),
         }
         if not reading.is_available:
             return {**status, **_NOTHING_KNOWN}
-        left = self.calculate_time_left(snapshot)
+        left = self.calculate_remaining_time_s(snapshot)
         # in the order of recording, because the clock can have been set back
-        newest = self.read_stops()[::-1][:MAX_LISTED_STOPS]
+        newest = self.read_stop_rows()[::-1][:MAX_LISTED_STOPS]
         return {
             **status,
             "state": snapshot.state.value,
@@ -114,7 +114,7 @@ PICTURE_SIZE = 600, 400  # pixels, the size for a phone
 MISSING_PACKAGE_MESSAGE = "{what} needs {package}, which is not installed; install turndesk[shop]"
 
 
-def start_office(
+def start_office_services(
     desk: Desk, machine: Machine, journal: Journal, report_error: Callable[[str], None]
 ) -> Callable[[], None]:
     """Start the status page and the announcer, and return a function that stops them.
@@ -143,14 +143,21 @@ def start_office(
 def _look(desk: Desk, machine: Machine) -> StatusSource:
     reader = MachineReader(machine, time.monotonic)
 
-    def left(snapshot: Snapshot) -> float:
-        return find_time_left(snapshot, desk.program_loader.loaded_program)
+    def calculate_remaining_time_s(snapshot: Snapshot) -> float:
+        return find_remaining_time_s(snapshot, desk.program_loader.loaded_program)
 
-    def stops() -> Sequence[StopRow]:
-        watch = desk.page_registry.find_model(PartsWatch)
-        return watch.parts_book.current_data.stops if watch is not None else ()
+    def read_stop_rows() -> Sequence[ProductionStopRow]:
+        watch = desk.page_registry.find_model(ProductionMonitor)
+        return watch.production_records.current_data.stops if watch is not None else ()
 
-    return StatusSource(machine.name, reader, desk.read_snapshot, left, stops, partial(datetime.now, UTC))
+    return StatusSource(
+        machine.name,
+        reader,
+        desk.read_snapshot,
+        calculate_remaining_time_s,
+        read_stop_rows,
+        partial(datetime.now, UTC),
+    )
 
 
 def _announcer(
@@ -193,29 +200,34 @@ def _page(
         tell(str(error))
         return []
 
-    def still() -> bool:
+    def is_machine_idle() -> bool:
         return desk.read_snapshot().state not in ACTIVE_STATES
 
-    def ask(address: str) -> OtherMachine:
+    def read_other_status(address: str) -> OtherMachine:
         return (
             read_agent_status(address) if address in table.agent_addresses else read_turndesk_status(address)
         )
 
-    others = OtherMachines((*table.other_page_addresses, *table.agent_addresses), ask)
+    others = OtherMachines((*table.other_page_addresses, *table.agent_addresses), read_other_status)
     kept = partial(load_stored_part, journal.read_setting)
     pictures = create_thumbnail_drawer(machine, try_read_shapes, kept, size_px=PICTURE_SIZE)
-    part = PartPicture(lambda: desk.program_loader.loaded_program.job, still, pictures)
+    part = PartPicture(lambda: desk.program_loader.loaded_program.job, is_machine_idle, pictures)
     recordings = desk.desk_control.recordings
-    alarm = AlarmPicture(recordings.folder if recordings is not None else None, still)
+    alarm = AlarmChart(recordings.folder if recordings is not None else None, is_machine_idle)
 
-    def draw() -> None:
+    def update_pictures() -> None:
         part.update()
         alarm.update()
 
     page = StatusPage(
-        machine.name, table.token, look.read_status, others.read_states, part.get_png, alarm.get_svg
+        machine.name,
+        table.token,
+        look.read_status,
+        others.read_machine_states,
+        part.get_part_png,
+        alarm.get_alarm_svg,
     )
-    server = StatusPageServer(page, listening, draw)
+    server = StatusPageServer(page, listening, update_pictures)
     others.start()
     server.start()
     return [others.close, server.close]
@@ -242,7 +254,7 @@ class PartPicture:
         if job is not None and job.digest != self._drawn[0] and self.is_idle():
             self._drawn = job.digest, self._png(job)
 
-    def get_png(self) -> bytes:
+    def get_part_png(self) -> bytes:
         """Return the PNG image, or empty bytes if the part has not been drawn yet."""
         job, (digest, png) = self.get_job(), self._drawn
         return png if job is not None and job.digest == digest else b""
@@ -255,13 +267,13 @@ class PartPicture:
 
 
 @dataclass(slots=True)
-class AlarmPicture:
+class AlarmChart:
     """SVG chart of the latest scope record that an alarm triggered.
 
     ``folder`` is None if no records are stored.
     """
 
-    folder: Path | None
+    record_folder: Path | None
     is_idle: Callable[[], bool]
     _drawn: tuple[str, bytes] = ("", b"")
 
@@ -269,11 +281,15 @@ class AlarmPicture:
         """Draw a new alarm record, but only while no program runs."""
         from core.records.record_file import RECORD_SUFFIX
 
-        names = sorted(self.folder.glob(f"*-alarm*{RECORD_SUFFIX}")) if self.folder is not None else []
+        names = (
+            sorted(self.record_folder.glob(f"*-alarm*{RECORD_SUFFIX}"))
+            if self.record_folder is not None
+            else []
+        )
         if names and names[-1].name != self._drawn[0] and self.is_idle():
             self._drawn = names[-1].name, _drawing(names[-1])
 
-    def get_svg(self) -> bytes:
+    def get_alarm_svg(self) -> bytes:
         """Return the SVG chart, or empty bytes if there is no readable alarm record."""
         return self._drawn[1]
 

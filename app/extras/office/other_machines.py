@@ -21,7 +21,7 @@ from xml.etree.ElementTree import Element
 
 from app.desk.translation import tr
 from app.extras.office.status_page import LOADING_TEXT, OtherMachine
-from app.extras.office.timed_http import find_cause, make_one_line, make_timed_opener
+from app.extras.office.timed_http import describe_connection_error, make_single_line, make_url_opener
 from core.message import Message
 
 READ_INTERVAL_S = 3.0  # seconds
@@ -30,7 +30,7 @@ STALE_AFTER_S = 10.0  # seconds after which a status is outdated
 _PATIENCE = 2.0  # seconds
 _LARGEST = 1e9  # largest value; Python's JSON reader accepts Infinity and NaN
 _MOST = 100_000  # bytes
-_ASK = make_timed_opener(ProxyHandler({}))  # machines of one shop are accessed without a proxy
+_ASK = make_url_opener(ProxyHandler({}))  # machines of one shop are accessed without a proxy
 
 
 def make_status_address(address: str) -> str:
@@ -54,7 +54,7 @@ class MachineResponse(NamedTuple):
 
 def read_turndesk_status(address: str) -> OtherMachine:
     """Read the status of a TurnDesk system, with a timeout of 2 s."""
-    return read_status(address, make_status_address(address), _MOST, _desk_answer)
+    return request_machine_status(address, make_status_address(address), _MOST, _desk_answer)
 
 
 def _desk_answer(data: bytes) -> MachineResponse:
@@ -65,7 +65,7 @@ def _desk_answer(data: bytes) -> MachineResponse:
             raise ValueError(other)
 
 
-def read_status(
+def request_machine_status(
     address: str, request_address: str, max_bytes: int, convert_response: Callable[[bytes], MachineResponse]
 ) -> OtherMachine:
     """Send a request to another machine and return its status.
@@ -81,17 +81,17 @@ def read_status(
     except HTTPError as error:
         return OtherMachine(name, error_text=_refused(error))
     except (URLError, HTTPException, OSError) as error:
-        return OtherMachine(name, error_text=find_cause(error))
+        return OtherMachine(name, error_text=describe_connection_error(error))
     except (ValueError, RecursionError):
         return OtherMachine(name, error_text=tr("the server at this address is not a TurnDesk server"))
     shown = {key: value for key, value in status.items() if _fits(key, value)} if status is not None else None
-    return OtherMachine(name, shown, make_one_line(error_text))
+    return OtherMachine(name, shown, make_single_line(error_text))
 
 
 def _refused(error: HTTPError) -> str:
     if error.code in {HTTPStatus.FORBIDDEN, HTTPStatus.UNAUTHORIZED}:
         return tr("access token rejected")
-    return make_one_line(
+    return make_single_line(
         tr(Message("the server returns HTTP status {answer}", answer=f"{error.code} {error.reason}"))
     )
 
@@ -112,8 +112,8 @@ def _fits(key: str, value: object) -> bool:
 class OtherMachines:
     """Reader of the status of other machines, with one thread per machine.
 
-    The threads read as long as ``read_states`` is called. A machine with a slow response or no response
-    does not delay the others. An outdated status is not shown.
+    The threads read as long as ``read_machine_states`` is called. A machine with a slow response or no
+    response does not delay the others. An outdated status is not shown.
     """
 
     def __init__(
@@ -142,7 +142,7 @@ class OtherMachines:
         for thread in self._threads:
             thread.start()
 
-    def read_states(self) -> Sequence[OtherMachine]:
+    def read_machine_states(self) -> Sequence[OtherMachine]:
         """Return the latest status of each machine."""
         now = self._clock()
         # no requests were made in the meantime, so the machines are not silent
@@ -196,7 +196,7 @@ _WORDS = {
 _LONGEST = 15  # digits of a number
 
 
-def make_current_address(address: str) -> str:
+def make_current_state_address(address: str) -> str:
     """Return the address at which an MTConnect agent provides the current state of a device.
 
     ``address`` includes the path of the device.
@@ -207,10 +207,12 @@ def make_current_address(address: str) -> str:
 
 def read_agent_status(address: str) -> OtherMachine:
     """Read the status of a machine from its MTConnect agent, with a timeout of 2 s."""
-    return read_status(address, make_current_address(address), _MOST_OF_AGENT, parse_streams)
+    return request_machine_status(
+        address, make_current_state_address(address), _MOST_OF_AGENT, parse_mtconnect_streams
+    )
 
 
-def parse_streams(data: bytes) -> MachineResponse:
+def parse_mtconnect_streams(data: bytes) -> MachineResponse:
     """Return the status and the faults in an MTConnectStreams document.
 
     Raises ValueError if the document is invalid or contains no device.

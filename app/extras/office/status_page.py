@@ -62,7 +62,7 @@ class StatusPage:
     """
 
     machine_name: str
-    token: str
+    access_token: str
     read_status: Callable[[], StatusDocument]
     read_other_machines: Callable[[], Sequence[OtherMachine]]
     read_part_png: Callable[[], bytes]
@@ -81,7 +81,7 @@ class StatusPage:
         given = _find_token(environ)
         if not (given.isascii() and given.isprintable()):
             return HTTPStatus.BAD_REQUEST, [_TEXT], b"a token has letters, figures, - and _ only\n"
-        if self.token and not hmac.compare_digest(given.encode(), self.token.encode()):
+        if self.access_token and not hmac.compare_digest(given.encode(), self.access_token.encode()):
             return HTTPStatus.FORBIDDEN, [_TEXT], _NO_TOKEN
         make = _PAGES.get(environ.get("PATH_INFO", "/"))
         if make is None:
@@ -89,11 +89,11 @@ class StatusPage:
         kind, body = make(self)
         if not body:
             return HTTPStatus.NOT_FOUND, [_TEXT], b"there is none now\n"
-        cookie = f"{_cookie(environ)}={self.token}; HttpOnly; SameSite=Strict; Path=/"
-        kept = [("Set-Cookie", cookie)] if self.token else []
+        cookie = f"{_cookie(environ)}={self.access_token}; HttpOnly; SameSite=Strict; Path=/"
+        kept = [("Set-Cookie", cookie)] if self.access_token else []
         return HTTPStatus.OK, [("Content-Type", kind), *kept], body
 
-    def make_page(self) -> tuple[str, bytes]:
+    def make_status_page(self) -> tuple[str, bytes]:
         """Return the content type and the HTML of the whole page."""
         frame = Template((_FILES / "page.html").read_text("utf-8"))
         page = frame.substitute(
@@ -113,7 +113,7 @@ class StatusPage:
         )
         return "text/html; charset=utf-8", page.encode()
 
-    def make_changing_content(self) -> tuple[str, bytes]:
+    def make_live_content(self) -> tuple[str, bytes]:
         """Return the content type and the HTML of the part of the page that the script refreshes."""
         return "text/html; charset=utf-8", self._now().encode()
 
@@ -151,8 +151,8 @@ class StatusPage:
 
 
 _PAGES: dict[str, Callable[[StatusPage], tuple[str, bytes]]] = {
-    "/": StatusPage.make_page,
-    "/now": StatusPage.make_changing_content,
+    "/": StatusPage.make_status_page,
+    "/now": StatusPage.make_live_content,
     "/page.css": StatusPage.get_style_sheet,
     "/page.js": StatusPage.get_script,
     "/status.json": StatusPage.make_status_json,

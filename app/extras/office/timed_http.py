@@ -87,7 +87,7 @@ class _TimedHandler(HTTPHandler, HTTPSHandler):
         return self.do_open(partial(_timed, HTTPSConnection, self._clock), req)
 
 
-def make_timed_opener(
+def make_url_opener(
     *handlers: BaseHandler | type[BaseHandler], clock: Clock = time.monotonic
 ) -> OpenerDirector:
     """Return a urllib opener whose ``timeout`` also limits the whole exchange after connecting."""
@@ -101,7 +101,7 @@ _TLS_ALERT = "\x15\x03"
 _CAUSES = 10  # reported causes of one problem, because a server can respond differently each time
 
 
-def find_cause(error: Exception) -> str:
+def describe_connection_error(error: Exception) -> str:
     """Return the cause of a failed connection as text, without passwords and tokens.
 
     The operating system or the server provides the wording.
@@ -127,16 +127,16 @@ def find_cause(error: Exception) -> str:
             words = "the address contains characters that are not allowed in an address"
         case _:
             words = str(getattr(cause, "strerror", None) or cause)
-    return make_one_line(words)
+    return make_single_line(words)
 
 
-def extract_host(address: str) -> str:
+def extract_origin(address: str) -> str:
     """Return the scheme, host and port of an address, without user name, password, path and token."""
     parts = urlsplit(address)
     return f"{parts.scheme}://{parts.netloc.rpartition('@')[2]}"
 
 
-def make_one_line(text: str) -> str:
+def make_single_line(text: str) -> str:
     """Return a received text as one line without control characters and with a limited length."""
     return "".join(sign for sign in text if sign.isprintable())[:MAX_CAUSE_LENGTH]
 

@@ -16,10 +16,10 @@ from app.extras.office.announcements import MAX_QUEUED, Announcement
 from app.extras.office.timed_http import (
     Clock,
     DeliveryErrorLog,
-    extract_host,
-    find_cause,
-    make_one_line,
-    make_timed_opener,
+    describe_connection_error,
+    extract_origin,
+    make_single_line,
+    make_url_opener,
 )
 from app.shopfloor.status_file import StatusDocument
 from core.message import Message
@@ -43,7 +43,7 @@ class WebhookReceiver:
         self._address, self._again, self._post = address, retry_time_s, post_data or post_json
         self._waiting: deque[Announcement] = deque(maxlen=MAX_QUEUED)
         self._there, self._closing = threading.Event(), threading.Event()
-        self._trouble = DeliveryErrorLog(_log, extract_host(address))
+        self._trouble = DeliveryErrorLog(_log, extract_origin(address))
         self._thread = threading.Thread(target=self._work, name="web-hook", daemon=True)
         self._thread.start()
 
@@ -102,7 +102,7 @@ def post_json(address: str, data: bytes, clock: Clock = time.monotonic) -> None:
     """
     request = Request(address, data, {"Content-Type": "application/json"}, method="POST")
     try:
-        with make_timed_opener(_Stay, clock=clock).open(request, timeout=_PATIENCE):
+        with make_url_opener(_Stay, clock=clock).open(request, timeout=_PATIENCE):
             return
     except HTTPError as error:
         error.close()
@@ -113,11 +113,11 @@ def _why(error: Exception) -> str:
     if isinstance(error, HTTPError):
         to = error.headers.get("Location", "") if error.code < 400 else ""
         where = (
-            Message(", redirected to {to}; set [announce] hook to that address", to=extract_host(to))
+            Message(", redirected to {to}; set [announce] hook to that address", to=extract_origin(to))
             if to
             else ""
         )
-        return make_one_line(
+        return make_single_line(
             Message("HTTP response {code} {reason}{place}", code=error.code, reason=error.reason, place=where)
         )
-    return find_cause(error)
+    return describe_connection_error(error)

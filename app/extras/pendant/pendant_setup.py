@@ -8,11 +8,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 
-from app.compose.backends.backend_entry import CheckRow, ConnectedMachine
+from app.compose.backends.backend_entry import ConnectedMachine, MachineCheckRow
 from app.extras.pendant.driver.input_devices import (
     EventSource,
     KernelDevice,
-    list_devices,
+    list_input_devices,
     select_device_nodes,
 )
 from app.extras.pendant.driver.pendant_station import PendantIO, PendantReader, PendantStation
@@ -54,7 +54,7 @@ def open_devices(
         raise DriverError("a USB pendant works only on Linux; remove [pendant] from the machine file")
     devices: list[KernelDevice] = []
     with ExitStack() as opened:
-        for node in select_device_nodes(model.device, model.serial, required_controls, list_devices()):
+        for node in select_device_nodes(model.device, model.serial, required_controls, list_input_devices()):
             devices.append(KernelDevice(node))
             opened.callback(devices[-1].close)
         opened.pop_all()
@@ -103,16 +103,22 @@ def add_pendant(
         connected.close()
         pendant.close()
 
-    def rows() -> Iterable[CheckRow]:
-        yield CheckRow(
+    def make_check_rows() -> Iterable[MachineCheckRow]:
+        yield MachineCheckRow(
             "pendant", model.device, "no answer" if station.missing_reason else "ok", station.missing_reason
         )
 
-    def measured() -> Iterable[str]:
+    def list_measured_rows() -> Iterable[str]:
         if not station.missing_reason:
             yield from ("pendant", *(f"input {name}" for name in bound))
 
-    return replace(connected, ports=ports, close=close, list_more_rows=rows, list_measured_rows=measured)
+    return replace(
+        connected,
+        ports=ports,
+        close=close,
+        list_extra_check_rows=make_check_rows,
+        list_measured_row_names=list_measured_rows,
+    )
 
 
 def _at_pendant(terminal: str) -> bool:

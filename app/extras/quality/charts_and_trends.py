@@ -8,32 +8,32 @@ from itertools import pairwise
 
 import numpy as np
 
-from app.desk.arithmetic import EntryError
+from app.desk.arithmetic import InvalidEntryError
 from app.desk.desk import Desk
-from app.desk.pages.table_content import TableContent, TableRow, edit_text
+from app.desk.pages.table_content import TableContent, TableRow, apply_edit_key
 from app.desk.status.formats import NO_VALUE, format_duration, format_fixed
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.desk.translation import tr
-from app.extras.quality.parts_data import make_feature
+from app.extras.quality.parts_data import make_measured_feature
 from app.extras.quality.section import (
     ChartDrawing,
+    HorizontalLine,
     Plot,
     PlotCurve,
-    PlotLevel,
     QualitySection,
     format_size,
-    get_diameter_sign,
+    get_diameter_symbol,
     make_control_plots,
 )
 from app.extras.quality.shift_results import (
     SHIFT_HOURS_SETTING,
-    convert_stops,
+    convert_stop_rows,
     find_shift,
     get_shift_hours,
     make_cycle_spans,
 )
-from app.offsets.offset_values import format_signed
-from app.production.parts_watch import PartsWatch
+from app.offsets.offset_values import format_signed_length
+from app.production.parts_watch import ProductionMonitor
 from core.access.access_table import ProtectedChange
 from core.executor.snapshot import Snapshot
 from core.extras.quality.control_charts import (
@@ -65,7 +65,10 @@ class TrendsSection(QualitySection):
     chart_share = 0.42
 
     def __init__(
-        self, desk: Desk, parts_watch: PartsWatch, get_utc: Callable[[], datetime] = lambda: datetime.now(UTC)
+        self,
+        desk: Desk,
+        parts_watch: ProductionMonitor,
+        get_utc: Callable[[], datetime] = lambda: datetime.now(UTC),
     ) -> None:
         super().__init__(desk, parts_watch)
         self._now = get_utc
@@ -110,9 +113,9 @@ class TrendsSection(QualitySection):
         self.limit_selection()
         minute = int(self._now().timestamp() // 60)
         of = (
-            self.watch.parts_book.load_count,
+            self.watch.production_records.load_count,
             self.program_name,
-            self.control_unit,
+            self.control_length_unit,
             minute,
             self.shift_hours,
         )
@@ -128,7 +131,7 @@ class TrendsSection(QualitySection):
             self.marked,
             question,
             self.entry.text,
-            raw_columns=frozenset({1}),
+            untranslated_columns=frozenset({1}),
         )
 
     # --- values --------------------------------------------------------------------------------------
@@ -155,7 +158,7 @@ class TrendsSection(QualitySection):
         rows = self.parts_data.corrections
         if not rows:
             return tr("no wear correction yet")
-        last, metric = rows[-1], self.control_unit.is_metric
+        last, metric = rows[-1], self.control_length_unit.is_metric
         letter, factor = ("T", 2.0) if last.kind == "tool" else ("D", 1.0)
         text = tr("{count} corrections; last correction: {offset} by X {x} Z {z} after part {part}")
         return tr(
@@ -163,14 +166,14 @@ class TrendsSection(QualitySection):
                 text,
                 count=len(rows),
                 offset=f"{letter}{last.number}",
-                x=format_signed(factor * last.x, metric),
-                z=format_signed(last.z, metric),
+                x=format_signed_length(factor * last.x, metric),
+                z=format_signed_length(last.z, metric),
                 part=last.part,
             )
         )
 
     def _stop_words(self) -> str:
-        stops = convert_stops(self.watch.parts_book.current_data.stops)
+        stops = convert_stop_rows(self.watch.production_records.current_data.stops)
         rows = analyze_stop_reasons(stops)
         if not rows:
             return tr("no stops yet")
@@ -210,7 +213,7 @@ class TrendsSection(QualitySection):
                 text,
                 first=first,
                 last=last,
-                share=format_fixed(100.0 * found.producing_share, 0),
+                share=format_fixed(100.0 * found.producing_fraction, 0),
                 run=format_duration(found.producing_s),
                 planned=format_duration(found.planned_s),
             )
@@ -235,7 +238,12 @@ class TrendsSection(QualitySection):
 
     def make_chart(self) -> ChartDrawing:
         """Return the chart of the selected trend."""
-        of = (self.watch.parts_book.load_count, self.program_name, self.selected_trend, self.control_unit)
+        of = (
+            self.watch.production_records.load_count,
+            self.program_name,
+            self.selected_trend,
+            self.control_length_unit,
+        )
         if self._made[0] != of:
             self._made = of, ChartDrawing(self._plots(), of)
         return self._made[1]
@@ -254,7 +262,7 @@ class TrendsSection(QualitySection):
         if not rows:
             return ()
         times = np.asarray([row.seconds for row in rows])
-        mean = PlotLevel(float(times.mean()), "", "centre")
+        mean = HorizontalLine(float(times.mean()), "", "centre")
         return (
             Plot(tr("CYCLE TIME, s"), (PlotCurve(_numbers(len(rows)), times),), (mean,), x_label=tr("parts")),
         )
@@ -265,7 +273,7 @@ class TrendsSection(QualitySection):
         Each correction applies until the next correction.
         """
         unit, made = (
-            self.control_unit.unit_mm,
+            self.control_length_unit.unit_length_mm,
             float(max((row.part for row in self.parts_data.cycles), default=0)),
         )
         curves: list[list[PlotCurve]] = [[], []]
@@ -279,15 +287,20 @@ class TrendsSection(QualitySection):
             factor = 2.0 if kind == "tool" else 1.0
             x = np.asarray([first.was_x, *(row.x for row in rows), last.x]) * factor / unit
             z = np.asarray([first.was_z, *(row.z for row in rows), last.z]) / unit
-            curves[0].append(PlotCurve(parts, x, number, name=name, has_dots=False, has_steps=True))
-            curves[1].append(PlotCurve(parts, z, number, name=name, has_dots=False, has_steps=True))
+            curves[0].append(PlotCurve(parts, x, number, name=name, has_dots=False, is_stepped=True))
+            curves[1].append(PlotCurve(parts, z, number, name=name, has_dots=False, is_stepped=True))
         if not curves[0]:
             return ()
-        titles = (f"{tr('WEAR X')}, {self.control_unit.name}", f"{tr('WEAR Z')}, {self.control_unit.name}")
+        titles = (
+            f"{tr('WEAR X')}, {self.control_length_unit.name}",
+            f"{tr('WEAR Z')}, {self.control_length_unit.name}",
+        )
         return tuple(Plot(title, tuple(each)) for title, each in zip(titles, curves, strict=True))
 
     def _stop_plots(self) -> tuple[Plot, ...]:
-        rows = analyze_stop_reasons(convert_stops(self.watch.parts_book.current_data.stops))[:_MOST_BARS]
+        rows = analyze_stop_reasons(convert_stop_rows(self.watch.production_records.current_data.stops))[
+            :_MOST_BARS
+        ]
         if not rows:
             return ()
         bars = tuple(
@@ -331,7 +344,7 @@ class TrendsSection(QualitySection):
             self.submit_entry()
         elif self.accepts_key(key) or key in {"Back", "Delete"}:
             self.desk.clear_prompt_line()
-            self.entry.text = edit_text(self.entry.text, key, 5)
+            self.entry.text = apply_edit_key(self.entry.text, key, 5)
         else:
             return False
         return True
@@ -339,11 +352,11 @@ class TrendsSection(QualitySection):
     def accept_entry(self, text: str) -> bool:
         """Set the start and end hour of the shift, and return whether they were accepted.
 
-        Raises EntryError if the text is not a valid pair of hours.
+        Raises InvalidEntryError if the text is not a valid pair of hours.
         """
         first, _, last = text.partition("-")
         if not (first.isdecimal() and last.isdecimal() and int(first) < 24 and int(last) <= 24):
-            raise EntryError(tr("enter the start and end hour of the shift, such as 6-14"))
+            raise InvalidEntryError(tr("enter the start and end hour of the shift, such as 6-14"))
         if self.desk.is_refused(ProtectedChange.FEATURES):
             return False
         self._shift = int(first), int(last)
@@ -358,7 +371,7 @@ class TrendsSection(QualitySection):
 
     def prompt_text(self) -> str:
         """Return the prompt that explains the keys, or the reason why production data are not stored."""
-        return self.watch.parts_book.lock_reason or ("ARROWS: SELECT TREND   ESC: BACK TO LIST")
+        return self.watch.production_records.lock_reason or ("ARROWS: SELECT TREND   ESC: BACK TO LIST")
 
 
 def _numbers(count: int) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
@@ -375,7 +388,7 @@ class ChartsSection(QualitySection):
     use = "limits, Cpk, drift"
     chart_share = 0.62
 
-    def __init__(self, desk: Desk, parts_watch: PartsWatch) -> None:
+    def __init__(self, desk: Desk, parts_watch: ProductionMonitor) -> None:
         super().__init__(desk, parts_watch)
         self._made: tuple[object, ChartDrawing] = (None, ChartDrawing())
         self._rows: tuple[object, tuple[TableRow, ...]] = (None, ())
@@ -400,8 +413,8 @@ class ChartsSection(QualitySection):
     def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the table with the mean, the capability and the drift of each feature."""
         self.limit_selection()
-        mode = self.control_unit
-        of = (self.watch.parts_book.load_count, self.program_name, mode)
+        mode = self.control_length_unit
+        of = (self.watch.production_records.load_count, self.program_name, mode)
         if self._rows[0] != of:
             self._rows = of, tuple(self._row(each) for each in self.parts_data.features)
         heads = ("FEATURE", "READINGS", Message("MEAN {mode}", mode=mode.name), "Cp", "Cpk", "DRIFT")
@@ -411,14 +424,14 @@ class ChartsSection(QualitySection):
             else "CONTROL CHARTS"
         )
         return TableContent(title, heads, (0.2, 0.08, 0.15, 0.09, 0.09, 0.39), self._rows[1], self.marked,
-                     raw_columns=frozenset({0}), number_columns=frozenset({1}))  # fmt: skip
+                     untranslated_columns=frozenset({0}), numeric_columns=frozenset({1}))  # fmt: skip
 
     def _row(self, row: FeatureRow) -> TableRow:
-        feature, taken = make_feature(row), self._newest(row)
+        feature, taken = make_measured_feature(row), self._newest(row)
         values = [each.value for each in taken]
         if not values:
             return TableRow((row.name, "0", "", "", "", tr("FEATURE NOT MEASURED YET")), None)
-        mean = get_diameter_sign(row) + format_size(sum(values) / len(values), self.control_unit)
+        mean = get_diameter_symbol(row) + format_size(sum(values) / len(values), self.control_length_unit)
         drift = self._drift(row, values)
         try:
             found = calculate_capability(values, *feature.limits, row.sample)
@@ -436,7 +449,7 @@ class ChartsSection(QualitySection):
                     minimum=format_fixed(found.cpk_lower_bound, 2),
                 )
             )
-            return TableRow((row.name, str(len(values)), mean, cp, cpk, drift), True, Tone.RUN)
+            return TableRow((row.name, str(len(values)), mean, cp, cpk, drift), True, StatusTone.RUN)
         return TableRow((row.name, str(len(values)), mean, cp, cpk, drift), not drift, _tone(drift))
 
     def _newest(self, row: FeatureRow) -> tuple[ReadingRow, ...]:
@@ -451,15 +464,20 @@ class ChartsSection(QualitySection):
         late = [
             each for each in find_rule_violations(chart) if each.point_index >= len(chart.point_values) - 10
         ]
-        return tr(late[-1].text) if late else ""
+        return tr(late[-1].rule_text) if late else ""
 
     def make_chart(self) -> ChartDrawing:
         """Return the control charts for location and spread of the selected feature.
 
         The charts are cached until the data change.
         """
-        row, mode = self.selected_feature, self.control_unit
-        of = (self.watch.parts_book.load_count, self.program_name, row.id if row is not None else 0, mode)
+        row, mode = self.selected_feature, self.control_length_unit
+        of = (
+            self.watch.production_records.load_count,
+            self.program_name,
+            row.id if row is not None else 0,
+            mode,
+        )
         if self._made[0] != of:
             self._made = of, self._drawn(row, of)
         return self._made[1]
@@ -479,15 +497,22 @@ class ChartsSection(QualitySection):
         names = (tr("INDIVIDUALS"), tr("MOVING RANGE")) if row.sample == 1 else (tr("AVERAGE"), tr("RANGE"))
         titled = (f"{row.name}  {names[0]}", names[1])
         return ChartDrawing(
-            make_control_plots(pair, parts, make_feature(row).limits, titled, self.control_unit.unit_mm), of
+            make_control_plots(
+                pair,
+                parts,
+                make_measured_feature(row).limits,
+                titled,
+                self.control_length_unit.unit_length_mm,
+            ),
+            of,
         )
 
     def prompt_text(self) -> str:
         """Return the prompt that explains the lines in the chart, or the reason why no chart is available."""
-        return self.find_missing_precondition() or (
+        return self.find_unmet_precondition() or (
             "ARROWS: SELECT FEATURE. DASHED: CONTROL LIMITS, DOTTED: TOLERANCE, CIRCLED: RULE VIOLATIONS"
         )
 
 
-def _tone(drift: str) -> Tone:
-    return Tone.PAUSE if drift else Tone.READY
+def _tone(drift: str) -> StatusTone:
+    return StatusTone.PAUSE if drift else StatusTone.READY

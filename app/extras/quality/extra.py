@@ -41,7 +41,7 @@ class QualityExtra(OptionalFeature):
             PageDescription(
                 "MEASURED PARTS",
                 "app.extras.quality.quality_view.MeasuredPartsPage",
-                "app.extras.quality.quality_setup.QualityFunctions",
+                "app.extras.quality.quality_setup.QualitySectionList",
                 "W",
                 "MEASURED",
                 "features, readings, charts, trends",

@@ -6,11 +6,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 
-from app.desk.arithmetic import EXPRESSION_CHARACTERS, EntryError, evaluate_expression
+from app.desk.arithmetic import EXPRESSION_CHARACTERS, InvalidEntryError, evaluate_expression
 from app.desk.desk import Desk
-from app.desk.pages.table_content import FunctionKey, TableContent, TableRow, edit_text
+from app.desk.pages.table_content import FunctionKey, TableContent, TableRow, apply_edit_key
 from app.desk.translation import tr
-from app.extras.quality.parts_data import make_feature, make_feature_row
+from app.extras.quality.parts_data import make_feature_row, make_measured_feature
 from app.extras.quality.sample_plan import SamplePlan
 from app.extras.quality.section import (
     NO_PROGRAM_MESSAGE,
@@ -18,10 +18,10 @@ from app.extras.quality.section import (
     convert_entry_to_mm,
     format_deviation,
     format_size,
-    get_diameter_sign,
+    get_diameter_symbol,
 )
-from app.offsets.offset_values import ValueMode
-from app.production.parts_watch import PartsWatch
+from app.offsets.offset_values import UnitMode
+from app.production.parts_watch import ProductionMonitor
 from core.access.access_table import ProtectedChange
 from core.executor.snapshot import Snapshot
 from core.extras.quality.control_charts import QualityError
@@ -79,7 +79,7 @@ class FeatureDraft:
         """Return the name of the selected field."""
         return self.field_names[self.field_index]
 
-    def get_field_text(self, field: str, value_mode: ValueMode) -> str:
+    def get_field_text(self, field: str, value_mode: UnitMode) -> str:
         """Return the value of a field as display text."""
         feature = self.feature
         if field == "NAME":
@@ -107,10 +107,10 @@ class FeatureDraft:
         else:
             self.feature = replace(feature, grows=-feature.grows)
 
-    def set_field(self, text: str, value_mode: ValueMode) -> None:
+    def set_field(self, text: str, value_mode: UnitMode) -> None:
         """Set the selected field to the typed text.
 
-        Raises EntryError if the text is not valid for the field.
+        Raises InvalidEntryError if the text is not valid for the field.
         """
         field = self.selected_field
         if field == "NAME":
@@ -121,7 +121,7 @@ class FeatureDraft:
         else:
             value = evaluate_expression(text)
             if value != int(value):
-                raise EntryError(Message("{value} is not a whole number", value=f"{value:g}"))
+                raise InvalidEntryError(Message("{value} is not a whole number", value=f"{value:g}"))
             self.feature = replace(self.feature, **{_WHOLE[field]: int(value)})  # type: ignore[arg-type]
 
 
@@ -134,7 +134,7 @@ class FeaturesSection(QualitySection):
     name = "FEATURES"
     use = "nominal dimension, tolerance, sampling plan"
 
-    def __init__(self, desk: Desk, parts_watch: PartsWatch, sample_plan: SamplePlan) -> None:
+    def __init__(self, desk: Desk, parts_watch: ProductionMonitor, sample_plan: SamplePlan) -> None:
         super().__init__(desk, parts_watch)
         self.plan = sample_plan
         self.draft: FeatureDraft | None = None
@@ -155,14 +155,14 @@ class FeaturesSection(QualitySection):
         if self.draft is not None:
             return self._fields(self.draft)
         self.limit_selection()
-        mode, rows, lathe = self.control_unit, [], not self.is_mill
+        mode, rows, lathe = self.control_length_unit, [], not self.is_mill
         for each in self.parts_data.features:
             tolerance = f"{format_deviation(each.high, mode)}  {format_deviation(each.low, mode)}"
             every = tr(Message("every {count} parts", count=each.every)) if each.every else ""
             sample = str(each.sample)
             rows.append(
-                TableRow((each.name, get_diameter_sign(each) + format_size(each.nominal, mode), tolerance,
-                     make_feature(each).corrected_by if lathe else "", every, sample))
+                TableRow((each.name, get_diameter_symbol(each) + format_size(each.nominal, mode), tolerance,
+                     make_measured_feature(each).corrected_by if lathe else "", every, sample))
             )  # fmt: skip
         heads = (
             "NAME",
@@ -174,7 +174,7 @@ class FeaturesSection(QualitySection):
         )
         waits = (
             tr("NEXT PART WAITS FOR REQUIRED MEASUREMENTS")
-            if self.plan.waits_for_measurements
+            if self.plan.is_measurement_wait_enabled
             else tr("NEXT PART DOES NOT WAIT FOR REQUIRED MEASUREMENTS")
         )
         notes = (
@@ -189,11 +189,11 @@ class FeaturesSection(QualitySection):
         )
         shares = (0.24, 0.19, 0.25, 0.1, 0.13, 0.09)
         return TableContent(
-            title, heads, shares, tuple(rows), self.marked, notes=notes, raw_columns=frozenset({0})
+            title, heads, shares, tuple(rows), self.marked, notes=notes, untranslated_columns=frozenset({0})
         )
 
     def _fields(self, draft: FeatureDraft) -> TableContent:
-        mode = self.control_unit
+        mode = self.control_length_unit
         rows = tuple(TableRow((field, draft.get_field_text(field, mode))) for field in draft.field_names)
         turned = draft.selected_field in _TURNED
         question = "" if turned else f"{tr(draft.selected_field)}?"
@@ -204,7 +204,7 @@ class FeaturesSection(QualitySection):
         return TableContent(
             "FEATURE", ("", mode.name), (0.55, 0.45), rows, draft.field_index, question, self.entry.text,
             (tr("PRESS ENTER TO SWITCH TO THE OTHER VALUE"), entry_hint) if turned else (entry_hint,),
-            raw_columns=frozenset({1}),
+            untranslated_columns=frozenset({1}),
         )  # fmt: skip
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
@@ -215,7 +215,9 @@ class FeaturesSection(QualitySection):
             "F2": FunctionKey(tr("NEW"), self.add_feature),
             "F3": FunctionKey("CHANGE", self.edit_feature),
             "F4": FunctionKey("REMOVE", self.remove_feature),
-            "F5": FunctionKey("NO WAIT" if self.plan.waits_for_measurements else "WAIT", self._turn_waits),
+            "F5": FunctionKey(
+                "NO WAIT" if self.plan.is_measurement_wait_enabled else "WAIT", self._turn_waits
+            ),
         }
 
     def accepts_key(self, key: str) -> bool:
@@ -241,7 +243,7 @@ class FeaturesSection(QualitySection):
             self.submit_entry()
         elif self.accepts_key(key) or key in {"Back", "Delete"}:
             self.desk.clear_prompt_line()
-            self.entry.text = edit_text(self.entry.text, key, MAX_NAME_LENGTH)
+            self.entry.text = apply_edit_key(self.entry.text, key, MAX_NAME_LENGTH)
         else:
             return False
         return True
@@ -253,7 +255,7 @@ class FeaturesSection(QualitySection):
     def accept_entry(self, text: str) -> bool:
         """Set the selected field to the typed text, and select the next field.
 
-        Returns whether the entry was accepted. Raises EntryError if the text is not valid.
+        Returns whether the entry was accepted. Raises InvalidEntryError if the text is not valid.
         """
         draft = self.draft
         if draft is None:
@@ -262,7 +264,7 @@ class FeaturesSection(QualitySection):
             draft.toggle_choice()
             return True
         if text.strip():
-            draft.set_field(text, self.control_unit)
+            draft.set_field(text, self.control_length_unit)
         draft.field_index = min(len(draft.field_names) - 1, draft.field_index + 1)
         return True
 
@@ -278,14 +280,14 @@ class FeaturesSection(QualitySection):
         else:
             self.submit_entry()
 
-    def execute_row(self) -> bool:
+    def activate_selected_row(self) -> bool:
         """Start editing the selected feature, and return True."""
         return self._opened()
 
     def add_feature(self) -> None:
         """Start the entry of a new feature (F2)."""
-        if not self.program_name or self.watch.parts_book.lock_reason:
-            self.desk.say(self.watch.parts_book.lock_reason or NO_PROGRAM_MESSAGE)
+        if not self.program_name or self.watch.production_records.lock_reason:
+            self.desk.say(self.watch.production_records.lock_reason or NO_PROGRAM_MESSAGE)
             return
         self.desk.clear_prompt_line()
         self.draft = FeatureDraft(EMPTY_FEATURE, field_names=self.field_names)
@@ -297,10 +299,10 @@ class FeaturesSection(QualitySection):
         """
         row = self.selected_feature
         if row is None:
-            self.desk.say(self.find_missing_precondition())
+            self.desk.say(self.find_unmet_precondition())
             return
         self.desk.clear_prompt_line()
-        self.draft = FeatureDraft(make_feature(row), row.id, field_names=self.field_names)
+        self.draft = FeatureDraft(make_measured_feature(row), row.id, field_names=self.field_names)
 
     def save_feature(self) -> None:
         """Save the feature that is being edited (F6)."""
@@ -312,7 +314,7 @@ class FeaturesSection(QualitySection):
                 self.accept_entry(self.entry.text)
             self.entry.text = ""
             check_feature(draft.feature)
-        except (QualityError, EntryError) as error:
+        except (QualityError, InvalidEntryError) as error:
             self.desk.show_refusal(str(error))
             return
         row = make_feature_row(draft.feature, self.program_name, draft.feature_id)
@@ -330,7 +332,7 @@ class FeaturesSection(QualitySection):
         """Ask for confirmation, and then stop measuring the selected feature (F4)."""
         row = self.selected_feature
         if row is None:
-            self.desk.say(self.find_missing_precondition())
+            self.desk.say(self.find_unmet_precondition())
             return
         asked = tr("STOP MEASURING {name}? READINGS STAY STORED. Y: STOP   N: CONTINUE")
         done = partial(self.desk.say, tr(Message("{name} REMOVED", name=row.name)))
@@ -345,7 +347,7 @@ class FeaturesSection(QualitySection):
 
     def _write(self, operation: Callable[..., object], done: Callable[[], None], change: str) -> None:
         text = Message("measured features of {program}: {change}", program=self.program_name, change=change)
-        self.watch.parts_book.write_change(
+        self.watch.production_records.write_change(
             ProtectedChange.FEATURES, operation, done, self.watch.report_refusal, text
         )
 
@@ -355,13 +357,13 @@ class FeaturesSection(QualitySection):
             return
         self.desk.clear_prompt_line()
         if not self.desk.is_refused(ProtectedChange.FEATURES):
-            self.desk.try_save(self.plan.toggle_waiting)
+            self.desk.try_save(self.plan.toggle_measurement_wait)
 
     def prompt_text(self) -> str:
         """Return the prompt that explains the current keys."""
         if self.draft is not None:
             return "FILL IN THE FIELDS. F6: SAVE   ESC: CANCEL"
-        return self.find_missing_precondition() or (
+        return self.find_unmet_precondition() or (
             "ENTER: CHANGE FEATURE   F2: NEW FEATURE   ESC: BACK TO LIST"
         )
 

@@ -51,7 +51,7 @@ def _names(store: Store, wanted: str | None) -> list[str]:
     """Return the requested program name, or the names of all programs with stored data."""
     from core.store.production import measured_parts, part_cycles
 
-    known = {row.program for row in store.runs.read_records()}
+    known = {row.program for row in store.runs.read_run_records()}
     with store.read() as connection:
         known |= {row.program for row in measured_parts.read_features(connection)}
         known |= part_cycles.programs(connection)
@@ -118,13 +118,13 @@ def _capability(data: PartsData, number: int) -> dict[str, object] | None:
     """Return Cp, Cpk, Pp and Ppk of a feature, or None if there are too few readings."""
     from dataclasses import asdict
 
-    from app.extras.quality.parts_data import make_feature
+    from app.extras.quality.parts_data import make_measured_feature
     from core.extras.quality.control_charts import QualityError, calculate_capability
 
     row = next(each for each in data.features if each.id == number)
     values = [each.value for each in data.select_readings(number)]
     try:
-        return asdict(calculate_capability(values, *make_feature(row).limits, row.sample))
+        return asdict(calculate_capability(values, *make_measured_feature(row).limits, row.sample))
     except QualityError:
         return None
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from app.desk.status.formats import MM_PER_INCH
 from app.production.cycle_recorder import COMPLETE
-from app.production.parts_book import MAX_ROWS, PartsBook
+from app.production.parts_book import MAX_ROWS, ProductionRecords
 from core.file_replacement import write_atomically
 from core.store.production import measured_parts, part_cycles
 from core.store.production.measured_parts import FeatureRow, ReadingRow
@@ -34,13 +34,13 @@ _DAYS = timedelta(days=2)
 class PartsData:
     """Stored data of the parts of one program. In all tables, the oldest rows are first.
 
-    ``last_corrections`` contains the number of the latest change of each offset axis.
+    ``last_change_numbers`` contains the number of the latest change of each offset axis.
     """
 
     program_name: str = ""
     features: tuple[FeatureRow, ...] = ()
     readings: tuple[ReadingRow, ...] = ()
-    last_corrections: dict[tuple[str, int, str], int] = field(default_factory=dict)
+    last_change_numbers: dict[tuple[str, int, str], int] = field(default_factory=dict)
     cycles: tuple[CycleRow, ...] = ()
     corrections: tuple[CorrectionRow, ...] = ()
     recent_cycle_times: tuple[
@@ -64,11 +64,11 @@ class PartsData:
 
         A part with an unknown start time is included only if the offset was never changed.
         """
-        last = self.last_corrections.get((row.by_kind, row.number, make_feature(row).axis), 0)
+        last = self.last_change_numbers.get((row.by_kind, row.number, make_measured_feature(row).axis), 0)
         return tuple(each for each in self.select_readings(row.id) if not last or each.offset_change >= last)
 
 
-def make_feature(row: FeatureRow) -> MeasuredFeature:
+def make_measured_feature(row: FeatureRow) -> MeasuredFeature:
     """Return the measured feature that a stored row describes."""
     from core.extras.quality.measured_feature import CorrectingOffset, FeatureKind, MeasuredFeature
 
@@ -125,7 +125,7 @@ def read_parts_data(store: Store, program: str, max_rows: int = MAX_ROWS) -> Par
         )
 
 
-def get_loaded_parts_data(book: PartsBook) -> PartsData:
+def get_loaded_parts_data(book: ProductionRecords) -> PartsData:
     """Return the data of the loaded program from the parts book.
 
     The result is empty while the data are still being read.
@@ -156,7 +156,7 @@ def make_csv_rows(data: PartsData) -> Iterator[tuple[object, ...]]:
     """Yield the CSV cells of each reading in the order of ``CSV_COLUMNS``."""
     features = {row.id: row for row in data.features}
     for each in data.readings:
-        feature, per = make_feature(features[each.feature]), _PER[each.unit]
+        feature, per = make_measured_feature(features[each.feature]), _PER[each.unit]
         low, high = feature.limits
         nominal_and_limits = (round(value / per, 7) for value in (feature.nominal, low, high))
         good = "yes" if feature.good(each.value) else "no"

@@ -12,7 +12,7 @@ from PySide6.QtGui import QPainter, QPaintEvent, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.extras.quality.section import ChartDrawing, Plot, PlotCurve, PlotLevel
+from app.extras.quality.section import ChartDrawing, HorizontalLine, Plot, PlotCurve
 from app.screen import chart
 from app.screen.chart import Chart, find_curve_color, make_line_pen, set_curve_points
 from app.screen.screen_theme import ALIGN_CENTER, ScreenTheme, ThemedPainter, draw_raw_text
@@ -67,7 +67,9 @@ class PlotsPane(QWidget):
         self._chart.setVisible(bool(plots) and not barred)
         self._chart.remove_plots()
         if not barred:
-            across = [float(each) for plot in plots for curve in plot.curves for each in curve.part_numbers]
+            across = [
+                float(each) for plot in plots for curve in plot.curves for each in curve.part_sequence_numbers
+            ]
             for plot in plots:
                 self._draw(plot, (min(across), max(across)))
         self._chart.apply_theme()
@@ -103,7 +105,7 @@ class PlotsPane(QWidget):
             self._curve(drawn, curve)
         self._range(drawn, plot, across)
         self._title(drawn, plot.title)
-        for level in plot.levels:
+        for level in plot.horizontal_lines:
             self._level(drawn, level)
         if plot.violation_points:
             x, y = (np.asarray(each) for each in zip(*plot.violation_points, strict=True))
@@ -115,14 +117,14 @@ class PlotsPane(QWidget):
             drawn.add_item(ring)
 
     def _curve(self, drawn: chart.ChartPlot, curve: PlotCurve) -> None:
-        colour = find_curve_color(self.theme, curve.color_number)
-        x, y = curve.part_numbers, curve.values
-        if curve.has_steps and len(x) > 1:
+        colour = find_curve_color(self.theme, curve.color_index)
+        x, y = curve.part_sequence_numbers, curve.values
+        if curve.is_stepped and len(x) > 1:
             x, y = np.repeat(x, 2)[1:], np.repeat(y, 2)[:-1]
         set_curve_points(drawn.add_curve(make_line_pen(colour)), x, y)
         if curve.has_dots:
             dots = pg.ScatterPlotItem(
-                x=curve.part_numbers,
+                x=curve.part_sequence_numbers,
                 y=curve.values,
                 symbol="o",
                 size=1.0 * self.theme.unit_px,
@@ -130,13 +132,13 @@ class PlotsPane(QWidget):
                 brush=colour,
             )
             drawn.add_item(dots)
-        if curve.name and len(curve.part_numbers):
+        if curve.name and len(curve.part_sequence_numbers):
             label = pg.TextItem(curve.name, color=colour, anchor=(1.1, 0.5))
             label.setFont(self.theme.make_font(1.7, is_bold=True))
-            label.setPos(float(curve.part_numbers[-1]), float(curve.values[-1]))
+            label.setPos(float(curve.part_sequence_numbers[-1]), float(curve.values[-1]))
             drawn.add_item(label)
 
-    def _level(self, drawn: chart.ChartPlot, level: PlotLevel) -> None:
+    def _level(self, drawn: chart.ChartPlot, level: HorizontalLine) -> None:
         pen = make_line_pen(self.theme.get_color(_INKS[level.line_type]), _STYLES[level.line_type])
         drawn.add_item(pg.InfiniteLine(level.value, angle=0, pen=pen))
 
@@ -146,7 +148,7 @@ class PlotsPane(QWidget):
         All plots have the same horizontal range.
         """
         values = [float(each) for curve in plot.curves for each in curve.values]
-        values += [level.value for level in plot.levels]
+        values += [level.value for level in plot.horizontal_lines]
         low, high = min(values), max(values)
         room = _ROOM * (high - low) or max(abs(high) * 0.01, 1e-4)
         drawn.vb.setYRange(low - room, high + 4.5 * room, padding=0)

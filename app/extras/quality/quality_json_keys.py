@@ -7,12 +7,12 @@ from core.extras.quality.production_stops import StopReasonTotal
 from core.json_keys import JsonOutput, declare_keys, declare_row_keys, prefix_keys
 from core.store import table_keys
 from core.store.production.measured_parts import FeatureRow, ReadingRow
-from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.production.part_cycles import CycleRow, ProductionStopRow
 from core.store.production.tool_lives import InsertChange, ToolLifeRow
 from core.store.store_rows import EventRow
 
 _READING = declare_row_keys("", ReadingRow, table_keys.READING_COLUMNS + table_keys.OFFSET_CHANGE_COLUMNS)
-_STOP = declare_row_keys("", StopRow, table_keys.STOP_COLUMNS)
+_STOP = declare_row_keys("", ProductionStopRow, table_keys.STOP_COLUMNS)
 _LIFE = declare_row_keys("", ToolLifeRow, table_keys.TOOL_LIFE_COLUMNS)
 _INSERT = declare_row_keys("", InsertChange, table_keys.INSERT_CHANGE_COLUMNS)
 PARTS_OUTPUT = JsonOutput(

@@ -11,14 +11,14 @@ from app.desk.status.formats import NO_VALUE
 from app.desk.translation import tr
 from app.extras.quality.parts_data import BOOK_KEY, get_loaded_parts_data, read_parts_data
 from app.extras.quality.sample_plan import SamplePlan
-from app.production.parts_watch import PartsWatch
-from app.special.special_functions import PageFunction, SpecialFunction, SpecialFunctionList
+from app.production.parts_watch import ProductionMonitor
+from app.special.special_functions import SeparatePageFunction, SpecialFunction, SpecialFunctionsModel
 from core.machine.machine_model import Machine
 
 MEASURED_PARTS_PAGE = "MEASURED PARTS"  # name of the page in app.screen.page_table
 
 
-class MeasuredPartsFunction(PageFunction):
+class MeasuredPartsFunction(SeparatePageFunction):
     """Special function that shows the numbers of features and readings, and the measurements due."""
 
     name = "MEASURED PARTS"
@@ -26,14 +26,16 @@ class MeasuredPartsFunction(PageFunction):
     page = MEASURED_PARTS_PAGE
     key_hint = "Press Enter to open the page, or press W in the main menu."
 
-    def make_fact_rows(self) -> tuple[TableRow, ...]:
+    def make_information_rows(self) -> tuple[TableRow, ...]:
         """Return rows with the numbers of features and readings, and with the measurements that are due."""
-        watch = self.desk.page_registry.find_model(PartsWatch)
-        if watch is None or watch.parts_book.lock_reason:
+        watch = self.desk.page_registry.find_model(ProductionMonitor)
+        if watch is None or watch.production_records.lock_reason:
             return (
-                TableRow((tr("STORED"), watch.parts_book.lock_reason if watch is not None else NO_VALUE)),
+                TableRow(
+                    (tr("STORED"), watch.production_records.lock_reason if watch is not None else NO_VALUE)
+                ),
             )
-        data = get_loaded_parts_data(watch.parts_book)
+        data = get_loaded_parts_data(watch.production_records)
         return (
             TableRow((tr("FEATURES"), str(len(data.features)))),
             TableRow((tr("READINGS"), str(len(data.readings)))),
@@ -47,18 +49,20 @@ class MeasuredPartsFunction(PageFunction):
 
 def attach_quality(desk: Desk, machine: Machine) -> None:
     """Attach measured parts to TurnDesk if production data are available."""
-    watch = desk.page_registry.find_model(PartsWatch)
+    watch = desk.page_registry.find_model(ProductionMonitor)
     if watch is None:
         return
-    watch.parts_book.feature_readers[BOOK_KEY] = read_parts_data
+    watch.production_records.feature_readers[BOOK_KEY] = read_parts_data
     plan = SamplePlan(desk, watch)
     watch.production_plans.append(plan)
     desk.page_registry.attach_model(
-        QualityFunctions(lambda: _sections(desk, machine, watch, plan), watch.parts_book.worker)
+        QualitySectionList(lambda: _sections(desk, machine, watch, plan), watch.production_records.worker)
     )
 
 
-def _sections(desk: Desk, machine: Machine, watch: PartsWatch, plan: SamplePlan) -> Sequence[SpecialFunction]:
+def _sections(
+    desk: Desk, machine: Machine, watch: ProductionMonitor, plan: SamplePlan
+) -> Sequence[SpecialFunction]:
     """Return the sections of the MEASURED PARTS page.
 
     The sections are imported at the first call, so that TurnDesk starts faster.
@@ -71,7 +75,7 @@ def _sections(desk: Desk, machine: Machine, watch: PartsWatch, plan: SamplePlan)
 SectionFactory = Callable[[], Sequence[SpecialFunction]]
 
 
-class QualityFunctions(SpecialFunctionList):
+class QualitySectionList(SpecialFunctionsModel):
     """List of the sections of the MEASURED PARTS page.
 
     Readings of a gauge are used only while the readings section is displayed.
@@ -98,19 +102,19 @@ class QualityFunctions(SpecialFunctionList):
     def functions(self, _none: Sequence[SpecialFunction]) -> None:
         """Ignore the value, because the sections are created by the getter."""
 
-    def process_results(self) -> None:
+    def process_worker_results(self) -> None:
         """Process received gauge readings. This method is called once per frame.
 
         A reading belongs to the feature that is displayed when the reading arrives.
         """
         for section in self.functions:
-            section.process_wire_input(is_displayed=section is self.shown_function)
+            section.process_device_input(is_displayed=section is self.shown_function)
 
     def on_open(self) -> None:
         """Open the page and discard earlier gauge readings, because their parts are not known."""
         super().on_open()
         for section in self.functions:
-            section.process_wire_input(is_displayed=False)
+            section.process_device_input(is_displayed=False)
 
     def close(self) -> None:
         """Finish pending work of the sections.

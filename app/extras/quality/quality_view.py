@@ -11,10 +11,10 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
-from app.extras.quality.quality_setup import QualityFunctions
+from app.extras.quality.quality_setup import QualitySectionList
 from app.extras.quality.section import QualitySection
 from app.screen.page_base import PageHost
-from app.special.special_view import LETTER_PAD_HEIGHT, LIST, PAD, SpecialPage
+from app.special.special_view import LETTER_PAD_HEIGHT, LIST, PAD, SpecialFunctionsPage
 from core.executor.snapshot import Snapshot
 
 if TYPE_CHECKING:
@@ -31,16 +31,16 @@ def _pane_class() -> type[PlotsPane]:
     return PlotsPane
 
 
-class MeasuredPartsPage(SpecialPage):
+class MeasuredPartsPage(SpecialFunctionsPage):
     """Screen page for measured parts.
 
     The page works like the special functions page, but also has a chart that is loaded at its first use.
     """
 
     NAME = "MEASURED PARTS"
-    model: QualityFunctions
+    model: QualitySectionList
 
-    def __init__(self, host: PageHost, model: QualityFunctions, parent: QWidget) -> None:
+    def __init__(self, host: PageHost, model: QualitySectionList, parent: QWidget) -> None:
         super().__init__(host, model, parent)
         self.function_list.title = self.NAME
         self.chart: PlotsPane | None = None
@@ -60,7 +60,7 @@ class MeasuredPartsPage(SpecialPage):
         if self.chart is not None and isinstance(shown, QualitySection) and share:
             self.chart.show_drawing(shown.make_chart())
 
-    def prepare_slice(self) -> bool:
+    def continue_preparation(self) -> bool:
         """Create the sections, the chart and its plots step by step before the page is first shown.
 
         Returns whether more steps remain.

@@ -7,24 +7,28 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from app.desk.arithmetic import EntryError, evaluate_expression
+from app.desk.arithmetic import InvalidEntryError, evaluate_expression
 from app.desk.desk import Desk
 from app.desk.pages.table_content import FunctionKey, TableContent, TableRow
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.desk.translation import tr
-from app.extras.quality.parts_data import make_feature, write_readings_csv
+from app.extras.quality.parts_data import make_measured_feature, write_readings_csv
 from app.extras.quality.section import (
     ChartDrawing,
     QualitySection,
     convert_entry_to_mm,
     format_deviation,
     format_size,
-    get_diameter_sign,
+    get_diameter_symbol,
 )
 from app.extras.quality.serial_gauge import Gauge, GaugeReading, NoGauge
-from app.extras.quality.wear_correction import CorrectionPreview, make_correction, make_proposal
+from app.extras.quality.wear_correction import (
+    CorrectionPreview,
+    make_correction_proposal,
+    make_offset_correction,
+)
 from app.offsets.offset_changes import ConfirmedOffsetChanges, OffsetHistory, find_change_refusal
-from app.production.parts_watch import PartsWatch
+from app.production.parts_watch import ProductionMonitor
 from core.access.access_table import ProtectedChange
 from core.executor.snapshot import Snapshot
 from core.extras.quality.control_charts import QualityError
@@ -60,7 +64,7 @@ class ReadingsSection(QualitySection):
     use = "measure a part and see the correction needed"
 
     def __init__(
-        self, desk: Desk, parts_watch: PartsWatch, csv_folder: Path, gauge: Gauge | None = None
+        self, desk: Desk, parts_watch: ProductionMonitor, csv_folder: Path, gauge: Gauge | None = None
     ) -> None:
         super().__init__(desk, parts_watch)
         self.csv_folder = csv_folder
@@ -88,7 +92,7 @@ class ReadingsSection(QualitySection):
         While a correction is proposed, the table shows the effect of the correction instead.
         """
         self.limit_selection()
-        mode, feature = self.control_unit, self.selected_feature
+        mode, feature = self.control_length_unit, self.selected_feature
         self.chart_share = CHART_HEIGHT_RATIO if self.correction_effect.is_question_open else 0.0
         made = self.correction_effect.make_table(mode) if self.correction_effect.is_question_open else None
         if made is not None:
@@ -119,15 +123,19 @@ class ReadingsSection(QualitySection):
             question,
             self.entry.text,
             notes,
-            raw_columns=frozenset({0}),
-            number_columns=frozenset({2}),
+            untranslated_columns=frozenset({0}),
+            numeric_columns=frozenset({2}),
         )
 
     def _row(self, row: FeatureRow) -> TableRow:
-        mode, feature, taken = self.control_unit, make_feature(row), self.parts_data.select_readings(row.id)
-        nominal = get_diameter_sign(row) + format_size(row.nominal, mode)
+        mode, feature, taken = (
+            self.control_length_unit,
+            make_measured_feature(row),
+            self.parts_data.select_readings(row.id),
+        )
+        nominal = get_diameter_symbol(row) + format_size(row.nominal, mode)
         if not taken:
-            return TableRow((row.name, nominal, "", "", "", tr("NOT MEASURED YET")), False, Tone.OFF)
+            return TableRow((row.name, nominal, "", "", "", tr("NOT MEASURED YET")), False, StatusTone.OFF)
         last = taken[-1]
         good = feature.good(last.value)
         off = format_deviation(last.value - feature.middle, mode)
@@ -136,11 +144,11 @@ class ReadingsSection(QualitySection):
             row.name,
             nominal,
             str(last.part),
-            get_diameter_sign(row) + format_size(last.value, mode),
+            get_diameter_symbol(row) + format_size(last.value, mode),
             off,
             words,
         )
-        return TableRow(cells, good, Tone.RUN if good else Tone.ALARM)
+        return TableRow(cells, good, StatusTone.RUN if good else StatusTone.ALARM)
 
     def _gauge_words(self) -> str:
         return self.gauge.status_text
@@ -168,14 +176,12 @@ class ReadingsSection(QualitySection):
 
     def prompt_text(self) -> str:
         """Return the prompt for entering a reading, or the reason why no reading can be entered."""
-        return self.find_missing_precondition() or (
-            "TYPE THE MEASURED SIZE AND PRESS ENTER. ESC: BACK TO LIST"
-        )
+        return self.find_unmet_precondition() or ("TYPE THE MEASURED SIZE AND PRESS ENTER. ESC: BACK TO LIST")
 
     def make_chart(self) -> ChartDrawing:
         """Return the chart of a proposed correction."""
         return (
-            self.correction_effect.make_chart(self.control_unit)
+            self.correction_effect.make_chart(self.control_length_unit)
             if self.correction_effect.is_question_open
             else ChartDrawing()
         )
@@ -185,29 +191,29 @@ class ReadingsSection(QualitySection):
     def accept_entry(self, text: str) -> bool:
         """Store the typed size of the selected feature, and return whether the size was accepted.
 
-        Raises EntryError if the text is not a valid size.
+        Raises InvalidEntryError if the text is not a valid size.
         """
         feature = self.selected_feature
         if feature is None:
-            self.desk.say(self.find_missing_precondition())
+            self.desk.say(self.find_unmet_precondition())
             return False
-        mode = self.control_unit
+        mode = self.control_length_unit
         value = convert_entry_to_mm(evaluate_expression(text), mode)
         return self._offer(NewReading(feature, self.part_number, value, mode.name, "typed"))
 
     def _offer(self, reading: NewReading) -> bool:
         """Store a reading, after confirmation if its size is implausible.
 
-        Raises EntryError if the size is 0 or less.
+        Raises InvalidEntryError if the size is 0 or less.
         """
-        row, feature = reading.feature, make_feature(reading.feature)
+        row, feature = reading.feature, make_measured_feature(reading.feature)
         if reading.size_mm <= 0.0:
-            raise EntryError(
+            raise InvalidEntryError(
                 Message("{row} must be more than 0; type the measured size, not the deviation", row=row.name)
             )
         if abs(reading.size_mm - feature.middle) > OUTLIER_TOLERANCES * feature.width:
             asked = tr("{name} {size} FAR OUT OF TOLERANCE. Y: SAVE   N: MEASURE AGAIN")
-            shown = format_size(reading.size_mm, self.control_unit)
+            shown = format_size(reading.size_mm, self.control_length_unit)
             self.desk.ask_operator(
                 tr(Message(asked, name=row.name, size=shown)), partial(self._keep, reading)
             )
@@ -227,7 +233,7 @@ class ReadingsSection(QualitySection):
             taken.source_name,
             taken.gauge_name,
         )
-        self.watch.parts_book.write_change(
+        self.watch.production_records.write_change(
             ProtectedChange.READINGS,
             lambda c: measured_parts.add_reading(c, row),
             partial(self._on_reading_saved, taken),
@@ -250,7 +256,7 @@ class ReadingsSection(QualitySection):
                     text,
                     name=reading.feature.name,
                     part=reading.part_number,
-                    size=format_size(reading.size_mm, self.control_unit),
+                    size=format_size(reading.size_mm, self.control_length_unit),
                 )
             )
         )
@@ -262,14 +268,14 @@ class ReadingsSection(QualitySection):
         feature = self.selected_feature
         taken = self.parts_data.select_readings(feature.id) if feature is not None else ()
         if feature is None or not taken:
-            self.desk.say(self.find_missing_precondition() or tr("FEATURE NOT MEASURED YET"))
+            self.desk.say(self.find_unmet_precondition() or tr("FEATURE NOT MEASURED YET"))
             return
         last = taken[-1]
         asked = tr("PRESS Y TO REMOVE READING {size} FROM PART {part}, N TO KEEP IT")
         done = partial(self.desk.say, tr("READING REMOVED"))
         self.desk.ask_operator(
-            tr(Message(asked, size=format_size(last.value, self.control_unit), part=last.part)),
-            lambda: self.watch.parts_book.write_change(
+            tr(Message(asked, size=format_size(last.value, self.control_length_unit), part=last.part)),
+            lambda: self.watch.production_records.write_change(
                 ProtectedChange.READINGS,
                 lambda c: measured_parts.void_reading(c, last.id),
                 done,
@@ -293,7 +299,7 @@ class ReadingsSection(QualitySection):
         if why:
             self.desk.say(why)
 
-    def process_wire_input(self, *, is_displayed: bool) -> None:
+    def process_device_input(self, *, is_displayed: bool) -> None:
         """Store received gauge readings for the selected feature if the section is displayed.
 
         This method is called once per frame.
@@ -309,7 +315,7 @@ class ReadingsSection(QualitySection):
     def _measured(self, found: GaugeReading) -> None:
         feature = self.selected_feature
         if feature is None:
-            self.desk.say(self.find_missing_precondition())
+            self.desk.say(self.find_unmet_precondition())
             return
         unit = found.unit or self.gauge.default_unit
         try:
@@ -318,7 +324,7 @@ class ReadingsSection(QualitySection):
                     feature, self.part_number, found.value * MM_PER_UNIT[unit], unit, "gauge", self.gauge.name
                 )
             )
-        except EntryError as error:
+        except InvalidEntryError as error:
             self.desk.show_refusal(str(error))
 
     def close(self) -> None:
@@ -334,21 +340,21 @@ class ReadingsSection(QualitySection):
         """
         feature = self.selected_feature
         if feature is None:
-            self.desk.say(self.find_missing_precondition())
+            self.desk.say(self.find_unmet_precondition())
             return
         if not self._settled():
             return
         try:
-            found = make_proposal(self.parts_data, feature, self.control_unit)
+            found = make_correction_proposal(self.parts_data, feature, self.control_length_unit)
             if found.reason:
-                mean = format_size(found.mean_size_mm, self.control_unit)
+                mean = format_size(found.mean_size_mm, self.control_length_unit)
                 self.desk.say(f"{feature.name} {mean}: {tr(found.reason)}")
                 return
-            change = make_correction(found, self.desk, self.control_unit)
-        except (QualityError, EntryError) as error:
+            change = make_offset_correction(found, self.desk, self.control_length_unit)
+        except (QualityError, InvalidEntryError) as error:
             self.desk.show_refusal(str(error))
             return
-        asked = tr(Message("{words}. Y: APPLY   N: DO NOT APPLY", words=change.text))
+        asked = tr(Message("{words}. Y: APPLY   N: DO NOT APPLY", words=change.correction_text))
         self.desk.ask_operator(asked, partial(self._correct, feature))
         taken = tuple((each.part, each.value) for each in self.parts_data.select_readings(feature.id))
         self.correction_effect.show_proposal(self.desk.prompt_notice, found, change, taken)
@@ -358,7 +364,7 @@ class ReadingsSection(QualitySection):
 
         This prevents a second proposal while an earlier correction is still being stored.
         """
-        settled = self.watch.parts_book.is_settled and not self.desk.offset_book.is_saving
+        settled = self.watch.production_records.is_up_to_date and not self.desk.offset_book.is_saving
         if not settled:
             self.desk.say(tr("STILL READING STORED DATA. PRESS F8 AGAIN"))
         return settled
@@ -368,10 +374,12 @@ class ReadingsSection(QualitySection):
         if not self._settled():
             return
         try:
-            change = make_correction(
-                make_proposal(self.parts_data, feature, self.control_unit), self.desk, self.control_unit
+            change = make_offset_correction(
+                make_correction_proposal(self.parts_data, feature, self.control_length_unit),
+                self.desk,
+                self.control_length_unit,
             )
-        except (QualityError, EntryError) as error:
+        except (QualityError, InvalidEntryError) as error:
             self.desk.show_refusal(str(error))
             return
         why = self.desk.offset_book.change_fields(
@@ -381,7 +389,7 @@ class ReadingsSection(QualitySection):
             self.desk.say(why)
             return
         self._last = change.offset_kind, change.offset_number, change.reason
-        self.desk.show_success(tr(Message("{words}; APPLIES FROM NEXT PART", words=change.text)))
+        self.desk.show_success(tr(Message("{words}; APPLIES FROM NEXT PART", words=change.correction_text)))
 
     def undo_correction(self) -> None:
         """Undo the last correction after confirmation (F4).
@@ -391,8 +399,8 @@ class ReadingsSection(QualitySection):
         why = self._undo_barred()
         if not why and self._last is not None:
             kind, number, _reason = self._last
-            questions = ConfirmedOffsetChanges(OffsetHistory(self.desk, kind, self.control_unit))
-            why = questions.ask_undo(kind, number, tr("CORRECTION UNDONE"))
+            questions = ConfirmedOffsetChanges(OffsetHistory(self.desk, kind, self.control_length_unit))
+            why = questions.ask_to_undo_change(kind, number, tr("CORRECTION UNDONE"))
         if why:
             self.desk.say(why)
 
@@ -410,11 +418,11 @@ class ReadingsSection(QualitySection):
 
     def write_csv_file(self) -> None:
         """Write the readings of the program to a CSV file on a worker (F6)."""
-        if self.find_missing_precondition():
-            self.desk.say(self.find_missing_precondition())
+        if self.find_unmet_precondition():
+            self.desk.say(self.find_unmet_precondition())
             return
         data, folder = self.parts_data, self.csv_folder
-        self.watch.parts_book.worker.enqueue_work(
+        self.watch.production_records.worker.enqueue_work(
             lambda: write_readings_csv(data, folder), self._written, self.watch.report_refusal
         )
 

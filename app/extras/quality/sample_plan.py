@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from app.desk.desk import Desk
 from app.desk.translation import tr
 from app.extras.quality.parts_data import PartsData, get_loaded_parts_data
-from app.production.parts_watch import PartsWatch
+from app.production.parts_watch import ProductionMonitor
 from core.executor.snapshot import Snapshot
 from core.message import Message
 from core.store.store_errors import StoreError
@@ -35,7 +35,7 @@ def make_due_notice(due_parts: dict[str, int]) -> str:
     return tr(Message("MEASURE PART {part}: {names}", part=part, names=names)) if due_parts else ""
 
 
-def find_block_reason(due_parts: dict[str, int]) -> str:
+def find_wait_reason(due_parts: dict[str, int]) -> str:
     """Return the reason why the next part must wait for measurements, or an empty string."""
     part, names = _newest(due_parts)
     return (
@@ -56,21 +56,21 @@ class SamplePlan:
     """Sampling plan of the loaded program. It can block the next part until measurements are entered."""
 
     desk: Desk
-    parts_watch: PartsWatch
+    parts_watch: ProductionMonitor
     # measurements by number of parts made, valid for ``_planned_of``
     _plans: dict[int, dict[str, int]] = field(default_factory=dict)
     _planned_of: object = None
     _waits: tuple[str, bool] = ("", False)  # program, and whether its parts wait for measurements
 
-    def find_block_reason(self, snapshot: Snapshot) -> str:
+    def find_lock_reason(self, snapshot: Snapshot) -> str:
         """Return the reason why the next part must wait for measurements, or an empty string.
 
         The part in progress counts as made.
         """
-        if not self.waits_for_measurements:
+        if not self.is_measurement_wait_enabled:
             return ""
         made = self.desk.program_runs.part_counter.part_count + (1 if snapshot.counts else 0)
-        return find_block_reason(self._planned(made))
+        return find_wait_reason(self._planned(made))
 
     def find_reminder(self) -> str:
         """Return the prompt text that names the features to measure, or an empty string if none is due."""
@@ -81,14 +81,14 @@ class SamplePlan:
 
         The result is cached until the data change.
         """
-        data = get_loaded_parts_data(self.parts_watch.parts_book)
+        data = get_loaded_parts_data(self.parts_watch.production_records)
         if made not in self._plans or self._planned_of is not data:
             kept = self._plans if self._planned_of is data else {}
             self._plans, self._planned_of = {**kept, made: find_due_parts(data, made)}, data
         return self._plans[made]
 
     @property
-    def waits_for_measurements(self) -> bool:
+    def is_measurement_wait_enabled(self) -> bool:
         """Return whether the next part of this program waits until the required measurements are done."""
         program = self.parts_watch.program_name
         if self._waits[0] != program:
@@ -99,13 +99,13 @@ class SamplePlan:
             self._waits = program, kept
         return self._waits[1]
 
-    def toggle_waiting(self) -> None:
+    def toggle_measurement_wait(self) -> None:
         """Turn waiting for required measurements on or off for the loaded program.
 
         The setting is saved in the background. Raises StoreError if it cannot be queued for saving. A later
         write error is not raised.
         """
-        on, program = not self.waits_for_measurements, self.parts_watch.program_name
+        on, program = not self.is_measurement_wait_enabled, self.parts_watch.program_name
         self._waits = program, on
         persistence = self.desk.program_runs.part_counter.persistence
         persistence.save_setting(_key(program), on or None)

@@ -11,9 +11,9 @@ import numpy.typing as npt
 from app.desk.desk import Desk
 from app.desk.status.formats import format_fixed
 from app.extras.quality.parts_data import PartsData, get_loaded_parts_data
-from app.offsets.offset_values import ValueMode, convert_to_mm
-from app.production.parts_watch import PartsWatch
-from app.special.special_functions import NumericFunction
+from app.offsets.offset_values import UnitMode, convert_to_mm
+from app.production.parts_watch import ProductionMonitor
+from app.special.special_functions import NumericEntryFunction
 from core.extras.quality.control_charts import ControlChart, ControlChartPair, find_rule_violations
 from core.extras.quality.measured_feature import CorrectionProposal
 from core.store.production.measured_parts import FeatureRow
@@ -26,20 +26,20 @@ FloatArray = npt.NDArray[np.float64]
 class PlotCurve:
     """Curve in a plot whose horizontal axis is the part number.
 
-    ``color_number`` selects the color. ``has_dots`` draws a dot at each point. ``has_steps`` draws the
+    ``color_index`` selects the color. ``has_dots`` draws a dot at each point. ``is_stepped`` draws the
     curve as steps.
     """
 
-    part_numbers: FloatArray
+    part_sequence_numbers: FloatArray
     values: FloatArray
-    color_number: int = 0
+    color_index: int = 0
     has_dots: bool = True
     name: str = ""
-    has_steps: bool = False
+    is_stepped: bool = False
 
 
 @dataclass(frozen=True, slots=True)
-class PlotLevel:
+class HorizontalLine:
     """Horizontal line in a plot.
 
     ``kind`` is centre (the center line), limit (a control limit) or tolerance.
@@ -59,7 +59,7 @@ class Plot:
 
     title: str = ""
     curves: tuple[PlotCurve, ...] = ()
-    levels: tuple[PlotLevel, ...] = ()
+    horizontal_lines: tuple[HorizontalLine, ...] = ()
     violation_points: tuple[tuple[float, float], ...] = ()
     bars: tuple[tuple[str, float], ...] = ()
     x_label: str = ""  # label of the horizontal axis
@@ -67,7 +67,7 @@ class Plot:
     @property
     def is_empty(self) -> bool:
         """Return whether the plot contains nothing to draw."""
-        return not (self.bars or any(len(curve.part_numbers) for curve in self.curves))
+        return not (self.bars or any(len(curve.part_sequence_numbers) for curve in self.curves))
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,9 +101,12 @@ def make_control_plots(
     """
     location = _plot(names[0], charts.location, _last_parts(part_numbers, charts.sample_size), unit_mm)
     if charts.sample_size == 1:
-        tolerance = tuple(PlotLevel(limit / unit_mm, "", "tolerance") for limit in limits)
+        tolerance = tuple(HorizontalLine(limit / unit_mm, "", "tolerance") for limit in limits)
         location = Plot(
-            location.title, location.curves, (*location.levels, *tolerance), location.violation_points
+            location.title,
+            location.curves,
+            (*location.horizontal_lines, *tolerance),
+            location.violation_points,
         )
     first = 1 if charts.sample_size == 1 else 0  # A moving range belongs to the later of its two parts.
     spread = _plot(names[1], charts.spread, _last_parts(part_numbers, charts.sample_size)[first:], unit_mm)
@@ -142,8 +145,8 @@ def make_correction_plot(
         has_dots=False,
         name=names[1],
     )
-    middle = PlotLevel(proposal.feature.middle / unit_mm, "", "centre")
-    tolerance = tuple(PlotLevel(limit / unit_mm, "", "tolerance") for limit in proposal.feature.limits)
+    middle = HorizontalLine(proposal.feature.middle / unit_mm, "", "centre")
+    tolerance = tuple(HorizontalLine(limit / unit_mm, "", "tolerance") for limit in proposal.feature.limits)
     return Plot(title, (PlotCurve(parts, sizes), now, then), (middle, *tolerance))
 
 
@@ -155,9 +158,9 @@ def _last_parts(parts: Sequence[int], size: int) -> FloatArray:
 def _plot(title: str, chart: ControlChart, x: FloatArray, unit: float) -> Plot:
     y = chart.point_values / unit
     levels = (
-        PlotLevel(chart.center_line / unit, "", "centre"),
-        PlotLevel(chart.upper_limit / unit, "", "limit"),
-        PlotLevel(chart.lower_limit / unit, "", "limit"),
+        HorizontalLine(chart.center_line / unit, "", "centre"),
+        HorizontalLine(chart.upper_limit / unit, "", "limit"),
+        HorizontalLine(chart.lower_limit / unit, "", "limit"),
     )
     points = sorted({finding.point_index for finding in find_rule_violations(chart)})
     marks = tuple((float(x[point]), float(y[point])) for point in points)
@@ -168,19 +171,19 @@ NO_PROGRAM_MESSAGE = "SELECT A PROGRAM FIRST. EACH PROGRAM HAS ITS OWN FEATURES"
 NO_FEATURE_MESSAGE = "NO FEATURES YET. ADD A FEATURE IN SECTION 1 WITH F2"
 
 
-class QualitySection(NumericFunction):
+class QualitySection(NumericEntryFunction):
     """Base class of the MEASURED PARTS sections, with stored data, program, unit and feature."""
 
     chart_share: float = 0.0  # ratio of the height for the chart below the table
 
-    def __init__(self, desk: Desk, parts_watch: PartsWatch) -> None:
+    def __init__(self, desk: Desk, parts_watch: ProductionMonitor) -> None:
         super().__init__(desk)
         self.watch = parts_watch
 
     @property
     def parts_data(self) -> PartsData:
         """Return the stored data of the loaded program."""
-        return get_loaded_parts_data(self.watch.parts_book)
+        return get_loaded_parts_data(self.watch.production_records)
 
     @property
     def program_name(self) -> str:
@@ -196,9 +199,9 @@ class QualitySection(NumericFunction):
         return self.desk.machine.program_language == "klartext"
 
     @property
-    def control_unit(self) -> ValueMode:
+    def control_length_unit(self) -> UnitMode:
         """Return the unit of length of the control, which applies to all entries and displayed values."""
-        return ValueMode(self.desk.read_snapshot().modal.metric, is_diameter=True)
+        return UnitMode(self.desk.read_snapshot().modal.metric, is_diameter=True)
 
     @property
     def selected_feature(self) -> FeatureRow | None:
@@ -221,29 +224,35 @@ class QualitySection(NumericFunction):
         """Move the selection to the last row if the selected row no longer exists."""
         self.marked = max(0, min(self.marked, self.row_count - 1))
 
-    def find_missing_precondition(self) -> str:
+    def find_unmet_precondition(self) -> str:
         """Return the reason why this section cannot be used, such as no program, or an empty string."""
         if not self.program_name:
             return NO_PROGRAM_MESSAGE
-        return self.watch.parts_book.lock_reason or ("" if self.parts_data.features else NO_FEATURE_MESSAGE)
+        return self.watch.production_records.lock_reason or (
+            "" if self.parts_data.features else NO_FEATURE_MESSAGE
+        )
 
 
-def format_size(size_mm: float, value_mode: ValueMode) -> str:
+def format_size(size_mm: float, value_mode: UnitMode) -> str:
     """Return a size in mm as text with a resolution of 0.001 mm or .00001 in."""
-    return format_fixed(size_mm, 3) if value_mode.is_metric else format_fixed(size_mm / value_mode.unit_mm, 5)
+    return (
+        format_fixed(size_mm, 3)
+        if value_mode.is_metric
+        else format_fixed(size_mm / value_mode.unit_length_mm, 5)
+    )
 
 
-def format_deviation(deviation_mm: float, value_mode: ValueMode) -> str:
+def format_deviation(deviation_mm: float, value_mode: UnitMode) -> str:
     """Return a deviation in mm as text with its sign, in the unit of ``value_mode``."""
     text = format_size(deviation_mm, value_mode)
     return text if not text.strip("0.") or text[0] not in "0123456789." else f"+{text}"
 
 
-def convert_entry_to_mm(value: float, value_mode: ValueMode) -> float:
+def convert_entry_to_mm(value: float, value_mode: UnitMode) -> float:
     """Convert a typed length from the unit of ``value_mode`` to mm."""
     return convert_to_mm(value, value_mode.is_metric)
 
 
-def get_diameter_sign(row: FeatureRow) -> str:
+def get_diameter_symbol(row: FeatureRow) -> str:
     """Return the diameter symbol if the feature is a diameter, or else an empty string."""
     return "Ø " if row.kind == "diameter" else ""

@@ -15,14 +15,14 @@ from app.extras.quality.gauge_table import GaugeModel
 from app.extras.quality.readings_section import ReadingsSection
 from app.extras.quality.sample_plan import SamplePlan
 from app.extras.quality.serial_gauge import SerialGauge
-from app.production.parts_watch import PartsWatch
+from app.production.parts_watch import ProductionMonitor
 from app.special.counter_functions import ToolLifeFunction
 from app.special.special_functions import SpecialFunction
 from core.machine.machine_model import Machine
 
 
 def make_sections(
-    desk: Desk, machine: Machine, watch: PartsWatch, sample_plan: SamplePlan
+    desk: Desk, machine: Machine, watch: ProductionMonitor, sample_plan: SamplePlan
 ) -> Sequence[SpecialFunction]:
     """Return the sections of the MEASURED PARTS page in display order.
 

@@ -66,7 +66,12 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _shift(store: Store, args: argparse.Namespace) -> Shift:
-    from app.extras.quality.shift_results import SHIFT_HOURS_SETTING, find_shift, get_shift_hours, make_period
+    from app.extras.quality.shift_results import (
+        SHIFT_HOURS_SETTING,
+        find_shift,
+        get_shift_hours,
+        make_report_period,
+    )
 
     if (args.since is None) != (args.until is None):
         raise CommandError("--from and --to must be used together; specify both", "from-and-to")
@@ -77,7 +82,7 @@ def _shift(store: Store, args: argparse.Namespace) -> Shift:
                 "back-and-times",
             )
         with convert_to_command_error(ValueError):
-            return make_period(args.since, args.until)
+            return make_report_period(args.since, args.until)
     if not 0 <= args.back <= 10_000:
         raise CommandError(
             Message("--back {back} is out of range; use 0 to 10000 shifts", back=args.back), "back"
@@ -120,7 +125,9 @@ def _text(found: ShiftResults) -> str:
             else ""
         )
         lines.append(
-            Message("{program}: {parts} parts{mean}", program=each.program, parts=each.part_count, mean=mean)
+            Message(
+                "{program}: {parts} parts{mean}", program=each.program_name, parts=each.part_count, mean=mean
+            )
         )
     lines += [
         Message(
@@ -139,7 +146,7 @@ def _make_json(results: ShiftResults) -> dict[str, object]:
 
     Lengths are in mm, durations are in seconds and times are in UTC. X of offsets is a radius.
     """
-    first, last = results.shift.utc_texts
+    first, last = results.shift.utc_time_texts
     share = results.availability
     return {
         "from": first,
@@ -148,7 +155,7 @@ def _make_json(results: ShiftResults) -> dict[str, object]:
         "parts": results.part_count,
         "programs": [
             {
-                "program": p.program,
+                "program": p.program_name,
                 "parts": p.part_count,
                 "no_part": dict(p.incomplete_cycles),
                 "cycle_times": list(p.cycle_times_s),
@@ -157,8 +164,8 @@ def _make_json(results: ShiftResults) -> dict[str, object]:
         ],
         "planned": share.planned_s if share is not None else 0.0,
         "producing": share.producing_s if share is not None else 0.0,
-        "stopped": results.stopped_s,
-        "not_recorded": results.unrecorded_s,
+        "stopped": results.total_stop_time_s,
+        "not_recorded": results.unrecorded_time_s,
         "stops": [row._asdict() for row in results.stop_rows],
         "reasons": [row._asdict() for row in results.stop_reasons],
         "alarms": [row._asdict() for row in results.alarms],

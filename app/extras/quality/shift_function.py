@@ -23,9 +23,9 @@ from app.extras.quality.shift_results import (
     find_shift,
     get_shift_hours,
 )
-from app.production.parts_watch import PartsWatch
+from app.production.parts_watch import ProductionMonitor
 from app.programs.atomic_files import FileOperationError, copy_to_medium, flush_folder
-from app.programs.removable_media import UsbStick, list_sticks
+from app.programs.removable_media import UsbStick, list_usb_sticks
 from app.special.backup_and_restore import BackupLocation
 from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Snapshot
@@ -59,8 +59,8 @@ class ShiftReportFunction(SpecialFunction):
         return len(self.save_locations)
 
     def _store(self) -> Store | None:
-        watch = self.desk.page_registry.find_model(PartsWatch)
-        return watch.parts_book.store if watch is not None else None
+        watch = self.desk.page_registry.find_model(ProductionMonitor)
+        return watch.production_records.store if watch is not None else None
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the table of the main results, or the list of save locations while that list is open."""
@@ -74,7 +74,7 @@ class ShiftReportFunction(SpecialFunction):
         rows = tuple(TableRow(each) for each in _rows(found))
         notes = (make_title(found, ""), *found.notes[:2])
         return TableContent(
-            "SHIFT REPORT", ("", ""), (0.36, 0.64), rows, notes=notes, raw_columns=frozenset({0, 1})
+            "SHIFT REPORT", ("", ""), (0.36, 0.64), rows, notes=notes, untranslated_columns=frozenset({0, 1})
         )
 
     def _sheet_of_places(self) -> TableContent:
@@ -82,7 +82,7 @@ class ShiftReportFunction(SpecialFunction):
         notes = ("Enter saves the report as HTML in the selected location.",)
         title, heads = "SHIFT REPORT  ·  SAVE TO:", ("PLACE", "FOLDER")
         return TableContent(
-            title, heads, (0.35, 0.65), rows, self.marked, notes=notes, raw_columns=frozenset({0, 1})
+            title, heads, (0.35, 0.65), rows, self.marked, notes=notes, untranslated_columns=frozenset({0, 1})
         )
 
     def _make(self) -> None:
@@ -143,13 +143,15 @@ class ShiftReportFunction(SpecialFunction):
             self.desk.say("REPORT IS NOT READY YET. WAIT A MOMENT")
         else:
             self.worker.enqueue_work(
-                lambda: _places(self.report_folder, list_sticks()), self._places_found, self.desk.show_refusal
+                lambda: _places(self.report_folder, list_usb_sticks()),
+                self._places_found,
+                self.desk.show_refusal,
             )
 
     def _places_found(self, places: tuple[BackupLocation, ...]) -> None:
         self.save_locations, self.marked = places, 0
 
-    def execute_row(self) -> bool:
+    def activate_selected_row(self) -> bool:
         """Save the report to the selected location, and return whether a location was selected."""
         if not self.save_locations or self.results is None:
             return False
@@ -177,7 +179,7 @@ def _rows(results: ShiftResults) -> list[tuple[str, str]]:
     rows = make_summary_rows(results)
     for each in results.program_results:
         mean = f", {sum(each.cycle_times_s) / len(each.cycle_times_s):.1f} s" if each.cycle_times_s else ""
-        rows.append((each.program, f"{each.part_count} {tr('PARTS')}{mean}"))
+        rows.append((each.program_name, f"{each.part_count} {tr('PARTS')}{mean}"))
     rows += [
         (tr(each.reason), f"{each.times} ×, {format_duration(each.seconds)}") for each in results.stop_reasons
     ]
@@ -190,11 +192,11 @@ def _calculate(store: Store, desk: Desk, back: int) -> ShiftResults:
     Raises StoreError if the data cannot be read.
     """
     now = datetime.now().astimezone()
-    watch = desk.page_registry.find_model(PartsWatch)
+    watch = desk.page_registry.find_model(ProductionMonitor)
     assert watch is not None
     store.write(lambda _connection: None).exception()  # waits until all earlier changes are stored
     shift = find_shift(get_shift_hours(store.settings.read_setting(SHIFT_HOURS_SETTING)), now, back)
-    return calculate_shift_results(store, shift, now.timestamp(), watch.parts_book.tool_kind)
+    return calculate_shift_results(store, shift, now.timestamp(), watch.production_records.tool_table_kind)
 
 
 def _places(folder: Path, plugged: Sequence[UsbStick]) -> tuple[BackupLocation, ...]:

@@ -8,21 +8,21 @@ from html import escape
 
 from app.desk.status.formats import format_duration, format_fixed, format_local_time
 from app.desk.translation import get_language, tr
-from app.extras.quality.parts_data import make_feature
+from app.extras.quality.parts_data import make_measured_feature
 from app.extras.quality.shift_results import ProgramResults, ShiftResults, parse_store_time
-from app.offsets.offset_values import format_signed
+from app.offsets.offset_values import format_signed_length
 from app.production.tool_life_watch import make_tool_life
 from app.report.html_tables import (
     HTML_END,
     make_drawing_block,
+    make_name_value_table,
     make_page_head,
-    make_pair_table,
     make_result_line,
     make_table,
 )
 from core.message import Message
 from core.store.production.measured_parts import FeatureRow, ReadingRow
-from core.store.store_rows import OffsetChange, OffsetKind, SecondaryRow, ToolRow
+from core.store.store_rows import OffsetChange, OffsetKind, SecondaryOffsetRow, ToolOffsetRow
 
 _WIDE, _HIGH = 900, 64  # size of the time line
 _MOST = 500  # maximum number of table rows
@@ -63,15 +63,15 @@ def make_summary_rows(results: ShiftResults) -> list[tuple[str, str]]:
         words = tr(
             Message(
                 "{share} %: in cycle for {run} of {planned}",
-                share=format_fixed(100.0 * share.producing_share, 1),
+                share=format_fixed(100.0 * share.producing_fraction, 1),
                 run=format_duration(share.producing_s),
                 planned=format_duration(share.planned_s),
             )
         )
         rows += [
             (tr("Availability"), words),
-            (tr("Stops"), f"{len(results.stop_rows)}, {format_duration(results.stopped_s)}"),
-            (tr("Not recorded"), format_duration(results.unrecorded_s)),
+            (tr("Stops"), f"{len(results.stop_rows)}, {format_duration(results.total_stop_time_s)}"),
+            (tr("Not recorded"), format_duration(results.unrecorded_time_s)),
         ]
     rows.append((tr("Alarms and E-stops"), str(len(results.alarms))))
     words = tr(
@@ -85,7 +85,7 @@ def _sections(found: ShiftResults, *, metric: bool) -> Iterator[tuple[str, str]]
     yield "", "".join(make_result_line("doubt", note) for note in found.notes)
     yield (
         "",
-        make_pair_table(make_summary_rows(found))
+        make_name_value_table(make_summary_rows(found))
         + make_drawing_block(_time_line(found), tr("green: cycles; amber: stops; red: alarms")),
     )
     yield (
@@ -167,9 +167,9 @@ def _table(heads: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
 def _program(row: ProgramResults) -> tuple[str, ...]:
     none = ", ".join(f"{count} × {tr(how)}" for how, count in row.incomplete_cycles)
     if not row.cycle_times_s:
-        return row.program, str(row.part_count), none, "", "", ""
+        return row.program_name, str(row.part_count), none, "", "", ""
     times = (min(row.cycle_times_s), sum(row.cycle_times_s) / len(row.cycle_times_s), max(row.cycle_times_s))
-    return (row.program, str(row.part_count), none, *(f"{format_fixed(each, 1)} s" for each in times))
+    return (row.program_name, str(row.part_count), none, *(f"{format_fixed(each, 1)} s" for each in times))
 
 
 def _lives(found: ShiftResults) -> str:
@@ -210,21 +210,21 @@ def _side(row: object, *, metric: bool) -> str:
     """Return the values of one offset table row as text."""
     if row is None:
         return tr("not set")
-    if isinstance(row, ToolRow):
+    if isinstance(row, ToolOffsetRow):
         own = (2 * row.x, row.z, row.nose_radius, 2 * row.wear_x, row.wear_z)
-        x, z, radius, wear_x, wear_z = (format_signed(each, metric) for each in own)
+        x, z, radius, wear_x, wear_z = (format_signed_length(each, metric) for each in own)
         return f"X {x} Z {z} R {radius}, {tr('wear')} X {wear_x} Z {wear_z}"
-    if isinstance(row, SecondaryRow):
+    if isinstance(row, SecondaryOffsetRow):
         return (
-            f"X {format_signed(row.x, metric)} Z {format_signed(row.z, metric)} R "
-            f"{format_signed(row.r, metric)}"
+            f"X {format_signed_length(row.x, metric)} Z {format_signed_length(row.z, metric)} R "
+            f"{format_signed_length(row.r, metric)}"
         )
     return ", ".join(f"{key} {value:g}" if isinstance(value, float) else f"{key} {value}"
                      for key, value in getattr(row, "_asdict", dict)().items() if value)  # fmt: skip
 
 
 def _reading(feature: FeatureRow, row: ReadingRow, *, metric: bool) -> tuple[str, ...]:
-    low, high = make_feature(feature).limits
+    low, high = make_measured_feature(feature).limits
     return (
         format_local_time(row.at),
         feature.program,
@@ -247,26 +247,30 @@ def _time_line(results: ShiftResults) -> str:
     """Return an SVG timeline of cycles, stops and alarms, with the hours below."""
     start, length = results.shift.start_s, results.shift.end_s - results.shift.start_s
 
-    def x(moment: float) -> float:
+    def calculate_x(moment: float) -> float:
         return _WIDE * min(1.0, max(0.0, (moment - start) / length))
 
-    def bar(first: float, last: float, colour: str, y: int, high: int, least: float = 0.6) -> str:
-        wide = max(least, x(last) - x(first))
-        return f'<rect x="{x(first):.1f}" y="{y}" width="{wide:.1f}" height="{high}" fill="{colour}"/>'
+    def make_bar_svg(first: float, last: float, colour: str, y: int, high: int, least: float = 0.6) -> str:
+        wide = max(least, calculate_x(last) - calculate_x(first))
+        return (
+            f'<rect x="{calculate_x(first):.1f}" y="{y}" width="{wide:.1f}" height="{high}" fill="{colour}"/>'
+        )
 
-    parts = [bar(start, results.evaluated_until_s, "#e3e7eb", 6, 34)]
+    parts = [make_bar_svg(start, results.evaluated_until_s, "#e3e7eb", 6, 34)]
     for stop in results.stop_rows:
         at = parse_store_time(stop.at)
-        parts.append(bar(at, at + stop.seconds, "#f0b23c", 6, 34))
-    parts += [bar(span.start_s, span.end_s, "#2e7d32", 6, 34) for span in results.cycle_spans]
+        parts.append(make_bar_svg(at, at + stop.seconds, "#f0b23c", 6, 34))
+    parts += [make_bar_svg(span.start_s, span.end_s, "#2e7d32", 6, 34) for span in results.cycle_spans]
     parts += [
-        bar(parse_store_time(row.at), parse_store_time(row.at), "#b3261e", 2, 42, 2.0)
+        make_bar_svg(parse_store_time(row.at), parse_store_time(row.at), "#b3261e", 2, 42, 2.0)
         for row in results.alarms
     ]
     hours = max(1, round(length / 3600 / 12))
     moment = start
     while moment <= results.shift.end_s:
         text = datetime.fromtimestamp(moment).strftime("%H:%M")
-        parts.append(f'<text x="{min(x(moment), _WIDE - 34):.0f}" y="58" font-size="12">{text}</text>')
+        parts.append(
+            f'<text x="{min(calculate_x(moment), _WIDE - 34):.0f}" y="58" font-size="12">{text}</text>'
+        )
         moment += hours * 3600
     return f'<svg viewBox="0 0 {_WIDE} {_HIGH}" width="{_WIDE}" height="{_HIGH}">{"".join(parts)}</svg>'

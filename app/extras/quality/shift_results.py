@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from app.desk.status.formats import format_duration, format_local_time
 from app.desk.translation import tr
-from app.extras.quality.parts_data import make_feature
+from app.extras.quality.parts_data import make_measured_feature
 from app.production.cycle_recorder import COMPLETE
 from core.extras.quality.production_stops import (
     Availability,
@@ -28,7 +28,7 @@ from core.store import event_log
 from core.store.offsets import offset_history
 from core.store.production import measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
-from core.store.production.part_cycles import CycleRow, CycleTime, StopRow
+from core.store.production.part_cycles import CycleRow, CycleTime, ProductionStopRow
 from core.store.production.tool_lives import InsertChange, ToolLifeRow
 from core.store.store import Store
 from core.store.store_rows import EventRow, OffsetChange, OffsetKind, format_utc
@@ -50,7 +50,7 @@ class Shift(NamedTuple):
     end_s: float
 
     @property
-    def utc_texts(self) -> tuple[str, str]:
+    def utc_time_texts(self) -> tuple[str, str]:
         """Return the start and the end of the shift as UTC texts in the format of the store."""
         first, last = (format_utc(datetime.fromtimestamp(each, UTC)) for each in self)
         return first, last
@@ -109,7 +109,7 @@ def parse_local_time(text: str) -> float:
     )
 
 
-def make_period(start: str, end: str) -> Shift:
+def make_report_period(start: str, end: str) -> Shift:
     """Return the period between two typed times.
 
     Raises ShiftTimesError if a text is not a time, if the end is not after the start, or if the period is
@@ -139,7 +139,7 @@ class ProgramResults(NamedTuple):
     without a part for each outcome. ``cycle_times_s`` are the times of complete cycles in seconds.
     """
 
-    program: str
+    program_name: str
     part_count: int
     incomplete_cycles: tuple[tuple[str, int], ...]
     cycle_times_s: tuple[float, ...]
@@ -157,7 +157,7 @@ class ShiftResults:
     evaluated_until_s: float
     program_results: tuple[ProgramResults, ...]
     availability: Availability | None
-    stop_rows: tuple[StopRow, ...]
+    stop_rows: tuple[ProductionStopRow, ...]
     stop_reasons: tuple[StopReasonTotal, ...]
     alarms: tuple[EventRow, ...]
     tool_lives: tuple[ToolLifeRow, ...]
@@ -174,19 +174,19 @@ class ShiftResults:
         return sum(each.part_count for each in self.program_results)
 
     @property
-    def stopped_s(self) -> float:
+    def total_stop_time_s(self) -> float:
         """Return the duration of all stops within the shift in seconds."""
         return sum(each.seconds for each in self.stop_reasons)
 
     @property
-    def unrecorded_s(self) -> float:
+    def unrecorded_time_s(self) -> float:
         """Return the time in seconds with neither a recorded cycle nor a recorded stop.
 
         During this time, the control was off or no part was started.
         """
         if self.availability is None:
             return 0.0
-        return max(0.0, self.availability.planned_s - self.availability.producing_s - self.stopped_s)
+        return max(0.0, self.availability.planned_s - self.availability.producing_s - self.total_stop_time_s)
 
 
 def parse_store_time(time_text: str) -> float:
@@ -210,7 +210,7 @@ def make_cycle_spans(rows: Iterable[CycleRow | CycleTime], now_s: float) -> list
     return [span for row in rows if (span := make_cycle_span(row, now_s)) is not None]
 
 
-def convert_stops(rows: Iterable[StopRow]) -> list[ProductionStop]:
+def convert_stop_rows(rows: Iterable[ProductionStopRow]) -> list[ProductionStop]:
     """Return stored stops in the format that the calculation of stop reasons and availability needs."""
     return [ProductionStop(row.reason, parse_store_time(row.at), row.seconds) for row in rows]
 
@@ -222,7 +222,7 @@ def calculate_shift_results(
 
     This function runs on a worker. Raises StoreError if the data cannot be read.
     """
-    since, end = shift.utc_texts
+    since, end = shift.utc_time_texts
     until = max(shift.start_s, min(shift.end_s, now_s))
     with store.read() as connection:
         cycles = part_cycles.read_cycles_between(connection, since, end)
@@ -231,7 +231,7 @@ def calculate_shift_results(
         readings = measured_parts.read_readings_between(connection, since, end)
         lives = tool_lives.read_tool_lives(connection, tool_kind)
         inserts = tool_lives.read_insert_changes(connection, -1)
-        offsets = offset_history.read_history_in_store(connection, _MAX_CHANGES)
+        offsets = offset_history.read_store_history(connection, _MAX_CHANGES)
     running = make_cycle_spans(cycles, now_s)
     ended = [row for row in cycles if row.ended is not None and since <= row.ended < end]
     return ShiftResults(
@@ -240,13 +240,13 @@ def calculate_shift_results(
         _make_program_results(ended, _select_interrupted(cycles, on=now_s < shift.end_s)),
         calculate_availability(TimeSpan(shift.start_s, until), running) if until > shift.start_s else None,
         stops,
-        analyze_stop_reasons(_limit_stops(convert_stops(stops), shift.start_s, until)),
+        analyze_stop_reasons(_limit_stops(convert_stop_rows(stops), shift.start_s, until)),
         alarms,
         tuple(row for row in lives.values() if any(row[5:7]) or any(row[1:3])),
         tuple(row for row in reversed(inserts) if since <= row.at < end),
         tuple(row for row in reversed(offsets) if since <= row.at < end),
         len(readings),
-        tuple(each for each in readings if not make_feature(each[0]).good(each[1].value)),
+        tuple(each for each in readings if not make_measured_feature(each[0]).good(each[1].value)),
         tuple(running),
         tuple(_make_remarks(shift, until, now_s, cycles)),
     )

@@ -6,29 +6,29 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from app.desk.arithmetic import EntryError
+from app.desk.arithmetic import InvalidEntryError
 from app.desk.desk import Desk
 from app.desk.pages.table_content import TableContent
 from app.desk.status.formats import format_fixed
 from app.desk.translation import tr
-from app.extras.quality.parts_data import PartsData, make_feature
+from app.extras.quality.parts_data import PartsData, make_measured_feature
 from app.extras.quality.section import ChartDrawing, format_deviation, format_size, make_correction_plot
 from app.offsets.active_offsets import make_secondary_offsets, make_tool_offsets
 from app.offsets.offset_changes import find_change_refusal
-from app.offsets.offset_effect import OffsetEffect, OffsetTables
+from app.offsets.offset_effect import OffsetEffectWorker, OffsetTables
 from app.offsets.offset_values import (
-    ValueMode,
+    UnitMode,
     add_correction,
     describe_range_error,
-    format_signed,
-    parse_increment,
+    format_signed_length,
+    parse_field_increment,
 )
 from app.offsets.part_effect import make_part_table
 from core.extras.quality.control_charts import QualityError
 from core.extras.quality.measured_feature import CorrectingOffset, CorrectionProposal, propose_correction
 from core.message import Message
 from core.store.production.measured_parts import FeatureRow
-from core.store.store_rows import FIELDS_BY_KIND, FieldValue, OffsetKind, SecondaryRow, ToolRow
+from core.store.store_rows import FIELDS_BY_KIND, FieldValue, OffsetKind, SecondaryOffsetRow, ToolOffsetRow
 
 CORRECTION_STEP_MM = {
     True: 0.001,
@@ -36,12 +36,12 @@ CORRECTION_STEP_MM = {
 }  # rounding of a correction in mm, for metric and inch
 
 
-def make_proposal(data: PartsData, row: FeatureRow, value_mode: ValueMode) -> CorrectionProposal:
+def make_correction_proposal(data: PartsData, row: FeatureRow, value_mode: UnitMode) -> CorrectionProposal:
     """Return the correction that the readings since the last correction require.
 
     Raises QualityError if no correction can be calculated from these readings.
     """
-    feature = make_feature(row)
+    feature = make_measured_feature(row)
     sizes = [each.value for each in data.select_readings_since_correction(row)]
     if not sizes and data.select_readings(row.id):
         name = feature.corrected_by
@@ -63,21 +63,23 @@ class OffsetCorrection:
     offset_number: int
     new_values: dict[str, FieldValue]
     reason: str  # reason for the history
-    text: str  # for example ``T3 WEAR X −.0006: SPIGOT .5012 → .5006``
+    correction_text: str  # for example ``T3 WEAR X −.0006: SPIGOT .5012 → .5006``
 
 
-def make_correction(proposal: CorrectionProposal, desk: Desk, value_mode: ValueMode) -> OffsetCorrection:
+def make_offset_correction(
+    proposal: CorrectionProposal, desk: Desk, value_mode: UnitMode
+) -> OffsetCorrection:
     """Return the proposed correction as a change of the offset table.
 
-    Raises EntryError with the reason if the change is not possible, for example if the offset table is
+    Raises InvalidEntryError with the reason if the change is not possible, for example if the offset table is
     locked or the tool has no offsets.
     """
     feature, book = proposal.feature, desk.offset_book
     why_not = book.lock_reason or find_change_refusal(desk.read_snapshot(), is_correction=True)
     if why_not:
-        raise EntryError(why_not)
+        raise InvalidEntryError(why_not)
     kind = OffsetKind.TOOL if feature.by is CorrectingOffset.TOOL else OffsetKind.SECONDARY
-    change = format_signed(proposal.change_mm, value_mode.is_metric)
+    change = format_signed_length(proposal.change_mm, value_mode.is_metric)
     why = tr(
         Message(
             "{name} measured: the mean of {count} readings is {mean}, offset change {change}",
@@ -108,32 +110,34 @@ def make_correction(proposal: CorrectionProposal, desk: Desk, value_mode: ValueM
 
 
 def _tool_value(
-    name: str, row: object, proposal: CorrectionProposal, mode: ValueMode, number: int
+    name: str, row: object, proposal: CorrectionProposal, mode: UnitMode, number: int
 ) -> FieldValue:
     """Return the new wear offset of a tool.
 
     The correction is added like an F2 entry in the tool table.
     """
-    if not isinstance(row, ToolRow):
-        raise EntryError(tr(Message("NO OFFSETS SET FOR T{number}", number=number)))
-    return parse_increment(name, row, format_fixed(proposal.change_mm / mode.unit_mm, 10), mode)
+    if not isinstance(row, ToolOffsetRow):
+        raise InvalidEntryError(tr(Message("NO OFFSETS SET FOR T{number}", number=number)))
+    return parse_field_increment(name, row, format_fixed(proposal.change_mm / mode.unit_length_mm, 10), mode)
 
 
-def _secondary_value(name: str, row: object, proposal: CorrectionProposal, mode: ValueMode) -> FieldValue:
+def _secondary_value(name: str, row: object, proposal: CorrectionProposal, mode: UnitMode) -> FieldValue:
     """Return the new value of a D offset, with X as a radius.
 
     If the offset has no value yet, its old value is assumed to be 0.
     """
-    before = row if isinstance(row, SecondaryRow) else SecondaryRow()
-    value = add_correction(getattr(before, name), proposal.offset_change_mm / mode.unit_mm, mode.is_metric)
+    before = row if isinstance(row, SecondaryOffsetRow) else SecondaryOffsetRow()
+    value = add_correction(
+        getattr(before, name), proposal.offset_change_mm / mode.unit_length_mm, mode.is_metric
+    )
     field = FIELDS_BY_KIND[OffsetKind.SECONDARY][name]
     if not field.is_valid_value(value):
         shown, low, high = (
-            format_signed(value, mode.is_metric),
-            field.minimum / mode.unit_mm,
-            field.maximum / mode.unit_mm,
+            format_signed_length(value, mode.is_metric),
+            field.minimum / mode.unit_length_mm,
+            field.maximum / mode.unit_length_mm,
         )
-        raise EntryError(describe_range_error(field.label, shown, mode.name, low, high))
+        raise InvalidEntryError(describe_range_error(field.label, shown, mode.name, low, high))
     return value
 
 
@@ -173,24 +177,24 @@ class CorrectionPreview:
             effect.request_part(effect.compare_part, job, *self._tables(change))
 
     @property
-    def _effect(self) -> OffsetEffect | None:
-        return self.desk.page_registry.find_model(OffsetEffect)
+    def _effect(self) -> OffsetEffectWorker | None:
+        return self.desk.page_registry.find_model(OffsetEffectWorker)
 
     def _tables(self, change: OffsetCorrection) -> tuple[OffsetTables, OffsetTables]:
         book = self.desk.offset_book
-        tools: dict[int, ToolRow] = dict(book.tool_offsets)
-        secondary: dict[int, SecondaryRow] = dict(book.secondary_offsets)
+        tools: dict[int, ToolOffsetRow] = dict(book.tool_offsets)
+        secondary: dict[int, SecondaryOffsetRow] = dict(book.secondary_offsets)
         before = OffsetTables(make_tool_offsets(tools), make_secondary_offsets(secondary))
         values: Mapping[str, Any] = change.new_values
         if change.offset_kind is OffsetKind.TOOL:
             tools[change.offset_number] = tools[change.offset_number]._replace(**values)
         else:
-            secondary[change.offset_number] = secondary.get(change.offset_number, SecondaryRow())._replace(
-                **values
-            )
+            secondary[change.offset_number] = secondary.get(
+                change.offset_number, SecondaryOffsetRow()
+            )._replace(**values)
         return before, OffsetTables(make_tool_offsets(tools), make_secondary_offsets(secondary))
 
-    def make_table(self, value_mode: ValueMode) -> TableContent | None:
+    def make_table(self, value_mode: UnitMode) -> TableContent | None:
         """Return the table of diameters and shoulders before and after the correction.
 
         Returns None if no simulation result is available.
@@ -217,7 +221,7 @@ class CorrectionPreview:
             else ""
         )
 
-    def make_chart(self, value_mode: ValueMode) -> ChartDrawing:
+    def make_chart(self, value_mode: UnitMode) -> ChartDrawing:
         """Return the chart of the readings, their mean, and the expected size of the next parts."""
         found = self.proposal
         if found is None or not self._readings:
@@ -227,6 +231,8 @@ class CorrectionPreview:
             change = format_deviation(found.expected_size_mm - found.mean_size_mm, value_mode)
             title = tr(Message("{name}: {change} FROM NEXT PART", name=found.feature.name, change=change))
             newest = self._readings[-CHART_READING_COUNT:]
-            plot = make_correction_plot(newest, found, title, (tr("NOW"), tr("AFTER")), value_mode.unit_mm)
+            plot = make_correction_plot(
+                newest, found, title, (tr("NOW"), tr("AFTER")), value_mode.unit_length_mm
+            )
             self._drawn = of, ChartDrawing((plot,), of)
         return self._drawn[1]

@@ -24,7 +24,7 @@ class ProofScheduler:
     Raises CommandError if the scheduler cannot be reached.
     """
 
-    max_units_in_progress = _AHEAD
+    max_active_work_units = _AHEAD
 
     def __init__(self, address: str) -> None:
         if not (found := _ADDRESS.fullmatch(address)) or int(found[2]) > 65535:
@@ -43,7 +43,7 @@ class ProofScheduler:
                 "no-dask",
             ) from error
         logging.getLogger("distributed").setLevel(logging.CRITICAL)  # TurnDesk reports its errors.
-        self.killed_exception: type[BaseException] = distributed.scheduler.KilledWorker
+        self.worker_killed_exception: type[BaseException] = distributed.scheduler.KilledWorker
         try:
             self._client = distributed.Client(address, timeout=_ANSWER)
         except OSError as error:

@@ -29,7 +29,7 @@ class ShapesExtra(OptionalFeature):
         self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
     ) -> None:
         """Register the shapes model, which is created when it is first used."""
-        desk.page_registry.attach_lazily(
+        desk.page_registry.attach_lazy_model(
             "app.extras.shapes.shapes_model.ShapesModel", partial(_shapes, desk, machine)
         )
 

@@ -11,11 +11,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from app.desk.arithmetic import EXPRESSION_CHARACTERS, EntryError, evaluate_expression
-from app.desk.pages.table_content import ROW_STEPS, FunctionKey, edit_text
+from app.desk.arithmetic import EXPRESSION_CHARACTERS, InvalidEntryError, evaluate_expression
+from app.desk.pages.table_content import ROW_STEPS, FunctionKey, apply_edit_key
 from app.desk.translation import tr
 from core.extras.shapes.contour import ContourPoint, make_point_label
-from core.extras.shapes.editor_shape import FilledShape, Shape, fill_shape
+from core.extras.shapes.editor_shape import Shape, ShapeInstance, make_shape_instance
 from core.extras.shapes.lines.code_lines import format_short_number
 from core.extras.shapes.shape_fields import (
     FieldError,
@@ -25,9 +25,9 @@ from core.extras.shapes.shape_fields import (
     ShapeField,
     make_choice_text,
 )
-from core.extras.shapes.shape_pieces import ShapePiece
+from core.extras.shapes.shape_pieces import ProgramShape
 from core.extras.shapes.threads.thread_series import THREAD_SIZES, ThreadSeries
-from core.extras.shapes.threads.thread_values import get_series, list_classes_for_side
+from core.extras.shapes.threads.thread_values import get_thread_series, list_side_tolerance_classes
 from core.sketch import Sketch
 
 POINT_COLUMNS = ("X", "Z", "C", "R", "A")
@@ -40,7 +40,7 @@ _LONGEST = 24
 class FormCell(NamedTuple):
     """Display data of one form field: its label, its value, whether it was typed, and its error."""
 
-    field_word: str
+    field_name: str
     label: str
     value_text: str
     is_typed: bool
@@ -61,13 +61,13 @@ class ShapeForm:
 
     shape: Shape
     settings: ProgramSettings
-    replaced_piece: ShapePiece | None = None
+    replaced_piece: ProgramShape | None = None
     entered_texts: dict[str, str] = field(default_factory=dict)
     point_texts: list[dict[str, str]] = field(default_factory=list)
     selected_row: int = 0
     selected_column: int = 0
-    replaces_text: bool = True  # the next character replaces the entry
-    filled_shape: FilledShape = field(init=False)
+    next_key_replaces_entry: bool = True  # the next character replaces the entry
+    filled_shape: ShapeInstance = field(init=False)
     error_texts: dict[str, str] = field(default_factory=dict)
     program_lines: list[str] = field(default_factory=list)
     calculation_count: int = 0  # number of calculations
@@ -75,7 +75,7 @@ class ShapeForm:
 
     def __post_init__(self) -> None:
         if self.replaced_piece is not None:
-            self._enter_values(self.replaced_piece.filled_shape)
+            self._enter_values(self.replaced_piece.shape_instance)
         elif self.shape.has_point_table:
             self.point_texts = [{"X": "0", "Z": "0"}]
         self.calculate()
@@ -86,9 +86,9 @@ class ShapeForm:
         self.settings = settings
         self.calculate()
 
-    def _enter_values(self, filled_shape: FilledShape) -> None:
+    def _enter_values(self, filled_shape: ShapeInstance) -> None:
         """Enter the values of a shape in the program text as if they were typed."""
-        for word, value in filled_shape.values.items():
+        for word, value in filled_shape.field_values.items():
             self.entered_texts[word] = value if isinstance(value, str) else format_short_number(value, 6)
         for row in filled_shape.contour_points:
             said = {c: getattr(row, p) for c, p in zip(POINT_COLUMNS, _PARTS, strict=True)}
@@ -98,7 +98,7 @@ class ShapeForm:
     def _first(self) -> int:
         """Return the row to select first: the first field without a value, or else the second point."""
         for place, each in enumerate(self.fields):
-            if self.filled_shape.values.get(each.word) is None:
+            if self.filled_shape.field_values.get(each.name) is None:
                 return place
         return len(self.fields) + 1 if self.shape.has_point_table else 0
 
@@ -112,10 +112,10 @@ class ShapeForm:
         rows = tuple(self._row(number) for number in range(len(self.point_texts)))
         while rows and rows[-1].empty:
             rows = rows[:-1]
-        self.filled_shape = fill_shape(self.shape, values, self.settings, rows)
+        self.filled_shape = make_shape_instance(self.shape, values, self.settings, rows)
         if not self.error_texts:
             for refused in self._refusals():
-                self.error_texts.setdefault(refused.field_word, refused.text)
+                self.error_texts.setdefault(refused.field_name, refused.message)
         self.program_lines = [] if self.error_texts else self.filled_shape.make_lines(self.settings)
         self.remarks = () if self.error_texts else self.shape.make_notes(self.filled_shape, self.settings)
 
@@ -123,7 +123,7 @@ class ShapeForm:
         try:
             return self.filled_shape.find_errors(self.settings)
         except ArithmeticError:
-            word = self.fields[min(self.selected_row, len(self.fields) - 1)].word
+            word = self.fields[min(self.selected_row, len(self.fields) - 1)].name
             return [
                 FieldError(
                     word, "These values do not make a valid shape: check the last value that you entered."
@@ -141,7 +141,7 @@ class ShapeForm:
     def _number(self, word: str, said: str) -> float | None:
         try:
             return evaluate_expression(said)
-        except EntryError as error:
+        except InvalidEntryError as error:
             self.error_texts[word] = str(error)
             return None
 
@@ -156,7 +156,7 @@ class ShapeForm:
     @property
     def fields(self) -> tuple[ShapeField, ...]:
         """Return the fields that apply to the current choices."""
-        return self.filled_shape.fields if hasattr(self, "filled_shape") else self.shape.fields
+        return self.filled_shape.applicable_fields if hasattr(self, "filled_shape") else self.shape.fields
 
     @property
     def row_count(self) -> int:
@@ -174,20 +174,20 @@ class ShapeForm:
         return self.selected_row - len(self.fields) if self.selected_row >= len(self.fields) else -1
 
     @property
-    def selected_word(self) -> str:
+    def selected_field_name(self) -> str:
         """Return the word that identifies the selected field, or the label of the selected point."""
         here = self.selected_field
-        return here.word if here is not None else make_point_label(self.selected_point + 1)
+        return here.name if here is not None else make_point_label(self.selected_point + 1)
 
     def make_cells(self) -> list[FormCell]:
         """Return the display data of all fields."""
         return [
             FormCell(
-                each.word,
+                each.name,
                 each.label,
                 self.get_display_text(each),
-                each.word in self.entered_texts,
-                self.error_texts.get(each.word, ""),
+                each.name in self.entered_texts,
+                self.error_texts.get(each.name, ""),
                 bool(self.list_choices(each)),
             )
             for each in self.fields
@@ -195,9 +195,9 @@ class ShapeForm:
 
     def get_value_text(self, field: ShapeField) -> str:
         """Return the typed text of a field, or else the proposed value as text."""
-        if field.word in self.entered_texts:
-            return self.entered_texts[field.word]
-        value = self.filled_shape.values.get(field.word)
+        if field.name in self.entered_texts:
+            return self.entered_texts[field.name]
+        value = self.filled_shape.field_values.get(field.name)
         if value is None:
             return ""
         return value if isinstance(value, str) else format_short_number(value, 6)
@@ -221,16 +221,18 @@ class ShapeForm:
 
     def list_choices(self, field: ShapeField) -> tuple[str, ...]:
         """Return the choices of a field, or an empty tuple if the field has no choices."""
-        if field.word == "CLASS":
-            return list_classes_for_side(self.filled_shape.values)
-        if field.word == "SIZE":
-            return tuple(size.name for size in THREAD_SIZES.get(get_series(self.filled_shape.values), ()))
+        if field.name == "CLASS":
+            return list_side_tolerance_classes(self.filled_shape.field_values)
+        if field.name == "SIZE":
+            return tuple(
+                size.name for size in THREAD_SIZES.get(get_thread_series(self.filled_shape.field_values), ())
+            )
         return field.choices
 
     @property
     def current_error(self) -> str:
         """Return the error of the selected field or point, or else the first error of the form."""
-        return self.error_texts.get(self.selected_word) or next(iter(self.error_texts.values()), "")
+        return self.error_texts.get(self.selected_field_name) or next(iter(self.error_texts.values()), "")
 
     @property
     def current_sketch(self) -> Sketch:
@@ -250,15 +252,15 @@ class ShapeForm:
     def select_row(self, row: int, column: int = 0) -> None:
         """Select a field or point by its row."""
         self.selected_row = max(0, min(row, self.row_count - 1))
-        self.selected_column, self.replaces_text = column, True
+        self.selected_column, self.next_key_replaces_entry = column, True
 
-    def select_word(self, word: str) -> None:
+    def select_field_by_name(self, word: str) -> None:
         """Select the field with a given word, or the contour point with a given label."""
         if word.startswith("#"):
             self.select_row(len(self.fields) + int(word[1:]) - 1)
             return
         for place, each in enumerate(self.fields):
-            if each.word == word:
+            if each.name == word:
                 self.select_row(place)
 
     def accepts_key(self, key: str) -> bool:
@@ -291,11 +293,14 @@ class ShapeForm:
     def _sideways(self, by: int) -> None:
         here = self.selected_field
         if here is None:
-            self.selected_column, self.replaces_text = (self.selected_column + by) % len(POINT_COLUMNS), True
+            self.selected_column, self.next_key_replaces_entry = (
+                (self.selected_column + by) % len(POINT_COLUMNS),
+                True,
+            )
         elif choices := self.list_choices(here):
             now = self.get_value_text(here)
             place = choices.index(now) + by if now in choices else 0
-            self._set(here.word, choices[place % len(choices)])
+            self._set(here.name, choices[place % len(choices)])
         else:
             self.select_row(self.selected_row + by)
 
@@ -306,11 +311,12 @@ class ShapeForm:
         elif here.kind is FieldKind.CHOICE:
             self._pick(here, key)
         else:
-            before = "" if self.replaces_text and key != "Back" else self.get_value_text(here)
+            before = "" if self.next_key_replaces_entry and key != "Back" else self.get_value_text(here)
             self._set(
-                here.word, edit_text(before, key.upper() if here.kind is FieldKind.NAME else key, _LONGEST)
+                here.name,
+                apply_edit_key(before, key.upper() if here.kind is FieldKind.NAME else key, _LONGEST),
             )
-            self.replaces_text = False
+            self.next_key_replaces_entry = False
 
     def _pick(self, here: ShapeField, key: str) -> None:
         """Select the next choice that begins with the typed letter.
@@ -319,12 +325,12 @@ class ShapeForm:
         """
         choices, now = self.list_choices(here), self.get_value_text(here)
         if key in {"Back", "Delete"}:
-            self.entered_texts.pop(here.word, None)
+            self.entered_texts.pop(here.name, None)
             self.calculate()
             return
         start = choices.index(now) + 1 if now in choices else 0
         order = (*choices[start:], *choices[:start])
-        self._set(here.word, next(each for each in order if self._begins(here, each, key)))
+        self._set(here.name, next(each for each in order if self._begins(here, each, key)))
 
     def _begins(self, here: ShapeField, choice: str, key: str) -> bool:
         """Return whether the displayed text of a choice begins with the typed letter."""
@@ -338,16 +344,16 @@ class ShapeForm:
         end adds a point.
         """
         if key.upper() in POINT_COLUMNS:
-            self.selected_column, self.replaces_text = POINT_COLUMNS.index(key.upper()), True
+            self.selected_column, self.next_key_replaces_entry = POINT_COLUMNS.index(key.upper()), True
             return
         while len(self.point_texts) <= self.selected_point:
             self.point_texts.append({})
         row, column = self.point_texts[self.selected_point], POINT_COLUMNS[self.selected_column]
-        before = "" if self.replaces_text and key != "Back" else row.get(column, "")
-        row[column] = edit_text(before, key, _LONGEST)
+        before = "" if self.next_key_replaces_entry and key != "Back" else row.get(column, "")
+        row[column] = apply_edit_key(before, key, _LONGEST)
         if not row[column]:
             del row[column]
-        self.replaces_text = False
+        self.next_key_replaces_entry = False
         self._calculate_at_point(self.selected_point)
 
     def _calculate_at_point(self, point: int) -> None:
@@ -365,7 +371,7 @@ class ShapeForm:
             self.entered_texts.pop(word, None)
         self.calculate()
         self.selected_row = next(
-            (n for n, each in enumerate(self.fields) if each.word == word), self.selected_row
+            (n for n, each in enumerate(self.fields) if each.name == word), self.selected_row
         )
 
     def insert_point(self) -> None:
@@ -395,7 +401,7 @@ It returns None if the form is closed.
 """
 
 
-class AddedForm(ABC):
+class AdditionalForm(ABC):
     """Interface of a form that another feature adds to the list of shapes.
 
     ``key`` is the key that opens the form. A worker calculates the form.
@@ -429,7 +435,7 @@ class AddedForm(ABC):
         """Cancel the calculation of the form."""
 
     @abstractmethod
-    def function_keys(self, form: ShapeForm, show_form: ShowForm) -> Mapping[int, FunctionKey]:
+    def make_function_keys(self, form: ShapeForm, show_form: ShowForm) -> Mapping[int, FunctionKey]:
         """Return the additional function keys of this form."""
 
     @abstractmethod
@@ -462,6 +468,6 @@ def _list_translatable(field: ShapeField) -> tuple[str, ...]:
 
     The names of thread series and classes are the same in all languages.
     """
-    if field.word == "SERIES":
+    if field.name == "SERIES":
         return (ThreadSeries.CUSTOM.value,)
-    return () if field.word in {"CLASS", "SIZE"} else field.choices
+    return () if field.name in {"CLASS", "SIZE"} else field.choices

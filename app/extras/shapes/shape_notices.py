@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from app.desk.translation import tr
 from app.extras.shapes.shape_form import ShapeForm
-from core.extras.shapes.shape_pieces import ShapePiece, find_damaged_comment
+from core.extras.shapes.shape_pieces import ProgramShape, find_damaged_comment
 from core.language.source import Dialect
 from core.message import Message
 
@@ -21,11 +21,13 @@ def describe_damaged_comment(program_lines: Sequence[str], line: int, dialect: D
     return tr(Message(text, line=at + 1, shape=tr(shape.name)))
 
 
-def describe_manual_edits(piece: ShapePiece) -> str:
+def describe_manual_edits(piece: ProgramShape) -> str:
     """Return a notice if the lines of a shape were edited by hand, or an empty string."""
-    if piece.adopted_fields:
+    if piece.adopted_field_names:
         words = ", ".join(
-            each.label for each in piece.filled_shape.fields if each.word in piece.adopted_fields
+            each.label
+            for each in piece.shape_instance.applicable_fields
+            if each.name in piece.adopted_field_names
         )
         return tr(Message("THE FORM USES THESE VALUES EDITED BY HAND IN THE TEXT: {fields}", fields=words))
     if piece.edited_line >= 0:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from core.extras.shapes.shape_pieces import ShapePiece, ends_program, starts_subroutine
+from core.extras.shapes.shape_pieces import ProgramShape, ends_program, starts_subroutine
 from core.extras.shapes.shape_table import SHAPES_BY_DIALECT
 from core.language.source import Dialect, guess_dialect
 
@@ -18,19 +18,19 @@ def supports_shapes(name: str) -> bool:
     return guess_dialect(name) in SHAPES_BY_DIALECT
 
 
-def find_piece(pieces: Sequence[ShapePiece], line: int) -> ShapePiece | None:
+def find_piece_at_line(pieces: Sequence[ProgramShape], line: int) -> ProgramShape | None:
     """Return the shape whose lines contain a line (counted from 0), or None if there is none."""
     return next((each for each in pieces if each.first_line <= line < each.next_line), None)
 
 
 def find_insertion_line(
-    program_lines: Sequence[str], pieces: Sequence[ShapePiece], line: int, dialect: Dialect
+    program_lines: Sequence[str], pieces: Sequence[ProgramShape], line: int, dialect: Dialect
 ) -> int:
     """Return the line at which a new shape is inserted.
 
     The line is after the shape at the cursor and before the end of the program.
     """
-    here = find_piece(pieces, line)
+    here = find_piece_at_line(pieces, line)
     at = here.next_line if here is not None else min(line + 1, len(program_lines))
     ends = [n for n, each in enumerate(program_lines) if ends_program(each, dialect)]
     started = [n for n, each in enumerate(program_lines) if starts_subroutine(each)]
@@ -41,7 +41,7 @@ def find_insertion_line(
     return at
 
 
-def shift_piece(piece: ShapePiece, by: int) -> ShapePiece:
+def move_piece_down(piece: ProgramShape, by: int) -> ProgramShape:
     """Return a shape with its line numbers increased by ``by``."""
     return replace(
         piece,

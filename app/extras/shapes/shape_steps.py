@@ -12,7 +12,7 @@ from app.extras.shapes.shape_form import POINT_COLUMNS, ShapeForm
 from core.extras.shapes.editor_shape import Shape
 from core.extras.shapes.lines.code_lines import format_short_number
 from core.extras.shapes.shape_fields import TEXT_KINDS, FieldKind, ProgramSettings
-from core.extras.shapes.shape_pieces import find_settings, has_units, insert_shape
+from core.extras.shapes.shape_pieces import find_active_settings, has_units, insert_shape
 from core.extras.shapes.shape_table import SHAPES_BY_DIALECT
 from core.extras.shapes.templates import HEAD_SHAPE
 from core.language.source import Dialect
@@ -24,7 +24,7 @@ _KEYS = {"KIND": "edge_kind"}  # The field KIND of EDGE TURN would conflict with
 ShapeStep = Mapping[str, object]
 
 
-class StepError(Exception):
+class InvalidStepError(Exception):
     """Error raised if steps are invalid.
 
     Each part of the message names the step and the key.
@@ -51,26 +51,26 @@ def get_shapes_by_kind(dialect: Dialect) -> dict[str, Shape]:
     return {shape.name.lower(): shape for shape in SHAPES_BY_DIALECT[dialect].values()}
 
 
-def get_words_by_key(shape: Shape) -> dict[str, str]:
+def map_keys_to_fields(shape: Shape) -> dict[str, str]:
     """Return the field words of a shape, by the key that a step uses."""
-    return {_KEYS.get(each.word, each.word.lower()): each.word for each in shape.fields}
+    return {_KEYS.get(each.name, each.name.lower()): each.name for each in shape.fields}
 
 
 def generate_program(steps: Sequence[ShapeStep], settings: ProgramSettings) -> GeneratedProgram:
     """Return the program that the forms write for the steps.
 
-    Raises StepError if a step is invalid, or if the first step is not a program head.
+    Raises InvalidStepError if a step is invalid, or if the first step is not a program head.
     """
     shapes = [_shape(number, step, settings.dialect) for number, step in enumerate(steps, 1)]
     mistakes = [text for number, step in enumerate(steps, 1) for text in _strange(number, step, shapes)]
     if mistakes := [*(each for each in shapes if isinstance(each, str)), *mistakes]:
-        raise StepError(mistakes)
+        raise InvalidStepError(mistakes)
     lines: list[str] = []
     at, said = 0, list[str]()
     for number, (step, shape) in enumerate(zip(steps, shapes, strict=True), 1):
         assert isinstance(shape, Shape)
         if shape.name != HEAD_SHAPE.name and not has_units(lines, settings.dialect):
-            raise StepError(
+            raise InvalidStepError(
                 [
                     Message(
                         "step {number}: a program must begin with a head; put a step with kind = "
@@ -79,7 +79,7 @@ def generate_program(steps: Sequence[ShapeStep], settings: ProgramSettings) -> G
                     )
                 ]
             )
-        form = _form(number, step, shape, find_settings(lines, at, settings.shop, settings))
+        form = _form(number, step, shape, find_active_settings(lines, at, settings.shop, settings))
         lines, at = insert_shape(lines, at, form.filled_shape, form.settings)
         said += [
             Message("step {number}, {shape}: {word}", number=number, shape=shape.name.lower(), word=word)
@@ -113,7 +113,7 @@ def _strange(number: int, step: ShapeStep, shapes: Sequence[Shape | str]) -> lis
     shape = shapes[number - 1]
     if isinstance(shape, str):
         return []
-    keys = {KIND, *get_words_by_key(shape), *((POINTS,) if shape.has_point_table else ())}
+    keys = {KIND, *map_keys_to_fields(shape), *((POINTS,) if shape.has_point_table else ())}
     found: list[str] = []
     for key, value in step.items():
         where = Message("step {number}, {shape}", number=number, shape=shape.name.lower())
@@ -135,11 +135,11 @@ def _strange(number: int, step: ShapeStep, shapes: Sequence[Shape | str]) -> lis
 def _form(number: int, step: ShapeStep, shape: Shape, settings: ProgramSettings) -> ShapeForm:
     """Return the form with the values of a step.
 
-    Raises StepError if the form rejects a value.
+    Raises InvalidStepError if the form rejects a value.
     """
     form = ShapeForm(shape, settings)
     where = Message("step {number}, {shape}", number=number, shape=shape.name.lower())
-    for key, word in get_words_by_key(shape).items():
+    for key, word in map_keys_to_fields(shape).items():
         if key in step:
             known = shape.find_field(word)
             assert known is not None
@@ -150,7 +150,7 @@ def _form(number: int, step: ShapeStep, shape: Shape, settings: ProgramSettings)
                 and known.choices
                 and form.entered_texts[word] not in known.choices
             ):
-                raise StepError(
+                raise InvalidStepError(
                     [
                         Message(
                             "{place}: {key} cannot be {text}; use one of {choices}",
@@ -165,17 +165,19 @@ def _form(number: int, step: ShapeStep, shape: Shape, settings: ProgramSettings)
         form.point_texts = _rows(where, step[POINTS])
     form.calculate()
     if form.error_texts:
-        raise StepError([f"{where}: {_key(shape, word)}: {text}" for word, text in form.error_texts.items()])
+        raise InvalidStepError(
+            [f"{where}: {_key(shape, word)}: {text}" for word, text in form.error_texts.items()]
+        )
     return form
 
 
 def _rows(where: str, points: object) -> list[dict[str, str]]:
     """Return the entries of contour points as texts by column.
 
-    The keys are x, z, c (chamfer), r (radius) and a (arc). Raises StepError if the points are invalid.
+    The keys are x, z, c (chamfer), r (radius) and a (arc). Raises InvalidStepError if the points are invalid.
     """
     if not isinstance(points, list) or not all(isinstance(each, dict) for each in points):
-        raise StepError(
+        raise InvalidStepError(
             [
                 Message(
                     "{place}: points must be a list, such as [{{x = .5, z = 0}}, {{z = -1, r = .1}}]",
@@ -186,7 +188,7 @@ def _rows(where: str, points: object) -> list[dict[str, str]]:
     for count, point in enumerate(points, 1):
         for key in point:
             if key.upper() not in POINT_COLUMNS:
-                raise StepError(
+                raise InvalidStepError(
                     [
                         Message(
                             "{place}: point {count}: key {key} is unknown; use one of {columns}",
@@ -207,5 +209,5 @@ def _text(value: object) -> str:
 def _key(shape: Shape, word: str) -> str:
     """Return the key that a step uses for a field, or a text such as ``point 2`` for a point."""
     return next(
-        (key for key, own in get_words_by_key(shape).items() if own == word), f"point {word.lstrip('#')}"
+        (key for key, own in map_keys_to_fields(shape).items() if own == word), f"point {word.lstrip('#')}"
     )

@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.change_author import add_as_option, get_permitted_user, log_user_change
+from app.cli.change_author import add_author_option, get_permitted_user, log_user_change
 from app.cli.program_options import parse_output_path
 from app.cli.store_command import open_store
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, convert_to_command_error
@@ -70,7 +70,7 @@ def add_parser(subparsers: SubParsers) -> None:
         "--tools", metavar="FILE", help="file with tool shapes to use instead of the stored shapes"
     )
     parser.add_argument("--machine", metavar="FILE", help="machine file (default: the simulated lathe)")
-    add_as_option(parser)
+    add_author_option(parser)
     parser.add_argument("--json", action="store_true", help="print only JSON on stdout")
 
 
@@ -125,7 +125,7 @@ def _name(args: argparse.Namespace, dialect: Dialect) -> str:
 
 def _written(args: argparse.Namespace, machine: Machine, dialect: Dialect) -> GeneratedProgram:
     from app.compose.stored_offsets import read_stored_shapes
-    from app.extras.shapes.shape_steps import StepError, generate_program
+    from app.extras.shapes.shape_steps import InvalidStepError, generate_program
     from app.extras.shapes.shapes_setup import make_shop_data
     from app.offsets.offsets_file import read_tool_shapes
     from core.extras.shapes.shape_fields import ProgramSettings
@@ -135,7 +135,7 @@ def _written(args: argparse.Namespace, machine: Machine, dialect: Dialect) -> Ge
     new = ProgramSettings(metric=not machine.is_inch, shop=make_shop_data(machine, shapes), dialect=dialect)
     try:
         return generate_program(steps, new)
-    except StepError as error:
+    except InvalidStepError as error:
         raise CommandError(f"{args.file}: {error}", "invalid-step") from error
 
 
@@ -160,10 +160,10 @@ def _proved(
     args: argparse.Namespace, machine: Machine, source: ProgramSource
 ) -> tuple[tuple[str, ...], float]:
     from app.compose.program_proving import create_loading_steps
-    from app.compose.program_transfer import create_proof_check
+    from app.compose.program_transfer import create_program_checker
     from app.compose.stored_offsets import make_offsets_reader
 
-    return create_proof_check(
+    return create_program_checker(
         create_loading_steps(machine, make_offsets_reader(args.tools), draw_pictures=False)
     )(source)
 
@@ -188,10 +188,10 @@ def _tell(
 
 
 def _list(dialect: Dialect, *, as_json: bool) -> int:
-    from app.extras.shapes.shape_steps import POINTS, get_shapes_by_kind, get_words_by_key
+    from app.extras.shapes.shape_steps import POINTS, get_shapes_by_kind, map_keys_to_fields
 
     found = {
-        kind: [*get_words_by_key(shape), *((POINTS,) if shape.has_point_table else ())]
+        kind: [*map_keys_to_fields(shape), *((POINTS,) if shape.has_point_table else ())]
         for kind, shape in get_shapes_by_kind(dialect).items()
     }
     if as_json:
@@ -199,7 +199,7 @@ def _list(dialect: Dialect, *, as_json: bool) -> int:
         return EXIT_OK
     for kind, shape in get_shapes_by_kind(dialect).items():
         sys.stdout.write(f"{kind}: {shape.summary}\n")
-        for key, word in get_words_by_key(shape).items():
+        for key, word in map_keys_to_fields(shape).items():
             known = shape.find_field(word)
             choices = f": {', '.join(known.choices).lower()}" if known is not None and known.choices else ""
             label = known.label.lower() if known is not None else ""

@@ -7,26 +7,31 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from app.desk.background_work import LatestRequestWorker
-from app.desk.pages.editor_panel import PanelModel
+from app.desk.pages.editor_panel import EditorPanelModel
 from app.desk.pages.table_content import ROW_STEPS, FunctionKey
 from app.desk.translation import tr
-from app.extras.shapes.shape_form import AddedForm, ShapeForm
+from app.extras.shapes.shape_form import AdditionalForm, ShapeForm
 from app.extras.shapes.shape_notices import (
     describe_damaged_comment,
     describe_form_keys,
     describe_manual_edits,
     describe_unchanged_shapes,
 )
-from app.extras.shapes.shape_places import find_insertion_line, find_piece, shift_piece, supports_shapes
+from app.extras.shapes.shape_places import (
+    find_insertion_line,
+    find_piece_at_line,
+    move_piece_down,
+    supports_shapes,
+)
 from core.extras.shapes.editor_shape import Shape
 from core.extras.shapes.shape_fields import ProgramSettings, ShopData
 from core.extras.shapes.shape_pieces import (
-    ShapePiece,
-    find_pieces,
-    find_settings,
+    ProgramShape,
+    find_active_settings,
+    find_program_shapes,
     has_units,
     insert_shape,
-    rewrite_pieces,
+    rewrite_program_shapes,
 )
 from core.extras.shapes.shape_table import CALCULATORS_BY_DIALECT, SHAPES_BY_DIALECT, SHAPES_BY_KEY
 from core.extras.shapes.templates import HEAD_SHAPE
@@ -35,7 +40,7 @@ from core.message import Message
 
 
 @dataclass(slots=True)
-class ShapesModel(PanelModel):
+class ShapesModel(EditorPanelModel):
     """Model of the shapes panel.
 
     - ``read_shop_data`` reads machine and tool data from the store on a worker.
@@ -46,7 +51,7 @@ class ShapesModel(PanelModel):
     read_shop_data: Callable[[], ShopData] = ShopData
     initial_settings: ProgramSettings = field(default_factory=ProgramSettings)
     worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("editing-shapes"))
-    added_forms: tuple[AddedForm, ...] = ()  # forms of other features, at the end of the list
+    additional_forms: tuple[AdditionalForm, ...] = ()  # forms of other features, at the end of the list
     shape_table: Mapping[str, Shape] = field(
         default_factory=lambda: SHAPES_BY_KEY
     )  # shapes or calculators of the list
@@ -54,21 +59,21 @@ class ShapesModel(PanelModel):
     shop_data: ShopData = field(default_factory=ShopData)
     program_lines: list[str] = field(default_factory=list)
     cursor_line: int = 0
-    pieces: list[ShapePiece] = field(default_factory=list)
+    shape_pieces: list[ProgramShape] = field(default_factory=list)
     form: ShapeForm | None = None
     selected_row: int = 0
-    notice: str = ""
+    notice_text: str = ""
     pending_action: Callable[[], None] | None = None
     text: str = ""
     text_number: int = 0
     write_count: int = 0  # counts the texts to put into the editor
-    is_pad_visible: bool = False  # the number pad is shown
+    is_number_pad_visible: bool = False  # the number pad is shown
     _typed: dict[str, dict[str, str]] = field(default_factory=dict)
 
     def close(self) -> None:
         """Stop the workers."""
         self.worker.close()
-        for each in self.added_forms:
+        for each in self.additional_forms:
             each.close()
 
     def process_results(self) -> None:
@@ -77,12 +82,14 @@ class ShapesModel(PanelModel):
         This method is called once per frame.
         """
         self.worker.deliver_results()
-        for each in self.added_forms:
+        for each in self.additional_forms:
             each.poll()
 
     # --- opening -------------------------------------------------------------------------------------
 
-    def open_for_text(self, name: str, text: str, cursor_line: int, *, lists_helpers: bool = False) -> str:
+    def open_program_text(
+        self, name: str, text: str, cursor_line: int, *, lists_helpers: bool = False
+    ) -> str:
         """Open the shapes panel for a program text.
 
         ``cursor_line`` is the cursor line, counted from 1. If ``lists_helpers`` is True, the list contains
@@ -92,26 +99,26 @@ class ShapesModel(PanelModel):
         if not supports_shapes(name):
             return tr("SHAPES WORK ONLY IN OMNITURN AND SINUMERIK PROGRAMS")
         dialect = guess_dialect(name)
-        forms = {**SHAPES_BY_DIALECT[dialect], **{each.key: each.shape for each in self.added_forms}}
+        forms = {**SHAPES_BY_DIALECT[dialect], **{each.key: each.shape for each in self.additional_forms}}
         self.initial_settings = replace(self.initial_settings, dialect=dialect)
         self.worker.request_work(lambda _request: self.read_shop_data(), self._have_shop, self._no_shop)
-        self.notice, self.pending_action, self.form = "", None, None
+        self.notice_text, self.pending_action, self.form = "", None, None
         self.shape_table = CALCULATORS_BY_DIALECT[dialect] if lists_helpers else forms
         self._take(text)
-        here = find_piece(self.pieces, cursor_line - 1)
+        here = find_piece_at_line(self.shape_pieces, cursor_line - 1)
         self.cursor_line = find_insertion_line(
-            self.program_lines, self.pieces, cursor_line - 1, self.initial_settings.dialect
+            self.program_lines, self.shape_pieces, cursor_line - 1, self.initial_settings.dialect
         )
-        if here is not None and self.lists_shapes:
+        if here is not None and self.is_listing_shapes:
             self._open_piece(here)
         else:
             self.selected_row = 0 if not self.listed_pieces else max(1, self.selected_row)
-            if self.lists_shapes:
-                self.notice = describe_damaged_comment(self.program_lines, cursor_line - 1, dialect)
+            if self.is_listing_shapes:
+                self.notice_text = describe_damaged_comment(self.program_lines, cursor_line - 1, dialect)
         return ""
 
     @property
-    def lists_shapes(self) -> bool:
+    def is_listing_shapes(self) -> bool:
         """Return whether the list contains shapes, and not calculators and templates."""
         return all(self.shape_table is not each for each in CALCULATORS_BY_DIALECT.values())
 
@@ -121,15 +128,15 @@ class ShapesModel(PanelModel):
         return tuple(self.shape_table)
 
     @property
-    def listed_pieces(self) -> list[ShapePiece]:
+    def listed_pieces(self) -> list[ProgramShape]:
         """Return the existing shapes of the program, which are listed after the forms for new shapes."""
-        return self.pieces if self.lists_shapes else []
+        return self.shape_pieces if self.is_listing_shapes else []
 
     def _take(self, text: str) -> None:
         self.program_lines = text.split("\n")
         while self.program_lines and not self.program_lines[-1].strip():
             self.program_lines.pop()
-        self.pieces = find_pieces(self.program_lines, self.shop_data, self.initial_settings)
+        self.shape_pieces = find_program_shapes(self.program_lines, self.shop_data, self.initial_settings)
         self._show("\n".join(self.program_lines) + "\n" if self.program_lines else "")
 
     def _have_shop(self, shop: ShopData) -> None:
@@ -137,12 +144,12 @@ class ShapesModel(PanelModel):
         if self.form is not None and self.form.replaced_piece is None:
             form = self.form
             form.apply_settings(
-                find_settings(self.program_lines, self.cursor_line, shop, self.initial_settings)
+                find_active_settings(self.program_lines, self.cursor_line, shop, self.initial_settings)
             )
             self._preview()
 
     def _no_shop(self, why: str) -> None:
-        self.notice = tr(Message("TOOL DATA CANNOT BE READ: {why}", why=why))
+        self.notice_text = tr(Message("TOOL DATA CANNOT BE READ: {why}", why=why))
 
     # --- list ----------------------------------------------------------------------------------------
 
@@ -155,22 +162,22 @@ class ShapesModel(PanelModel):
         """Select a row of the list: a form for a new shape, or an existing shape of the program."""
         self.selected_row = max(0, min(row, len(self.shape_table) + len(self.listed_pieces) - 1))
 
-    def open_selected(self) -> None:
+    def open_selected_row(self) -> None:
         """Open the form of the selected row, for a new shape or for an existing shape."""
         keys = self.form_keys
         if self.selected_row < len(keys):
-            self.open_shape(keys[self.selected_row])
+            self.open_shape_form(keys[self.selected_row])
         elif self.listed_pieces:
             self._open_piece(self.listed_pieces[self.selected_row - len(keys)])
 
-    def open_shape(self, key: str) -> None:
+    def open_shape_form(self, key: str) -> None:
         """Open the form of a new shape."""
-        self.notice = ""
+        self.notice_text = ""
         shape = self.shape_table[key]
         self.selected_row = self.form_keys.index(key)
         if shape.name == HEAD_SHAPE.name:
             self.cursor_line = 0
-            head = next((each for each in self.pieces if each.filled_shape.shape is shape), None)
+            head = next((each for each in self.shape_pieces if each.shape_instance.shape is shape), None)
             if head is not None:
                 self._open_piece(head)
                 return
@@ -179,47 +186,49 @@ class ShapesModel(PanelModel):
         elif self._adder_of(shape) is not None and not self.program_lines:
             self.cursor_line = 0  # the form writes a head
         elif not has_units(self.program_lines, self.initial_settings.dialect):
-            self.notice = tr("FIRST PRESS N AND FILL IN THE PROGRAM HEADER (HEAD)")
+            self.notice_text = tr("FIRST PRESS N AND FILL IN THE PROGRAM HEADER (HEAD)")
             return
-        setting = find_settings(self.program_lines, self.cursor_line, self.shop_data, self.initial_settings)
+        setting = find_active_settings(
+            self.program_lines, self.cursor_line, self.shop_data, self.initial_settings
+        )
         adder = self._adder_of(shape)
         if adder is None:
             self.form = ShapeForm(shape, setting)
         else:
             # The drawing is used for selection; on a small screen the pad would cover it.
-            self.is_pad_visible = False
+            self.is_number_pad_visible = False
             wanted, self.requested_file = self.requested_file, None
             self.form = adder.open_form(setting, tuple(self.program_lines[: self.cursor_line]), wanted)
         self._preview()
 
     def open_file(self, file: Path) -> None:
         """Open the form that makes a program from a file, such as a drawing."""
-        for each in self.added_forms:
+        for each in self.additional_forms:
             if each.accepts_file(file.name):
                 self.requested_file = file
-                self.open_shape(each.key)
+                self.open_shape_form(each.key)
 
-    def _adder_of(self, shape: Shape) -> AddedForm | None:
-        return next((each for each in self.added_forms if each.shape is shape), None)
+    def _adder_of(self, shape: Shape) -> AdditionalForm | None:
+        return next((each for each in self.additional_forms if each.shape is shape), None)
 
     @property
-    def _adder(self) -> AddedForm | None:
+    def _adder(self) -> AdditionalForm | None:
         """Return the added form that created the open form, or None if the open form is a shape."""
         return self._adder_of(self.form.shape) if self.form is not None else None
 
-    def _open_piece(self, piece: ShapePiece) -> None:
+    def _open_piece(self, piece: ProgramShape) -> None:
         """Open the form of an existing shape, and show a notice if its lines were edited by hand."""
-        self.notice, self.pending_action = describe_manual_edits(piece), None
-        self.form = ShapeForm(piece.filled_shape.shape, piece.settings, piece)
+        self.notice_text, self.pending_action = describe_manual_edits(piece), None
+        self.form = ShapeForm(piece.shape_instance.shape, piece.settings, piece)
         self._preview()
 
     # --- form ----------------------------------------------------------------------------------------
 
-    def function_keys(self) -> dict[int, FunctionKey]:
+    def make_function_keys(self) -> dict[int, FunctionKey]:
         """Return the function keys of the open form, or of the list if no form is open."""
-        pad = FunctionKey("KEYPAD", self.toggle_pad)
+        pad = FunctionKey("KEYPAD", self.toggle_number_pad)
         if self.form is None:
-            return {2: FunctionKey("OPEN", self.open_selected), 9: pad}
+            return {2: FunctionKey("OPEN", self.open_selected_row), 9: pad}
         found = {
             2: FunctionKey("WRITE", self.write_form),
             8: FunctionKey("LIST", self.return_to_list),
@@ -228,7 +237,7 @@ class ShapesModel(PanelModel):
         if self.pending_action is not None:
             found[6] = FunctionKey("YES", self.confirm_question)
         elif self._adder is not None:
-            found |= self._adder.function_keys(self.form, self._show_calculated)
+            found |= self._adder.make_function_keys(self.form, self._show_calculated)
         if self.form.replaced_piece is not None:
             found[5] = FunctionKey("DELETE", self.delete_piece)
         if self.form.shape.has_point_table:
@@ -238,18 +247,18 @@ class ShapesModel(PanelModel):
             }
         return found
 
-    def toggle_pad(self) -> None:
+    def toggle_number_pad(self) -> None:
         """Show or hide the number pad on the screen."""
-        self.is_pad_visible = not self.is_pad_visible
+        self.is_number_pad_visible = not self.is_number_pad_visible
 
     def handle_key(self, key: str) -> bool:
         """Handle a key, and return False if the key has no function in the form or the list."""
         if self.form is not None:
             return self._typed_in_form(self.form, key)
         if key.upper() in self.shape_table:
-            self.open_shape(key.upper())
+            self.open_shape_form(key.upper())
         elif key == "Enter":
-            self.open_selected()
+            self.open_selected_row()
         elif key in ROW_STEPS:
             self.select_row(self.selected_row + ROW_STEPS[key])
         elif key in {"Left", "Right"}:
@@ -262,7 +271,7 @@ class ShapesModel(PanelModel):
         if not form.handle_key(key):
             return False
         if self.pending_action is not None:
-            self.pending_action, self.notice = None, ""
+            self.pending_action, self.notice_text = None, ""
         self._preview()
         return True
 
@@ -272,7 +281,7 @@ class ShapesModel(PanelModel):
             return self.form.accepts_key(key)
         return len(key) == 1 and key.upper() in self.shape_table
 
-    def select_touched(self, word: str) -> None:
+    def select_touched_field(self, word: str) -> None:
         """Select the touched field, point or dimension.
 
         A second touch on a field with choices selects the next choice.
@@ -281,13 +290,13 @@ class ShapesModel(PanelModel):
         if form is None:
             return
         if (
-            form.selected_word == word
+            form.selected_field_name == word
             and form.selected_field is not None
             and form.list_choices(form.selected_field)
         ):
             form.handle_key("Right")
         else:
-            form.select_word(word)
+            form.select_field_by_name(word)
         self._preview()
 
     def handle_touch(self, point: tuple[float, float]) -> None:
@@ -316,9 +325,9 @@ class ShapesModel(PanelModel):
     def handle_escape(self) -> bool:
         """Cancel the question, the calculation or the form, and return False if only the list is shown."""
         if self.pending_action is not None:
-            self.pending_action, self.notice = None, ""
-        elif self.notice:
-            self.notice = ""
+            self.pending_action, self.notice_text = None, ""
+        elif self.notice_text:
+            self.notice_text = ""
         elif self.form is not None and self.form.is_calculating and self._adder is not None:
             self._adder.cancel(self.form)
         elif self.form is not None:
@@ -329,7 +338,7 @@ class ShapesModel(PanelModel):
 
     def return_to_list(self) -> None:
         """Return to the list of shapes, and discard entries that were not written to the program."""
-        self.pending_action, self.notice, self.form = None, "", None
+        self.pending_action, self.notice_text, self.form = None, "", None
         self._show("\n".join(self.program_lines) + "\n" if self.program_lines else "")
 
     def write_form(self) -> None:
@@ -343,7 +352,7 @@ class ShapesModel(PanelModel):
         if form.is_calculating:
             return  # the prompt gives the reason
         if form.error_texts:
-            self.notice = ""
+            self.notice_text = ""
             self._to_trouble(form)
         elif (
             form.replaced_piece is not None
@@ -352,7 +361,7 @@ class ShapesModel(PanelModel):
         ):
             count = form.replaced_piece.line_count
             text = tr("F6: REPLACE {count} EDITED LINES STARTING AT LINE {line}   ESC: KEEP")
-            self.notice = tr(Message(text, count=count, line=form.replaced_piece.first_line + 1))
+            self.notice_text = tr(Message(text, count=count, line=form.replaced_piece.first_line + 1))
             self.pending_action = self._write
         else:
             self._write()
@@ -365,7 +374,7 @@ class ShapesModel(PanelModel):
 
     def _to_trouble(self, form: ShapeForm) -> None:
         word = next(iter(form.error_texts))
-        form.select_word(word)
+        form.select_field_by_name(word)
 
     def _write(self) -> None:
         form = self.form
@@ -377,22 +386,24 @@ class ShapesModel(PanelModel):
         if form.shape.name == HEAD_SHAPE.name and form.replaced_piece is not None:
             grown = len(form.program_lines) - form.replaced_piece.line_count
             moved = [
-                shift_piece(each, grown) for each in self.pieces if each.filled_shape.shape is not form.shape
+                move_piece_down(each, grown)
+                for each in self.shape_pieces
+                if each.shape_instance.shape is not form.shape
             ]
-            text, stay = rewrite_pieces(text, self.shop_data, moved)
+            text, stay = rewrite_program_shapes(text, self.shop_data, moved)
             said = describe_unchanged_shapes(stay)
-        self.form, self.notice, self.pending_action = None, said, None
+        self.form, self.notice_text, self.pending_action = None, said, None
         self._take("\n".join(text) + "\n")
         self.cursor_line = next_line
         self.write_count += 1
-        self.selected_row = 0 if not self.pieces else max(1, self.selected_row)
+        self.selected_row = 0 if not self.shape_pieces else max(1, self.selected_row)
 
     def delete_piece(self) -> None:
         """Delete the lines of the shape from the program text (F5), after confirmation."""
         form = self.form
         if form is None or form.replaced_piece is None:
             return
-        self.notice = tr(
+        self.notice_text = tr(
             Message(
                 "F6: DELETE THE {count} LINES OF THIS SHAPE   ESC: KEEP THEM",
                 count=form.replaced_piece.line_count,
@@ -405,7 +416,7 @@ class ShapesModel(PanelModel):
         assert form is not None
         assert form.replaced_piece is not None
         piece = form.replaced_piece
-        self.form, self.notice = None, ""
+        self.form, self.notice_text = None, ""
         self._take(
             "\n".join([*self.program_lines[: piece.first_line], *self.program_lines[piece.next_line :]])
             + "\n"
@@ -414,7 +425,7 @@ class ShapesModel(PanelModel):
         self.write_count += 1
 
     @property
-    def path_line(self) -> int:
+    def path_end_line(self) -> int:
         """Return the number of the line up to which the tool path is shown, counted from 1.
 
         This is the last line of the form, or the insertion line if no form is open.
@@ -449,7 +460,7 @@ class ShapesModel(PanelModel):
         return self.text
 
     def _tell(self, words: str) -> None:
-        self.notice = words
+        self.notice_text = words
 
     def _show(self, text: str) -> None:
         if text != self.text:
@@ -458,9 +469,9 @@ class ShapesModel(PanelModel):
 
     def prompt_text(self) -> str:
         """Return the prompt that explains the current keys."""
-        if self.notice:
-            return self.notice
-        if self.form is None and not self.lists_shapes:
+        if self.notice_text:
+            return self.notice_text
+        if self.form is None and not self.is_listing_shapes:
             return tr("LETTER: OPEN CALCULATOR OR TEMPLATE   F10: GO TO TEXT")
         if self.form is None:
             return tr("LETTER: OPEN SHAPE   RIGHT: SHAPES IN PROGRAM   F10: TEXT")

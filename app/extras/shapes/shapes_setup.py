@@ -36,13 +36,13 @@ def make_shop_data(machine: Machine, tools: Mapping[int, ToolShape]) -> ShopData
     z, c = by_name.get("Z"), by_name.get("C")
     return ShopData(
         max_rpm=machine.spindle.max_rpm,
-        spindle_power_w=machine.spindle.power or ShopData().spindle_power_w,
+        spindle_power_w=machine.spindle.power_w or ShopData().spindle_power_w,
         max_acceleration_mm_s2=z.max_acceleration if z is not None else 0.0,
-        max_c_rpm=c.max_speed / 6.0 if c is not None and c.max_speed else ShopData().max_c_rpm,
+        max_c_axis_rpm=c.max_speed / 6.0 if c is not None and c.max_speed else ShopData().max_c_axis_rpm,
         live_tool_codes=_live(machine),
         has_live_output=bool(machine.live_tool_output),
-        third_axis=machine.third_axis_name if machine.is_c_enabled else "",
-        has_spindle_as_c=machine.is_spindle_c_axis,
+        third_axis_name=machine.third_axis_name if machine.is_c_enabled else "",
+        is_spindle_c_axis=machine.is_spindle_c_axis,
         chuck_codes=_chuck(machine),
         travel_mm=(_travel(by_name.get("X")), _travel(z)),
         tools=dict(tools),
@@ -59,7 +59,7 @@ def _chuck(machine: Machine) -> tuple[int, int] | None:
 
     Returns None if the machine file does not define these codes.
     """
-    codes = {on: code for code, (output, on) in sorted(machine.m_codes.items()) if output == "collet"}
+    codes = {on: code for code, (output, on) in sorted(machine.m_code_outputs.items()) if output == "collet"}
     return (codes[False], codes[True]) if len(codes) == 2 else None
 
 
@@ -68,9 +68,9 @@ def _live(machine: Machine) -> tuple[int, int]:
 
     The codes are found by the name of their output. If several codes match, the lowest are returned.
     """
-    for code, (output, state) in sorted(machine.m_codes.items()):
+    for code, (output, state) in sorted(machine.m_code_outputs.items()):
         if state and _LIVE.search(output):
-            off = [other for other, (name, on) in machine.m_codes.items() if name == output and not on]
+            off = [other for other, (name, on) in machine.m_code_outputs.items() if name == output and not on]
             if off:
                 return code, min(off)
     return _USUAL

@@ -51,7 +51,7 @@ class _Line:
     label: str
     value_text: str = ""
     text_tone: str = "text"
-    field_word: str = ""
+    field_name: str = ""
     point_cells: tuple[str, ...] = ()
 
 
@@ -246,7 +246,7 @@ class ShapesView(EditorPanel):
         look, model = host.theme, _find_shapes_model(host.desk)
         self.theme, self.model = look, model
         self.rows_panel = ShapeRowsPanel(look, self._choose, self)
-        self.sketch_panel = SketchPanel(look, model.select_touched, model.handle_touch, self)
+        self.sketch_panel = SketchPanel(look, model.select_touched_field, model.handle_touch, self)
         self.lines_panel = ShapeLinesPanel(look, self)
         self.number_pad = NumberPad(look, editor_page.handle_touched_key, page_key=None, parent=self)
         self._seen: tuple[object, ...] = ()
@@ -265,7 +265,7 @@ class ShapesView(EditorPanel):
 
         Returns the reason if opening is not possible, or an empty string.
         """
-        return self.model.open_for_text(
+        return self.model.open_program_text(
             program_name, text, line_number, lists_helpers=key_name == "Calculators"
         )
 
@@ -278,12 +278,12 @@ class ShapesView(EditorPanel):
         form = model.form
         now: tuple[object, ...] = (
             form is None,
-            model.lists_shapes,
+            model.is_listing_shapes,
             tuple(model.listed_pieces),
             model.selected_row,
             model.text_number,
             model.write_count,
-            model.is_pad_visible,
+            model.is_number_pad_visible,
             get_language(),
         )
         if form is not None:
@@ -296,25 +296,25 @@ class ShapesView(EditorPanel):
             self._show_list()
         else:
             self._show_form(form)
-        self.lines_panel.setVisible(not model.is_pad_visible)
-        self.number_pad.setVisible(model.is_pad_visible)
+        self.lines_panel.setVisible(not model.is_number_pad_visible)
+        self.number_pad.setVisible(model.is_number_pad_visible)
         self.sketch_panel.setVisible(True)  # hidden later if the pad needs the space
         self.lay_out()
 
     def _show_list(self) -> None:
         model = self.model
         table, keys = model.shape_table, model.form_keys
-        shapes = [_Line(f"{key}   {tr(table[key].name)}", "", field_word=key) for key in keys]
+        shapes = [_Line(f"{key}   {tr(table[key].name)}", "", field_name=key) for key in keys]
         there = [
             _Line(
-                each.filled_shape.shape.name,
+                each.shape_instance.shape.name,
                 f"{each.first_line + 1}",
                 "alarm" if each.edited_line >= 0 else "text",
             )
             for each in model.listed_pieces
         ]
         self.rows_panel.heading = tr(
-            "SHAPES  ·  IN THIS PROGRAM, BY LINE" if model.lists_shapes else "CALCULATORS AND TEMPLATES"
+            "SHAPES  ·  IN THIS PROGRAM, BY LINE" if model.is_listing_shapes else "CALCULATORS AND TEMPLATES"
         )
         self.rows_panel.displayed_rows, self.rows_panel.selected_row, self.rows_panel.selected_column = (
             (*shapes, *there),
@@ -325,10 +325,10 @@ class ShapesView(EditorPanel):
         shape = (
             table[keys[place]]
             if place < len(keys)
-            else model.listed_pieces[place - len(keys)].filled_shape.shape
+            else model.listed_pieces[place - len(keys)].shape_instance.shape
         )
         form = ShapeForm(shape, model.initial_settings)
-        self.sketch_panel.displayed = shape.make_sketch(form.filled_shape), (), "", frozenset()
+        self.sketch_panel.displayed_sketch = shape.make_sketch(form.filled_shape), (), "", frozenset()
         self.lines_panel.error_text, self.lines_panel.displayed_lines, self.lines_panel.remarks = (
             "",
             (),
@@ -348,8 +348,15 @@ class ShapesView(EditorPanel):
             form.selected_column,
         )
         drawn = form.current_sketch
-        labels = tuple((dim.field_word, form.get_dimension_text(dim.field_word)) for dim in drawn.dimensions)
-        self.sketch_panel.displayed = drawn, labels, form.selected_word, frozenset(form.error_texts)
+        labels = tuple(
+            (dim.field_label, form.get_dimension_text(dim.field_label)) for dim in drawn.dimensions
+        )
+        self.sketch_panel.displayed_sketch = (
+            drawn,
+            labels,
+            form.selected_field_name,
+            frozenset(form.error_texts),
+        )
         self.lines_panel.error_text, self.lines_panel.displayed_lines = (
             form.current_error,
             tuple(form.program_lines),
@@ -361,11 +368,11 @@ class ShapesView(EditorPanel):
         form = model.form
         if form is None:
             if row == model.selected_row:
-                model.open_selected()
+                model.open_selected_row()
             else:
                 model.select_row(row)
         elif row < len(form.fields):
-            model.select_touched(form.fields[row].word)
+            model.select_touched_field(form.fields[row].name)
         else:
             model.select_touched_cell(row - len(form.fields), max(0, column))
 
@@ -378,7 +385,7 @@ class ShapesView(EditorPanel):
         u = self.theme.unit_px
         gap, left = max(4, round(0.7 * u)), round(_SHARE * self.width())
         right, x = self.width() - left - gap, left + gap
-        low = self._pad_height() if self.model.is_pad_visible else round(0.4 * self.height())
+        low = self._pad_height() if self.model.is_number_pad_visible else round(0.4 * self.height())
         self.rows_panel.setGeometry(0, 0, left, self.height())
         self.sketch_panel.setGeometry(x, 0, right, self.height() - low - gap)
         for part in (self.lines_panel, self.number_pad):
@@ -415,7 +422,7 @@ def _line_of(cell: FormCell) -> _Line:
         cell.label,
         f"{_TURN} {figure} ▸" if cell.is_choice and figure != _UNSAID else figure,
         tone,
-        cell.field_word,
+        cell.field_name,
     )
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from app.compose.optional_features import CloseFunction, OptionalFeature, ReportFunction, Subcommand
 
 if TYPE_CHECKING:
-    from app.compose.backends.backend_entry import CheckResults
+    from app.compose.backends.backend_entry import MachineCheckResults
     from app.compose.runs.journal import Journal
     from app.desk.desk import Desk
     from app.desk.page_description import PageDescription
@@ -75,14 +75,14 @@ class SharingExtra(OptionalFeature):
 
         return {PRECEDING_COMMAND: OUTPUTS}
 
-    def add_check_rows(self, machine: Machine, results: CheckResults) -> None:
+    def add_check_rows(self, machine: Machine, results: MachineCheckResults) -> None:
         """Add a row that shows whether the shared location responds and is set up for sharing.
 
         If the machine file has no [sharing] table, no row is added.
         """
-        from app.extras.sharing.sharing_check import check_sharing
+        from app.extras.sharing.sharing_check import add_sharing_check_row
 
-        check_sharing(machine, results)
+        add_sharing_check_row(machine, results)
 
 
 EXTRA = SharingExtra()

@@ -24,7 +24,7 @@ _OPEN = (  # a pipe in its place is reported by its reader
 )
 
 
-def wait_for_location(
+def run_location_work(
     location: SharedLocation, run_work: Callable[[], T], report_after_s: float = _TOLD_AFTER
 ) -> T:
     """Run ``run_work`` in a thread and return its result, or raise its exception.

@@ -10,7 +10,7 @@ import json
 import sys
 from typing import TYPE_CHECKING
 
-from app.cli.change_author import add_as_option, get_permitted_user, log_user_change
+from app.cli.change_author import add_author_option, get_permitted_user, log_user_change
 from app.cli.store_command import open_store
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, convert_to_command_error
 from core.access.access_table import ProtectedChange
@@ -60,7 +60,7 @@ def add_parser(subparsers: SubParsers) -> None:
         action.add_argument("--machine", metavar="FILE", help="machine file with a [sharing] table")
         action.add_argument("--json", action="store_true", help="print only JSON on stdout")
     for action in (begin, publish, take, keep):
-        add_as_option(action)
+        add_author_option(action)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -69,9 +69,9 @@ def run(args: argparse.Namespace) -> int:
     Raises CommandError if there is no [sharing] table or the action fails.
     """
     from app.compose.machine.machine_setup import read_machine
-    from app.extras.sharing.location_wait import wait_for_location
+    from app.extras.sharing.location_wait import run_location_work
     from app.extras.sharing.sharing import VersionCopyError
-    from app.extras.sharing.sharing_setup import make_sharing
+    from app.extras.sharing.sharing_setup import make_program_sharing
     from core.extras.sharing.shared_location import SharingError
 
     machine, acts = read_machine(args.machine), _acts(args)
@@ -80,13 +80,13 @@ def run(args: argparse.Namespace) -> int:
         convert_to_command_error(SharingError, VersionCopyError),
         open_store(read_only=args.action in _READING) as store,
     ):
-        sharing = make_sharing(machine, lambda: store)
+        sharing = make_program_sharing(machine, lambda: store)
         if sharing is None:
             raise CommandError(
                 "the machine file has no [sharing] table; add it with a folder or a database",
                 "no-sharing",
             )
-        status = wait_for_location(sharing.location, lambda: _ACTIONS[args.action](sharing, args))
+        status = run_location_work(sharing.location, lambda: _ACTIONS[args.action](sharing, args))
     if acts:
         program = f"program {args.name}: " if args.action in {"take", "keep"} else ""
         log_user_change(open_store, who, f"{program}share {args.action}")
@@ -130,7 +130,7 @@ def _publish(sharing: ProgramSharing, args: argparse.Namespace) -> int:
     shared = _looked(sharing)
     if shared.error_text:
         raise CommandError(shared.error_text, "not-shared")
-    count = sum(bool(family.local_version_id) for family in shared.programs.values())
+    count = sum(bool(family.local_version_id) for family in shared.versions_by_program.values())
     programs = "the only program" if count == 1 else Message("all {count} programs", count=count)
     _say(
         args,
@@ -165,7 +165,8 @@ def _compare(sharing: ProgramSharing, args: argparse.Namespace) -> int:
 
     version = _chosen(sharing.preview_synchronization(), args)
     rows = compare_texts(
-        decode_text(sharing.read_local_text(version.program_key)), decode_text(sharing.read_text(version))
+        decode_text(sharing.read_local_text(version.program_key)),
+        decode_text(sharing.read_version_text(version)),
     )
     if args.json:
         changes = [{"sign": row.sign, "here": row.old, "there": row.new, "text": row.text} for row in rows]
@@ -179,7 +180,7 @@ def _compare(sharing: ProgramSharing, args: argparse.Namespace) -> int:
 
 def _take(sharing: ProgramSharing, args: argparse.Namespace) -> int:
     version = _chosen(_looked(sharing), args)
-    before = sharing.last_result.programs[version.program_key].local_version_id
+    before = sharing.last_result.versions_by_program[version.program_key].local_version_id
     name = sharing.copy_version(version)
     _looked(sharing)
     template = (
@@ -196,7 +197,7 @@ def _keep(sharing: ProgramSharing, args: argparse.Namespace) -> int:
     from core.extras.sharing.shared_versions import make_program_key
 
     _looked(sharing)
-    sharing.resolve_with_local(make_program_key(args.name))
+    sharing.resolve_with_local_version(make_program_key(args.name))
     shared = _looked(sharing)
     wait = (
         Message("; the local version is not published yet: {problem}", problem=shared.error_text)
@@ -233,7 +234,7 @@ def _looked(sharing: ProgramSharing) -> SharingResult:
 def _chosen(shared: SharingResult, args: argparse.Namespace) -> SharedVersion:
     from core.extras.sharing.shared_versions import make_program_key
 
-    family = shared.programs.get(make_program_key(args.name))
+    family = shared.versions_by_program.get(make_program_key(args.name))
     if family is None:
         raise CommandError(
             Message(
@@ -296,8 +297,8 @@ def make_status_json(sharing: ProgramSharing, result: SharingResult) -> dict[str
         "place": sharing.location.name,
         "desk": sharing.machine_name,
         "trouble": result.error_text or None,
-        "waiting": result.unpublished_count,
-        "programs": [_program(result, family) for _, family in sorted(result.programs.items())],
+        "waiting": result.unpublished_version_count,
+        "programs": [_program(result, family) for _, family in sorted(result.versions_by_program.items())],
         "desks": [
             {"desk": each.machine_name, "told": each.reported_at, "has": dict(each.version_ids)}
             for each in result.machine_states
@@ -312,10 +313,10 @@ def _program(shared: SharingResult, family: ProgramVersions) -> dict[str, object
     newest = family.newest_versions
     return {
         "program": (here or newest[0]).program,
-        "state": family.state,
+        "state": family.sharing_state,
         "here": _of(here) if here is not None else None,
         "elsewhere": [
-            _of(each) | {"on": list(shared.find_machines_with(each.id))}
+            _of(each) | {"on": list(shared.find_machines_with_version(each.id))}
             for each in family.newest_remote_versions
         ],
         "versions": len(family.versions),
@@ -344,13 +345,15 @@ _STATES = {
 def _table(sharing: ProgramSharing, shared: SharingResult) -> str:
     lines = [
         f"{sharing.machine_name} shares in {sharing.location.name}; versions that wait: "
-        f"{shared.unpublished_count}\n"
+        f"{shared.unpublished_version_count}\n"
     ]
-    for _, family in sorted(shared.programs.items()):
+    for _, family in sorted(shared.versions_by_program.items()):
         name = (family.versions.get(family.local_version_id) or family.newest_versions[0]).program
-        lines.append(f"{name:24}  {_STATES[family.state]}\n")
+        lines.append(f"{name:24}  {_STATES[family.sharing_state]}\n")
         for each in family.newest_remote_versions:
-            on = ", ".join(shared.find_machines_with(each.id)) or ("-" if shared.error_text else "no desk")
+            on = ", ".join(shared.find_machines_with_version(each.id)) or (
+                "-" if shared.error_text else "no desk"
+            )
             lines.append(f"    {each.id[:8]}  {each.desk}  {each.saved}  {each.size} bytes  on {on}\n")
     lines += [f"{name} is not shared: {why}\n" for name, why in shared.rejected_files.items()]
     if shared.foreign_items:

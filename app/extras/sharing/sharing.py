@@ -112,10 +112,10 @@ class SharingResult:
     ``error_text`` is the reason if the location could not be used, or else an empty string.
     """
 
-    programs: Mapping[str, ProgramVersions] = field(default_factory=dict)
+    versions_by_program: Mapping[str, ProgramVersions] = field(default_factory=dict)
     states_by_program: Mapping[str, str] = field(
         default_factory=dict
-    )  # state of each family, see ``ProgramVersions.state``
+    )  # state of each family, see ``ProgramVersions.sharing_state``
     # machines that have a version, by id
     machines_by_version: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     machine_states: tuple[PublishedMachineState, ...] = ()
@@ -123,10 +123,10 @@ class SharingResult:
     rejected_files: Mapping[str, str] = field(
         default_factory=dict
     )  # files of this machine that are not shared
-    unpublished_count: int = 0  # versions that are not published yet
+    unpublished_version_count: int = 0  # versions that are not published yet
     error_text: str = ""
 
-    def find_machines_with(self, version_id: str) -> tuple[str, ...]:
+    def find_machines_with_version(self, version_id: str) -> tuple[str, ...]:
         """Return the names of the machines that have a version in their program folder."""
         return self.machines_by_version.get(version_id, ())
 
@@ -196,11 +196,11 @@ class ProgramSharing:
             known = {each.id: each for each in shared_versions.read_all_versions(connection)}
         found = self.location.read_contents(known)
 
-        def learn(connection: sqlite3.Connection) -> None:
+        def store_found_versions(connection: sqlite3.Connection) -> None:
             shared_versions.add_versions(connection, found.unknown_versions)
             shared_versions.set_published_versions(connection, found.stored_ids)
 
-        store.write(learn).result()
+        store.write(store_found_versions).result()
         return found
 
     def _note(self, store: Store, *, is_settled: bool) -> None:
@@ -295,8 +295,8 @@ class ProgramSharing:
                 *(each for each in found.machine_states if each.machine_id != self.machine_id),
                 self._state(store),
             )
-        strays = found.foreign_items if found is not None else self.last_result.foreign_items
-        states = {key: family.state for key, family in families.items()}
+        strays = found.foreign_item_names if found is not None else self.last_result.foreign_items
+        states = {key: family.sharing_state for key, family in families.items()}
         refused = dict(self._files.rejected_files)
         self.last_result = SharingResult(
             families, states, _holders(desks), desks, strays, refused, waiting, error_text
@@ -304,7 +304,7 @@ class ProgramSharing:
 
     # --- requests of the operator ----------------------------------------------------------------------
 
-    def read_text(self, version: SharedVersion) -> bytes:
+    def read_version_text(self, version: SharedVersion) -> bytes:
         """Return the text of a version from the store, or else from the shared location.
 
         Raises StoreError or SharingError if the text cannot be read.
@@ -318,7 +318,7 @@ class ProgramSharing:
 
         Raises StoreError if the store cannot be read.
         """
-        family = self.last_result.programs.get(program_key, ProgramVersions())
+        family = self.last_result.versions_by_program.get(program_key, ProgramVersions())
         here = family.versions.get(family.local_version_id)
         if here is None:
             return b""
@@ -335,7 +335,7 @@ class ProgramSharing:
         unchanged, unless the error occurs after the file was replaced: for example, the store may fail to
         record the new local version. The next synchronization then recognizes the new text.
         """
-        text = self.read_text(version)
+        text = self.read_version_text(version)
         with self._lock:
             store = self._store()
             self._note(store, is_settled=False)
@@ -356,7 +356,7 @@ class ProgramSharing:
                 target = self._files.folder / name
                 (write_program_file if family.local_version_id else write_new_file)(target, text)
             except FileOperationError as error:
-                store.write(lambda c: shared_versions.delete_unpublished(c, taken)).result()
+                store.write(lambda c: shared_versions.delete_unpublished_version(c, taken)).result()
                 raise VersionCopyError(str(error), get_error_code(error)) from error
             # After the file, because the next synchronization recognizes its text after a power failure.
             store.write(
@@ -365,7 +365,7 @@ class ProgramSharing:
             self._tell(store, None, self.last_result.error_text)
             return name
 
-    def resolve_with_local(self, program_key: str) -> None:
+    def resolve_with_local_version(self, program_key: str) -> None:
         """Resolve a version conflict in favor of the local version.
 
         If another machine has a newer version but there is no conflict, the local version is made the
@@ -445,7 +445,7 @@ def _keep(name: str, version: SharedVersion, text: bytes, connection: sqlite3.Co
 
 
 def _published(versions: Sequence[SharedVersion], connection: sqlite3.Connection) -> None:
-    shared_versions.mark_published(connection, versions)
+    shared_versions.mark_versions_published(connection, versions)
 
 
 def _kept(version: SharedVersion, connection: sqlite3.Connection) -> None:

@@ -14,15 +14,15 @@ from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
 from app.desk.pages.table_content import ROW_STEPS, FunctionKey, TableContent, TableRow
 from app.desk.status.formats import NO_VALUE, format_local_time
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
-from app.editor.version_history import NullArchive, VersionHistory, decode_text
+from app.editor.version_history import NullVersionArchive, VersionHistory, decode_text
 from app.extras.sharing.sharing import ProgramSharing, SharingResult
 from core.access.access_table import ProtectedChange
 from core.extras.sharing.shared_versions import ProgramVersions, SharedVersion, make_program_key
 from core.message import Message, join_messages
-from core.store.store_rows import VersionRow
+from core.store.store_rows import ProgramVersionRow
 
 NO_LOCATION_MESSAGE = (
     "NO LOCATION FOR SHARED PROGRAMS IS SET. SPECIFY A FOLDER OR A "
@@ -32,10 +32,10 @@ NOTHING_SHARED_MESSAGE = "NOTHING SHARED YET. NEXT REFRESH SHARES THE PROGRAM FO
 SELECT_PROGRAM_MESSAGE = "SELECT A PROGRAM FIRST"
 BUSY_MESSAGE = "STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE"
 _STATES = {
-    "new": ("NOT ON THIS CONTROL", Tone.READY),
-    "newer": ("NEWER VERSION ON ANOTHER CONTROL", Tone.PAUSE),
-    "both": ("CHANGED HERE AND ON ANOTHER CONTROL", Tone.ALARM),
-    "same": ("UP TO DATE", Tone.RUN),
+    "new": ("NOT ON THIS CONTROL", StatusTone.READY),
+    "newer": ("NEWER VERSION ON ANOTHER CONTROL", StatusTone.PAUSE),
+    "both": ("CHANGED HERE AND ON ANOTHER CONTROL", StatusTone.ALARM),
+    "same": ("UP TO DATE", StatusTone.RUN),
 }
 _ORDER = tuple(_STATES)
 _WIDE = 110  # characters of a note
@@ -75,13 +75,15 @@ class RemoteVersionArchive:
     It contains the remote versions found by the last synchronization, numbered from 1.
     """
 
-    sharing: ProgramSharing
+    program_sharing: ProgramSharing
 
     def find_remote_versions(self, program_key: str) -> Sequence[SharedVersion]:
         """Return the newest versions of a program that are missing on this machine."""
-        return self.sharing.last_result.programs.get(program_key, ProgramVersions()).newest_remote_versions
+        return self.program_sharing.last_result.versions_by_program.get(
+            program_key, ProgramVersions()
+        ).newest_remote_versions
 
-    def versions(self, name: str) -> Sequence[VersionRow]:
+    def versions(self, name: str) -> Sequence[ProgramVersionRow]:
         """Return the remote versions of a program, with their authors and the machines that have them."""
         return [self._row(number, each) for number, each in enumerate(self.find_remote_versions(name), 1)]
 
@@ -90,20 +92,20 @@ class RemoteVersionArchive:
 
         Raises SharingError or StoreError if the text cannot be read.
         """
-        return self.sharing.read_text(self.find_remote_versions(name)[version - 1])
+        return self.program_sharing.read_version_text(self.find_remote_versions(name)[version - 1])
 
     def save_version(self, _name: str, _text: bytes, _why: str) -> int:
         """Store nothing and return 0, because remote versions are read-only."""
         return 0
 
-    def _row(self, number: int, version: SharedVersion) -> VersionRow:
-        on = ", ".join(self.sharing.last_result.find_machines_with(version.id))
+    def _row(self, number: int, version: SharedVersion) -> ProgramVersionRow:
+        on = ", ".join(self.program_sharing.last_result.find_machines_with_version(version.id))
         who = (
             join_messages("  ·  ", (version.desk, tr(Message("AVAILABLE ON {desks}", desks=on))))
             if on
             else version.desk
         )
-        return VersionRow(number, version.text, version.saved, who, version.size)
+        return ProgramVersionRow(number, version.text, version.saved, who, version.size)
 
 
 @dataclass(slots=True)
@@ -116,7 +118,7 @@ class SharingModel:
     """
 
     desk: Desk
-    sharing: ProgramSharing | None = None
+    program_sharing: ProgramSharing | None = None
     synchronize_now: Callable[[], None] = lambda: None
     get_waiting_time_s: Callable[[], float] = lambda: 0.0
     selected_row: int = 0
@@ -131,7 +133,11 @@ class SharingModel:
     )
 
     def __post_init__(self) -> None:
-        archive = RemoteVersionArchive(self.sharing) if self.sharing is not None else NullArchive()
+        archive = (
+            RemoteVersionArchive(self.program_sharing)
+            if self.program_sharing is not None
+            else NullVersionArchive()
+        )
         self.remote_versions = RemoteVersions(archive, self.worker)
 
     # --- display -------------------------------------------------------------------------------------
@@ -139,10 +145,10 @@ class SharingModel:
     @property
     def last_result(self) -> SharingResult:
         """Return the result of the last synchronization."""
-        return self.sharing.last_result if self.sharing is not None else SharingResult()
+        return self.program_sharing.last_result if self.program_sharing is not None else SharingResult()
 
     @property
-    def programs(self) -> tuple[tuple[str, ProgramVersions], ...]:
+    def shared_programs(self) -> tuple[tuple[str, ProgramVersions], ...]:
         """Return the shared programs, each with its program key.
 
         Programs that require a decision come first. Programs with the same state are sorted by name.
@@ -150,7 +156,9 @@ class SharingModel:
         shared = self.last_result
         if shared is not self._of[0]:
             states = shared.states_by_program
-            order = sorted(shared.programs.items(), key=lambda each: (_ORDER.index(states[each[0]]), each[0]))
+            order = sorted(
+                shared.versions_by_program.items(), key=lambda each: (_ORDER.index(states[each[0]]), each[0])
+            )
             rows = tuple(self._row(key, family) for key, family in order)
             self._of = shared, tuple(order), rows
         return self._of[1]
@@ -158,7 +166,7 @@ class SharingModel:
     @property
     def selected_program(self) -> tuple[str, ProgramVersions] | None:
         """Return the selected program with its program key, or None if no program is shared."""
-        programs = self.programs
+        programs = self.shared_programs
         return programs[self.selected_row] if self.selected_row < len(programs) else None
 
     @property
@@ -179,13 +187,13 @@ class SharingModel:
         This method is called once per frame.
         """
         self.worker.deliver_results()
-        self.selected_row = max(0, min(self.selected_row, len(self.last_result.programs) - 1))
+        self.selected_row = max(0, min(self.selected_row, len(self.last_result.versions_by_program) - 1))
         key = self.selected_program[0] if self.selected_program is not None else ""
         now = self.selected_program[1] if self.selected_program is not None else None
-        if (now, key) == self._seen or self.sharing is None:
+        if (now, key) == self._seen or self.program_sharing is None:
             return
         self._seen = now, key
-        sharing = self.sharing
+        sharing = self.program_sharing
         self.worker.enqueue_work(
             lambda: decode_text(sharing.read_local_text(key)),
             lambda text: self.remote_versions.open_history(key, text),
@@ -197,19 +205,19 @@ class SharingModel:
 
         Each row contains the state of the program, and the author, time and machines of its newest version.
         """
-        rows = self._of[2] if self.programs else ()
+        rows = self._of[2] if self.shared_programs else ()
         notes = wrap(self._silence() or tr(self.last_result.error_text), _WIDE)
         notes += [f"{name}: {why}" for name, why in list(self.last_result.rejected_files.items())[:2]]
-        if self.sharing is None:
+        if self.program_sharing is None:
             notes = [NO_LOCATION_MESSAGE]
         elif not rows and not notes:
             notes = [NOTHING_SHARED_MESSAGE]
         waiting = (
-            tr(Message("{count} WAITING TO BE SHARED", count=self.last_result.unpublished_count))
-            if self.last_result.unpublished_count
+            tr(Message("{count} WAITING TO BE SHARED", count=self.last_result.unpublished_version_count))
+            if self.last_result.unpublished_version_count
             else ""
         )
-        where = self.sharing.location.name if self.sharing is not None else ""
+        where = self.program_sharing.location.name if self.program_sharing is not None else ""
         title = join_messages("  ·  ", filter(None, (tr("SHARED PROGRAMS"), where, waiting)))
         return TableContent(
             title,
@@ -218,16 +226,16 @@ class SharingModel:
             rows,
             self.selected_row if rows else -1,
             notes=tuple(notes),
-            raw_columns=frozenset({0, 2, 3, 4}),
+            untranslated_columns=frozenset({0, 2, 3, 4}),
         )
 
     def _silence(self) -> str:
         """Return a message if the shared location has not responded for a long time, or an empty string."""
         seconds = self.get_waiting_time_s()
-        if self.sharing is None or seconds < _PATIENCE:
+        if self.program_sharing is None or seconds < _PATIENCE:
             return ""
         words = tr("{name}: NO RESPONSE FOR {seconds} S. PROGRAMS STAY LOCAL FOR NOW")
-        return tr(Message(words, name=self.sharing.location.name, seconds=f"{seconds:.0f}"))
+        return tr(Message(words, name=self.program_sharing.location.name, seconds=f"{seconds:.0f}"))
 
     def _row(self, key: str, family: ProgramVersions) -> TableRow:
         state = self.last_result.states_by_program[key]
@@ -236,13 +244,13 @@ class SharingModel:
         shown = family.newest_remote_versions[0] if family.newest_remote_versions else here
         if shown is None:
             return TableRow((NO_VALUE,) * 5)
-        on = ", ".join(self.last_result.find_machines_with(shown.id)) or NO_VALUE
+        on = ", ".join(self.last_result.find_machines_with_version(shown.id)) or NO_VALUE
         saved = format_local_time(shown.saved, with_seconds=False)
         return TableRow(((here or shown).program, words, shown.desk, saved, on), state != "same", tone)
 
     def prompt_text(self) -> str:
         """Return the prompt that explains the current keys."""
-        if self.sharing is None:
+        if self.program_sharing is None:
             return NO_LOCATION_MESSAGE
         if self.selected_version is None:
             return "UP/DOWN: SELECT PROGRAM   F5: REFRESH   ESC: AUTOMATIC"
@@ -252,7 +260,7 @@ class SharingModel:
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys of the page. Keys without an effect now are disabled."""
         return {
             "F2": FunctionKey(
@@ -262,7 +270,7 @@ class SharingModel:
             ),
             "F3": FunctionKey("KEEP", self.keep_local_version, barred=not self._both),
             "F4": FunctionKey("VERSION", self.select_next_version),
-            "F5": FunctionKey("REFRESH", self.start_synchronization, barred=self.sharing is None),
+            "F5": FunctionKey("REFRESH", self.start_synchronization, barred=self.program_sharing is None),
         }
 
     def copy_version(self) -> None:
@@ -287,13 +295,13 @@ class SharingModel:
 
     def _take(self, version: SharedVersion) -> None:
         # The program was started or the access level has expired in the meantime.
-        why = self._find_use_refusal(version.program_key) or self.desk.user_access.find_refusal(
+        why = self._find_use_refusal(version.program_key) or self.desk.user_access.find_refusal_reason(
             ProtectedChange.PROGRAMS
         )
-        if why or self.sharing is None:
+        if why or self.program_sharing is None:
             self.desk.say(why)
             return
-        sharing = self.sharing
+        sharing = self.program_sharing
         done = tr(
             Message("{name} IS NOW THE VERSION FROM {machine}", name=version.program, machine=version.desk)
         )
@@ -323,11 +331,11 @@ class SharingModel:
         self.desk.ask_operator(tr(Message(words, name=name)), lambda: self._keep(key, name))
 
     def _keep(self, key: str, name: str) -> None:
-        if self.sharing is not None and not self.desk.is_refused(ProtectedChange.PROGRAMS):
-            sharing = self.sharing
+        if self.program_sharing is not None and not self.desk.is_refused(ProtectedChange.PROGRAMS):
+            sharing = self.program_sharing
             said = tr(Message("{name}: LOCAL VERSION RETAINED", name=name))
             self._work(
-                lambda: sharing.resolve_with_local(key),
+                lambda: sharing.resolve_with_local_version(key),
                 said,
                 Message("program {name}: local version retained", name=name),
             )
@@ -337,14 +345,16 @@ class SharingModel:
             self.desk.say(self._silence() or BUSY_MESSAGE)
             return
 
-        who = self.desk.user_access.recorded_user  # the user of the request, even if another user signs in
+        who = (
+            self.desk.user_access.history_user_name
+        )  # the user of the request, even if another user signs in
 
-        def done(_answer: object) -> None:
+        def report_success(_answer: object) -> None:
             self.desk.show_success(words)
             self.desk.user_access.persistence.log_change(change, who)
             self.synchronize_now()
 
-        self.worker.enqueue_work(work, done, self.desk.show_refusal)
+        self.worker.enqueue_work(work, report_success, self.desk.show_refusal)
 
     def _find_use_refusal(self, key: str) -> str:
         """Return the reason why a program in use must not be replaced now, or an empty string.
@@ -372,7 +382,7 @@ class SharingModel:
 
     def start_synchronization(self) -> None:
         """Start a synchronization now, or show the reason why this is not possible."""
-        if self.sharing is None:
+        if self.program_sharing is None:
             self.desk.say(NO_LOCATION_MESSAGE)
         elif self._silence():
             self.desk.say(self._silence())
@@ -385,7 +395,7 @@ class SharingModel:
 
         The arrow keys select a program. Enter copies the selected version.
         """
-        if key in ROW_STEPS and self.programs:
+        if key in ROW_STEPS and self.shared_programs:
             self.select_row(self.selected_row + ROW_STEPS[key])
         elif key == "Enter":
             self.copy_version()
@@ -400,7 +410,7 @@ class SharingModel:
     def select_row(self, row: int) -> None:
         """Select a program by its row."""
         self.desk.clear_prompt_line()
-        self.selected_row = max(0, min(len(self.programs) - 1, row))
+        self.selected_row = max(0, min(len(self.shared_programs) - 1, row))
 
     def on_open(self) -> None:
         """Start a synchronization when the page opens."""

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 MACHINE_ID_FILE = "sharing-id"
 
 
-def make_sharing(machine: Machine, get_store: Callable[[], Store]) -> ProgramSharing | None:
+def make_program_sharing(machine: Machine, get_store: Callable[[], Store]) -> ProgramSharing | None:
     """Return the program sharing of a machine, or None if the machine file has no [sharing] table.
 
     Raises CommandError if the machine id cannot be read or stored, and DataFolderError if the user has no
@@ -43,7 +43,7 @@ def make_sharing(machine: Machine, get_store: Callable[[], Store]) -> ProgramSha
 
     folder = find_data_folder()
     return ProgramSharing(
-        make_location(table),
+        make_shared_location(table),
         table.desk or machine.name,
         read_machine_id(folder),
         folder / "programs",
@@ -59,10 +59,10 @@ def attach_sharing(desk: Desk, machine: Machine, journal: Journal | None) -> Non
     sharing = None
     if journal is not None:
         try:
-            sharing = make_sharing(machine, journal.require_store)
+            sharing = make_program_sharing(machine, journal.require_store)
         except CommandError as error:
             desk.say(tr(Message("PROGRAMS NOT SHARED: {why}", why=error)))
-    desk.page_registry.attach_lazily(
+    desk.page_registry.attach_lazy_model(
         "app.extras.sharing.sharing_model.SharingModel", partial(_model, desk, sharing)
     )
 
@@ -89,10 +89,10 @@ def start_sharing(desk: Desk, journal: Journal) -> Callable[[], None] | None:
     from app.extras.sharing.sharing_model import SharingModel
 
     model = desk.page_registry.find_model(SharingModel)
-    if model is None or model.sharing is None:
+    if model is None or model.program_sharing is None:
         return None
     result_handler = SharingResultHandler(desk, journal)
-    thread = SharingThread(model.sharing, table.look, result_handler.handle_result)
+    thread = SharingThread(model.program_sharing, table.look, result_handler.handle_result)
     model.synchronize_now, model.get_waiting_time_s = thread.synchronize_now, thread.get_waiting_time_s
     thread.start()
     return thread.close
@@ -121,7 +121,7 @@ class SharingResultHandler:
         from core.extras.sharing.shared_versions import ProgramVersions, make_program_key
 
         name = self.desk.program_loader.loaded_program.name
-        family = result.programs.get(make_program_key(name), ProgramVersions())
+        family = result.versions_by_program.get(make_program_key(name), ProgramVersions())
         fresh = (
             frozenset(each.id for each in family.newest_remote_versions) - self._told
             if family.local_version_id
@@ -134,7 +134,7 @@ class SharingResultHandler:
             self.desk.hear(LogEvent(self.desk.read_snapshot().t, "shared", text))  # shown with the next frame
 
 
-def make_location(table: SharingTable) -> SharedLocation:
+def make_shared_location(table: SharingTable) -> SharedLocation:
     """Return the shared location that is configured in the machine file, without opening it."""
     if table.postgresql:
         from core.extras.sharing.shared_database import SharedDatabase

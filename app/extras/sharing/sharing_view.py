@@ -35,7 +35,7 @@ class SharedProgramsPage(ListPage):
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys of the model."""
-        return self.model.function_keys()
+        return self.model.make_function_keys()
 
     def make_key_labels(self) -> tuple[str, ...]:
         """Return the labels of the model's function keys and of the scroll keys."""

@@ -12,10 +12,10 @@ from app.desk.command_errors import EXIT_OK, CommandError, convert_to_command_er
 from app.extras.tool_tables.table_options import parse_columns, parse_tool_numbers
 from core.extras.tool_tables import csv_table
 from core.extras.tool_tables.csv_columns import NUMBER
-from core.extras.tool_tables.table_file import FORMATS, TableFormat, find_format
+from core.extras.tool_tables.table_file import FORMATS, TableFormat, find_table_format
 from core.extras.tool_tables.tool_entry import OFFSET_FIELDS, TABLE_FIELDS, ToolEntry, ToolTableError
 from core.message import Message
-from core.store.store_rows import OFFSET_NUMBERS, FieldValue, ShapeRow, ToolRow
+from core.store.store_rows import OFFSET_NUMBERS, FieldValue, ToolOffsetRow, ToolShapeRow
 
 
 def export_table(args: argparse.Namespace) -> int:
@@ -48,13 +48,13 @@ def export_table(args: argparse.Namespace) -> int:
     return EXIT_OK
 
 
-def make_entry(number: int, tool: ToolRow | None, shape: ShapeRow | None) -> ToolEntry:
+def make_entry(number: int, tool: ToolOffsetRow | None, shape: ToolShapeRow | None) -> ToolEntry:
     """Return a tool of the store as an entry of a table, without wear and the master mark."""
     offset: dict[str, FieldValue] = {}
     if tool is not None:
         offset = {name: getattr(tool, name) for name in OFFSET_FIELDS}
         offset = {name: value for name, value in offset.items() if value or name in {"x", "z"}}
-    row = {name: getattr(shape, name) for name in ShapeRow._fields} if shape is not None else {}
+    row = {name: getattr(shape, name) for name in ToolShapeRow._fields} if shape is not None else {}
     values = {name: value for name, value in row.items() if value and shape is not None and shape.kind}
     return ToolEntry(number, f"T{number}", offset, values)
 
@@ -62,7 +62,7 @@ def make_entry(number: int, tool: ToolRow | None, shape: ShapeRow | None) -> Too
 def _find_format(args: argparse.Namespace) -> str:
     """Return the format of ``--to`` or of the file suffix. Raises CommandError if it cannot be written."""
     with convert_to_command_error(ToolTableError):
-        found: str = args.format or find_format(Path(args.file).name)
+        found: str = args.format or find_table_format(Path(args.file).name)
     if FORMATS[found].exported_fields:
         return found
     writable = ", ".join(word for word, each in FORMATS.items() if each.exported_fields)
@@ -112,7 +112,7 @@ def _write(path: Path, text: str) -> None:
 def _report(
     entries: Iterable[ToolEntry],
     exported: Iterable[ToolEntry],
-    tools: Mapping[int, ToolRow],
+    tools: Mapping[int, ToolOffsetRow],
     table_format: TableFormat,
     columns: Mapping[str, str],
 ) -> Iterator[str]:

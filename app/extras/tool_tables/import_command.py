@@ -22,13 +22,13 @@ from app.extras.tool_tables.import_plan import (
     FieldChange,
     ImportStatus,
     StoredTools,
-    ToolPlan,
+    ToolImportPlan,
     collect_changes,
 )
 from app.extras.tool_tables.table_options import parse_columns, parse_tool_numbers
 from core.access.access_table import ProtectedChange
-from core.extras.tool_tables.table_file import find_format, read_table
-from core.extras.tool_tables.tool_entry import ReadingOptions, ToolTable, ToolTableError
+from core.extras.tool_tables.table_file import find_table_format, read_tool_table
+from core.extras.tool_tables.tool_entry import TableReadingOptions, ToolTable, ToolTableError
 from core.json_keys import JsonOutput, declare_keys
 from core.message import Message
 from core.store.offsets import offset_tables
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from core.store.store import Store
 
 
-def import_table(args: argparse.Namespace) -> int:
+def import_tool_table(args: argparse.Namespace) -> int:
     """Show the changes that a tool table would make, and import the table after confirmation.
 
     Raises CommandError if the table is invalid or cannot be imported.
@@ -53,8 +53,8 @@ def import_table(args: argparse.Namespace) -> int:
         )
         word, table = _read(Path(args.file), args)
         stored = StoredTools(store.offsets.tool_offsets.read_rows(), store.offsets.tool_shapes.read_rows())
-        plans = stored.make_plans(table, imports_positions=not args.no_positions)
-        raise_mistakes(Path(args.file), list(stored.find_mistakes(plans)))
+        plans = stored.make_import_plans(table, imports_positions=not args.no_positions)
+        raise_mistakes(Path(args.file), list(stored.find_shape_errors(plans)))
         if not args.json:
             sys.stdout.writelines(f"{line}\n" for line in _preview(table, plans))
         wanted = _confirmed(plans, args) if may_save else ()
@@ -67,7 +67,7 @@ def import_table(args: argparse.Namespace) -> int:
     return EXIT_OK
 
 
-def _tell(saved: tuple[ToolPlan, ...]) -> None:
+def _tell(saved: tuple[ToolImportPlan, ...]) -> None:
     summary = Message("imported: {names}; 'turndesk offsets undo' undoes the import", names=_names(saved))
     sys.stdout.write(f"{summary}\n" if saved else "nothing was changed\n")
 
@@ -80,12 +80,12 @@ def _read(path: Path, args: argparse.Namespace) -> tuple[str, ToolTable]:
 
     Raises CommandError if the file is not a valid tool table.
     """
-    options = ReadingOptions(
+    options = TableReadingOptions(
         args.unit, args.x, parse_columns(args.columns), args.number, parse_tool_numbers(args.only)
     )
     try:
-        word = args.format or find_format(path.name)
-        return word, read_table(path, word, options)
+        word = args.format or find_table_format(path.name)
+        return word, read_tool_table(path, word, options)
     except ToolTableError as error:
         raise CommandError(str(error), error.code) from error
 
@@ -93,7 +93,7 @@ def _read(path: Path, args: argparse.Namespace) -> tuple[str, ToolTable]:
 # --- questions ---------------------------------------------------------------------------------------------
 
 
-def _confirmed(plans: tuple[ToolPlan, ...], args: argparse.Namespace) -> tuple[ToolPlan, ...]:
+def _confirmed(plans: tuple[ToolImportPlan, ...], args: argparse.Namespace) -> tuple[ToolImportPlan, ...]:
     """Ask the user to confirm the planned changes, and return the confirmed plans.
 
     Raises CommandError if there is no terminal for the question.
@@ -116,7 +116,7 @@ def _confirmed(plans: tuple[ToolPlan, ...], args: argparse.Namespace) -> tuple[T
             "the import is not confirmed; add --yes, and --replace to change tools that already exist",
             "not-confirmed",
         )
-    wanted: tuple[ToolPlan, ...] = ()
+    wanted: tuple[ToolImportPlan, ...] = ()
     if new and _answer(Message("Import the new tools {names}? Press Y and Enter: ", names=_names(new))):
         wanted += new
     question = Message("Replace the values of {names} as shown? Press Y and Enter: ", names=_names(changed))
@@ -125,7 +125,7 @@ def _confirmed(plans: tuple[ToolPlan, ...], args: argparse.Namespace) -> tuple[T
     return wanted
 
 
-def _names(plans: Iterable[ToolPlan]) -> str:
+def _names(plans: Iterable[ToolImportPlan]) -> str:
     return ", ".join(f"T{plan.tool_number}" for plan in plans)
 
 
@@ -138,7 +138,7 @@ def _answer(question: str) -> bool:
 # --- saving ------------------------------------------------------------------------------------------------
 
 
-def _save(store: Store, args: argparse.Namespace, plans: tuple[ToolPlan, ...], who: str) -> None:
+def _save(store: Store, args: argparse.Namespace, plans: tuple[ToolImportPlan, ...], who: str) -> None:
     """Save the planned changes as one step of the offset history.
 
     Raises CommandError if a value exceeds the travel of the machine, or if the user does not confirm a
@@ -153,7 +153,7 @@ def _save(store: Store, args: argparse.Namespace, plans: tuple[ToolPlan, ...], w
 # --- preview -----------------------------------------------------------------------------------------------
 
 
-def _preview(table: ToolTable, plans: Iterable[ToolPlan]) -> Iterator[str]:
+def _preview(table: ToolTable, plans: Iterable[ToolImportPlan]) -> Iterator[str]:
     """Yield the lines of the preview, one for each changed field and each note."""
     for plan in plans:
         name = f"T{plan.tool_number}"
@@ -187,7 +187,7 @@ def _shown(sort: FieldType, value: FieldValue | None) -> str:
 
 
 def _write_json(
-    file: str, word: str, table: ToolTable, plans: Iterable[ToolPlan], saved: tuple[ToolPlan, ...]
+    file: str, word: str, table: ToolTable, plans: Iterable[ToolImportPlan], saved: tuple[ToolImportPlan, ...]
 ) -> None:
     tools = [
         {

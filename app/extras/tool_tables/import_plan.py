@@ -12,7 +12,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, NamedTuple
 
 from core.message import CodedError, Message
-from core.store.store_rows import FieldValue, OffsetKind, ShapeRow, ToolRow, replace_fields
+from core.store.store_rows import FieldValue, OffsetKind, ToolOffsetRow, ToolShapeRow, replace_fields
 
 if TYPE_CHECKING:
     from core.extras.tool_tables.tool_entry import ToolEntry, ToolTable
@@ -42,7 +42,7 @@ class FieldChange(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class ToolPlan:
+class ToolImportPlan:
     """Planned changes of one tool, with its position in the imported file and notes for the user."""
 
     tool_number: int
@@ -59,7 +59,7 @@ class ToolPlan:
 ChangesByTable = Mapping[OffsetKind, Mapping[int, Mapping[str, FieldValue]]]
 
 
-def collect_changes(plans: tuple[ToolPlan, ...]) -> ChangesByTable:
+def collect_changes(plans: tuple[ToolImportPlan, ...]) -> ChangesByTable:
     """Return the new values of all plans, by offset table and tool number."""
     kinds = {
         kind: {p.tool_number: v for p in plans if (v := p.get_new_values(kind))}
@@ -72,19 +72,22 @@ def collect_changes(plans: tuple[ToolPlan, ...]) -> ChangesByTable:
 class StoredTools:
     """Stored offsets and shapes of the tools, by tool number."""
 
-    tools: Mapping[int, ToolRow]
-    shapes: Mapping[int, ShapeRow]
+    tool_offsets: Mapping[int, ToolOffsetRow]
+    tool_shapes: Mapping[int, ToolShapeRow]
 
-    def make_plans(self, table: ToolTable, *, imports_positions: bool) -> tuple[ToolPlan, ...]:
+    def make_import_plans(self, table: ToolTable, *, imports_positions: bool) -> tuple[ToolImportPlan, ...]:
         """Return one plan for each tool of an imported table.
 
         If ``imports_positions`` is False, X and Z are not imported.
         """
         return tuple(self._plan(entry, positions=imports_positions) for entry in table.tools.values())
 
-    def _plan(self, entry: ToolEntry, *, positions: bool) -> ToolPlan:
+    def _plan(self, entry: ToolEntry, *, positions: bool) -> ToolImportPlan:
         offset, notes = self._offset(entry, positions=positions)
-        old_tool, old_shape = self.tools.get(entry.tool_number), self.shapes.get(entry.tool_number)
+        old_tool, old_shape = (
+            self.tool_offsets.get(entry.tool_number),
+            self.tool_shapes.get(entry.tool_number),
+        )
         shape = dict(entry.shape_values)
         changes = (
             *_differences(OffsetKind.TOOL, old_tool, offset),
@@ -95,7 +98,9 @@ class StoredTools:
             status = ImportStatus.CHANGED if known else ImportStatus.NEW
         else:
             status = ImportStatus.UNCHANGED if known else ImportStatus.SKIPPED
-        return ToolPlan(entry.tool_number, entry.position_text, status, changes, (*entry.notes, *notes))
+        return ToolImportPlan(
+            entry.tool_number, entry.file_position_text, status, changes, (*entry.notes, *notes)
+        )
 
     def _offset(self, entry: ToolEntry, *, positions: bool) -> tuple[dict[str, FieldValue], list[str]]:
         """Return the offset values of a tool that can be imported, and notes about the other values."""
@@ -103,7 +108,7 @@ class StoredTools:
         if not positions and {"x", "z"} & offset.keys():
             notes.append("X and Z are not imported")
             offset = {name: value for name, value in offset.items() if name not in {"x", "z"}}
-        if offset and entry.tool_number not in self.tools and not {"x", "z"} <= offset.keys():
+        if offset and entry.tool_number not in self.tool_offsets and not {"x", "z"} <= offset.keys():
             names = ", ".join(name.replace("_", " ") for name in offset)
             notes.append(
                 Message(
@@ -116,18 +121,18 @@ class StoredTools:
             offset = {}
         return offset, notes
 
-    def find_mistakes(self, plans: tuple[ToolPlan, ...]) -> Iterator[CodedError]:
+    def find_shape_errors(self, plans: tuple[ToolImportPlan, ...]) -> Iterator[CodedError]:
         """Yield an error for each contradiction in the tool shapes that the planned changes would cause."""
-        from app.desk.stored_shapes import find_mistakes
+        from app.desk.stored_shapes import find_shape_row_mistakes
 
         for plan in plans:
             shape = replace_fields(
-                self.shapes.get(plan.tool_number, ShapeRow()), plan.get_new_values(OffsetKind.SHAPE)
+                self.tool_shapes.get(plan.tool_number, ToolShapeRow()), plan.get_new_values(OffsetKind.SHAPE)
             )
             tool = replace_fields(
-                self.tools.get(plan.tool_number, ToolRow()), plan.get_new_values(OffsetKind.TOOL)
+                self.tool_offsets.get(plan.tool_number, ToolOffsetRow()), plan.get_new_values(OffsetKind.TOOL)
             )
-            for wrong in find_mistakes(shape, tool) if shape.kind and plan.field_changes else ():
+            for wrong in find_shape_row_mistakes(shape, tool) if shape.kind and plan.field_changes else ():
                 text = Message(
                     "{place} (T{number}): {field}: {text}",
                     place=plan.file_position,
@@ -139,7 +144,7 @@ class StoredTools:
 
 
 def _differences(
-    kind: OffsetKind, old: ToolRow | ShapeRow | None, values: Mapping[str, FieldValue]
+    kind: OffsetKind, old: ToolOffsetRow | ToolShapeRow | None, values: Mapping[str, FieldValue]
 ) -> Iterator[FieldChange]:
     for name, new in values.items():
         before: FieldValue | None = None if old is None else getattr(old, name)

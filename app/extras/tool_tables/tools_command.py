@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from app.cli.change_author import add_as_option, add_consent_options
+from app.cli.change_author import add_author_option, add_confirmation_options
 from core.extras.tool_tables.table_file import FORMATS
 from core.store.store_rows import OFFSET_NUMBERS
 
@@ -71,8 +71,8 @@ def _add_import(actions: SubParsers) -> None:
     action.add_argument(
         "--json", action="store_true", help="print only JSON on stdout; without --yes, nothing is imported"
     )
-    add_consent_options(action)
-    add_as_option(action)
+    add_confirmation_options(action)
+    add_author_option(action)
     action.add_argument(
         "--why",
         metavar="TEXT",
@@ -116,6 +116,6 @@ def run(args: argparse.Namespace) -> int:
         from app.extras.tool_tables.export_command import export_table
 
         return export_table(args)
-    from app.extras.tool_tables.import_command import import_table
+    from app.extras.tool_tables.import_command import import_tool_table
 
-    return import_table(args)
+    return import_tool_table(args)

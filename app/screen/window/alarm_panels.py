@@ -10,13 +10,13 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.pages.table_content import ROW_STEPS
 from app.desk.status.alarm_log import LoggedStop
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.desk.status.prompt_line import describe_cause
 from app.desk.translation import tr
 from app.screen.panel import Panel, RedrawingAttribute
 from app.screen.screen_theme import ScreenTheme, ThemedPainter, draw_state_symbol
 from app.screen.table_panel import LIST_KEYS, RowPanel
-from core.alarms import CATALOG, Reaction
+from core.alarms import CATALOG, AlarmReaction
 from core.executor.snapshot import Alarm
 from core.message import Message, join_messages
 
@@ -52,7 +52,7 @@ class AlarmNotice(Panel):
         else:
             self._draw_message(painter)
 
-    def _head(self, painter: ThemedPainter, tone: Tone, text: str) -> QRectF:
+    def _head(self, painter: ThemedPainter, tone: StatusTone, text: str) -> QRectF:
         look, u = self.theme, self.theme.unit_px
         painter.fill_rect(self.find_full_area(), tone.value)
         painter.fill_rect(self.find_full_area().adjusted(0.5 * u, u, -0.5 * u, -0.5 * u), "panel")
@@ -65,7 +65,7 @@ class AlarmNotice(Panel):
         return self.find_full_area().adjusted(2 * u, 6.8 * u, -2 * u, -1.4 * u)
 
     def _draw_message(self, painter: ThemedPainter) -> None:
-        room = self._head(painter, Tone.PAUSE, "PROGRAM STOP")
+        room = self._head(painter, StatusTone.PAUSE, "PROGRAM STOP")
         u = self.theme.unit_px
         foot = QRectF(room.x(), room.bottom() - 3.4 * u, room.width(), 3.4 * u)
         room.setBottom(foot.top() - 0.6 * u)
@@ -81,7 +81,7 @@ class AlarmNotice(Panel):
             Message("ALARM {number}: {alarms}", number=alarm.number, alarms=alarm.text),
             *([Message("LINE {line}", line=alarm.line)] if alarm.line else []),
         ]
-        room = self._head(painter, Tone.ALARM, join_messages("  ·  ", parts))
+        room = self._head(painter, StatusTone.ALARM, join_messages("  ·  ", parts))
         if more:
             room = self._draw_more(painter, room, more)
         high = room.height()
@@ -203,7 +203,10 @@ class AlarmList(RowPanel):
 
     def _entry(self, painter: ThemedPainter, row: QRectF, entry: LoggedStop) -> None:
         u, alarm = self.theme.unit_px, entry.alarm
-        grave = CATALOG[alarm.code].reaction in {Reaction.DRIVES_OFF, Reaction.STOP} or alarm.code == "estop"
+        grave = (
+            CATALOG[alarm.code].reaction in {AlarmReaction.DRIVES_OFF, AlarmReaction.STOP}
+            or alarm.code == "estop"
+        )
         left, wide = row.x() + _WHEN * u, row.width() - _WHEN * u
         row.setLeft(row.left() + 0.8 * u)
         if entry.recording_name:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _DRAGS = frozenset({QEvent.Type.DragEnter, QEvent.Type.DragMove, QEvent.Type.Drop})
 
 
-class FileOpening(QObject):
+class FileOpener(QObject):
     """Event filter that loads a dropped file as the program, on the Automatic page.
 
     The rules are the same as for a program that is selected in the program list. A file is not loaded while
@@ -55,7 +55,7 @@ class FileOpening(QObject):
             frame.desk.say(tr("DROP ONE PROGRAM AT A TIME"))
         elif not files[0].is_file():
             frame.desk.say(tr(Message("{name} IS A FOLDER. DROP A PROGRAM", name=files[0].name)))
-        elif frame.desk.program_choice.can_choose() and frame.open_page(AUTOMATIC):
+        elif frame.desk.program_choice.can_choose_program() and frame.open_page(AUTOMATIC):
             frame.desk.program_choice.load_path(files[0])
         self._window.refresh()
 

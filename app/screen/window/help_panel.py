@@ -110,7 +110,7 @@ class HelpPanel(RowPanel):
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Press a scroll key. A touch anywhere else closes the panel."""
-        if not self.press_at(event.position()):
+        if not self.press_target_at(event.position()):
             self.close_help()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:

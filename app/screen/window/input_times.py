@@ -31,7 +31,7 @@ class InputTimes:
         self._offsets: dict[str, tuple[float, float]] = {}
 
     @property
-    def is_screen_seen(self) -> bool:
+    def has_seen_screen(self) -> bool:
         """Return whether the operator has seen the current screen since the last stall."""
         return self._frames >= FRAMES_AFTER_STALL
 
@@ -73,7 +73,7 @@ class InputTimes:
         if not time_ms:
             return False
         at = self.find_event_time(time_ms, event_source)
-        return at <= self._behind or not self.is_screen_seen or self.clock() - at > STALL_TIME_S
+        return at <= self._behind or not self.has_seen_screen or self.clock() - at > STALL_TIME_S
 
     def record_dropped_answer(self, time_ms: int, event_source: str = "") -> None:
         """Record that an answer was dropped, so that the presses that follow are also dropped."""

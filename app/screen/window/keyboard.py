@@ -29,7 +29,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
 
-from app.desk.late_presses import StartingAction
+from app.desk.late_presses import BlockedLateAction
 from app.desk.stop_keys.key_watcher_client import KeyWatcherClient, OpenStopChannel
 from app.desk.stop_keys.stop_records import SOURCE_ESC, FocusRecord, StopKind, make_press_number
 from app.screen.window.input_times import InputTimes
@@ -99,19 +99,19 @@ class KeyboardTarget(Protocol):
         """Return whether this character goes to an input field."""
         ...
 
-    def note_activity(self) -> None:
+    def record_activity(self) -> None:
         """Record that the operator has pressed a key or touched the screen."""
         ...
 
-    def set_late(self, *, is_late: bool) -> None:
+    def set_event_late(self, *, is_late: bool) -> None:
         """Set whether the current event was delayed by a stall and must not start anything."""
         ...
 
-    def has_screen_changed(self, time_s: float) -> bool:
+    def has_screen_changed_since(self, time_s: float) -> bool:
         """Return whether the screen has changed after a time in seconds."""
         ...
 
-    def report_dropped(self, action: StartingAction) -> None:
+    def report_dropped_press(self, action: BlockedLateAction) -> None:
         """Report a press that is not executed because a stall delayed it."""
         ...
 
@@ -163,7 +163,7 @@ class KeyboardFilter(QObject):
         self._whose = ""  # Clock of that time stamp.
         self._late = False  # The event waited during a stall.
 
-    def filter_window(self, window: QWindow) -> None:
+    def filter_window_events(self, window: QWindow) -> None:
         """Filter the events of this window from now on."""
         window.removeEventFilter(self)
         window.installEventFilter(self)
@@ -195,7 +195,7 @@ class KeyboardFilter(QObject):
         """Return whether no other key is down except modifiers."""
         return not {key for code, key in self._down.items() if code != find_scan_code(event)} - MODIFIER_KEYS
 
-    def is_stop_held(self) -> bool:
+    def is_stop_key_held(self) -> bool:
         """Return whether a stop key is still down, so that nothing may start."""
         self._stops &= self._down.keys()
         return bool(self._stops)
@@ -225,7 +225,7 @@ class KeyboardFilter(QObject):
         if self._watched is not None:
             shown = frozenset(window.winId() for window in windows if window.isVisible())
             self._watched.send_focus(FocusRecord(shown, self._behind.is_esc_stop_key()))
-            if any(stop.stop_kind is StopKind.ESTOP for stop in self._watched.read_stops()):
+            if any(stop.stop_kind is StopKind.ESTOP for stop in self._watched.read_sent_stops()):
                 self._behind.show_estop_pressed()
         for window in windows if len(windows) > 1 else ():
             window.installEventFilter(self)  # A menu or a dialog has its own window for key events.
@@ -238,11 +238,11 @@ class KeyboardFilter(QObject):
             if key is not None and not dead:  # Handling a release may call this method again.
                 self._send(QKeyEvent(QEvent.Type.KeyRelease, key, Qt.KeyboardModifier.NoModifier))
 
-    def is_button_held(self) -> bool:
+    def is_mouse_button_held(self) -> bool:
         """Return whether a mouse button is physically still down."""
         if self._server is None:
             return QApplication.mouseButtons() is not Qt.MouseButton.NoButton
-        return self._server.has_button_down()
+        return self._server.is_mouse_button_down()
 
     # --- Qt's calls ----------------------------------------------------------------------------------
 
@@ -250,7 +250,7 @@ class KeyboardFilter(QObject):
         """Return whether an event is handled here and must not be passed on."""
         kind = event.type()
         if kind in _PRESS_EVENTS or kind in _KEY_EVENTS:
-            self._behind.note_activity()
+            self._behind.record_activity()
         if kind in _KEY_EVENTS and isinstance(event, QKeyEvent):
             return not self._sending and self._key(event)
         if not isinstance(event, QInputEvent):
@@ -267,16 +267,16 @@ class KeyboardFilter(QObject):
         self.input_times.record_input()
         self._stamp, self._whose = event.timestamp(), _find_clock(event)
         self._late = self.input_times.was_delayed(self._stamp, self._whose)
-        self._behind.set_late(is_late=self._late)
+        self._behind.set_event_late(is_late=self._late)
 
     def _handle_screen_press(self, event: QInputEvent) -> bool:
         """Return whether a mouse press or touch must not be passed on."""
         if self._behind.is_stop_control_at(event):
             return False
         if self._relies_on_dropped():
-            starting = StartingAction.FOLLOWING_KEY
-        elif self._late and self._behind.has_screen_changed(self.event_time_s):
-            starting = StartingAction.TOUCH
+            starting = BlockedLateAction.FOLLOWING_KEY
+        elif self._late and self._behind.has_screen_changed_since(self.event_time_s):
+            starting = BlockedLateAction.TOUCH
         else:
             return False
         event.setAccepted(True)  # Otherwise Qt sends the touch again as a mouse event.
@@ -306,7 +306,7 @@ class KeyboardFilter(QObject):
             return True
         if self._relies_on_dropped():
             self._dead.add(code)
-            return repeat or self._forget(StartingAction.FOLLOWING_KEY)
+            return repeat or self._forget(BlockedLateAction.FOLLOWING_KEY)
         if repeat and not event.isAutoRepeat():
             return self._send_repeat(event)
         return self._is_shift_latched(event) and self._send(_copy_event(event, repeat=repeat, shift=False))
@@ -391,7 +391,7 @@ class KeyboardFilter(QObject):
     def _was_sent(self, event: QKeyEvent) -> bool:
         """Return whether the key watcher has sent this press to the control."""
         press = make_press_number(find_scan_code(event), self._stamp)
-        return self._watched is not None and self._watched.was_sent(press)
+        return self._watched is not None and self._watched.was_press_sent(press)
 
     def _stops_with(self, key_of_stop: bool) -> bool:
         """Return whether a character stops the machine.
@@ -403,14 +403,14 @@ class KeyboardFilter(QObject):
     def _relies_on_dropped(self) -> bool:
         return self.input_times.follows_dropped_answer(self._stamp, self._whose)
 
-    def record_answer_dropped(self) -> None:
+    def record_dropped_answer(self) -> None:
         """Record that the current press was an answer to a question and was dropped."""
         self.input_times.record_dropped_answer(self._stamp, self._whose)
 
-    def _forget(self, starting: StartingAction) -> bool:
-        if starting is StartingAction.FOLLOWING_KEY:
-            self.record_answer_dropped()
-        self._behind.report_dropped(starting)
+    def _forget(self, starting: BlockedLateAction) -> bool:
+        if starting is BlockedLateAction.FOLLOWING_KEY:
+            self.record_dropped_answer()
+        self._behind.report_dropped_press(starting)
         return True
 
     def _is_writing(self, event: QKeyEvent) -> bool:

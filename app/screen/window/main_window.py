@@ -21,20 +21,20 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QApplication, QWidget
 
 from app.desk.desk import Desk
-from app.desk.late_presses import StartingAction
+from app.desk.late_presses import BlockedLateAction
 from app.desk.status.prompt_line import ACTIVE_STATES, MOVING_STATES
 from app.desk.stop_keys.stop_records import SOURCE_SCREEN
 from app.desk.translation import get_language, tr
 from app.screen.color_palettes import PALETTES
 from app.screen.page_table import AUTOMATIC, PagePreloader
 from app.screen.panel import TouchPanel
-from app.screen.screen_theme import ScreenTheme, find_palette, style_application, use_language
-from app.screen.text_sizes import make_panel_size
+from app.screen.screen_theme import ScreenTheme, find_palette, set_language, style_application
+from app.screen.text_sizes import make_screen_resolution
 from app.screen.window.input_times import InputTimes
 from app.screen.window.key_actions import make_key_actions
 from app.screen.window.key_table import HELP_KEY, PALM_BUTTON_KEYS, REPEATING_KEYS, find_key_name
 from app.screen.window.keyboard import KeyboardFilter, find_key_code
-from app.screen.window.typed_keys import TypedKeys
+from app.screen.window.typed_keys import TypedKeyHandler
 from app.screen.window.window_frame import ScreenContext, WindowFrame
 from app.screen.window.window_placement import show_full_screen, show_in_suitable_size
 from app.screen.window_layout import MIN_WINDOW_PX
@@ -66,7 +66,7 @@ class MainWindow(QWidget):
         self.input_times.on_wake = self._resume_polling
         self.machine_changed.connect(self._resume_polling, Qt.ConnectionType.QueuedConnection)
         self.keyboard_filter = KeyboardFilter(self, self.input_times)
-        self.typed_keys = TypedKeys(self.keyboard_filter, self.press_key, self.refresh)
+        self.typed_keys = TypedKeyHandler(self.keyboard_filter, self.press_key, self.refresh)
         self._page = ""  # The page that has the keyboard.
         # Screen states that were shown, with their start times.
         self._faces: deque[tuple[float, ScreenContext]] = deque(maxlen=32)
@@ -91,16 +91,16 @@ class MainWindow(QWidget):
         self._keys = {**make_key_actions(desk), "T": self.toggle_theme, "Esc": self._handle_escape}
         desk.window_state.connect_window(
             self._wake_from_thread,
-            self.keyboard_filter.is_stop_held,
+            self.keyboard_filter.is_stop_key_held,
             lambda: self.input_times.clock() - self.keyboard_filter.event_time_s,
         )
         watched = self.keyboard_filter.start_key_watcher(desk.desk_control.open_stop_channel)
         if watched is not None:
             desk.page_registry.attach_model(watched)
         late = desk.window_state.late_presses
-        late.report_names, late.on_answer_dropped = (
+        late.report_dropped_names, late.on_answer_dropped = (
             self._show_dropped,
-            self.keyboard_filter.record_answer_dropped,
+            self.keyboard_filter.record_dropped_answer,
         )
         self.frame.setGeometry(self.rect())
         self.refresh()
@@ -110,22 +110,22 @@ class MainWindow(QWidget):
 
     def _handle_tick(self) -> None:
         """Refresh the screen at the full rate, or only after a change while the machine is at rest."""
-        known, frame = self.input_times.is_screen_seen, self.frame
+        known, frame = self.input_times.has_seen_screen, self.frame
         self.input_times.frame()
         known = (
-            known and self.input_times.is_screen_seen
+            known and self.input_times.has_seen_screen
         )  # A stall was just detected, or its changes are not shown yet.
         if frame is None:
             return
-        self.set_late(is_late=False)
-        changed = not known or self._is_animating(frame) or frame.has_changed()
+        self.set_event_late(is_late=False)
+        changed = not known or self._is_animating(frame) or frame.has_changed_since_refresh()
         if changed or frame.is_refresh_due():
             self.refresh()
         if not self._faces or self._faces[-1][1] != frame.screen_context:
             self._faces.append((self.input_times.clock(), frame.screen_context))
         makes = self.page_preloader is not None and not self.page_preloader.is_done
         if self.page_preloader is not None:
-            self.page_preloader.run_slice()
+            self.page_preloader.continue_loading()
         self._pace(
             FRAME_MS if self._is_animating(frame) else IDLE_FRAME_MS if changed or makes else AT_REST_FRAME_MS
         )
@@ -171,7 +171,7 @@ class MainWindow(QWidget):
         self.keyboard_filter.update()
         if (
             QApplication.mouseButtons() is not Qt.MouseButton.NoButton
-            and not self.keyboard_filter.is_button_held()
+            and not self.keyboard_filter.is_mouse_button_held()
         ):
             for panel in frame.findChildren(TouchPanel):
                 panel.release_mouse()
@@ -185,11 +185,11 @@ class MainWindow(QWidget):
         action = (frame.make_key_actions().get(key_name) if frame else None) or self._keys.get(key_name)
         if action is not None:
             if frame is not None:
-                frame.current_page.stop_held_actions()
+                frame.current_page.stop_held_key_actions()
                 if key_name != HELP_KEY:
                     frame.help_panel.close_help()
                 if key_name != "Esc":  # Esc removes the message itself.
-                    frame.desk.prompt_answers.clear_message()
+                    frame.desk.prompt_line.clear_message()
             action()
             self.refresh()
         elif frame is not None and key_name.startswith("F") and key_name[1:].isdecimal():
@@ -207,7 +207,7 @@ class MainWindow(QWidget):
         """Apply the selected colors, language and window size."""
         settings = frame.desk.settings_store.current_settings
         if settings.language != get_language():
-            use_language(settings.language)
+            set_language(settings.language)
             frame.apply_theme()
         palette = find_palette(settings.theme)
         if palette is not self.theme.palette:
@@ -260,7 +260,7 @@ class MainWindow(QWidget):
         ``source`` names the key in the log.
         """
         if self.frame is not None:
-            self.frame.current_page.stop_held_actions()
+            self.frame.current_page.stop_held_key_actions()
             self.frame.help_panel.close_help()
             self.frame.desk.start_feed_hold(source or SOURCE_SCREEN, press)
             self.refresh()
@@ -268,7 +268,7 @@ class MainWindow(QWidget):
     def press_estop(self, press: int = 0) -> None:
         """Press the E-stop, regardless of the open page, input field or question."""
         if self.frame is not None:
-            self.frame.current_page.stop_held_actions()
+            self.frame.current_page.stop_held_key_actions()
             self.frame.help_panel.close_help()
             self.frame.desk.station_keys.press_estop(press)
             self.refresh()
@@ -294,21 +294,21 @@ class MainWindow(QWidget):
         """Return whether an input field has the keyboard focus and therefore gets all characters."""
         return self.frame is not None and self.frame.has_text_field()
 
-    def note_activity(self) -> None:
+    def record_activity(self) -> None:
         """Record that the signed-in user has pressed a key or touched the screen."""
         if self.frame is not None:
-            self.frame.desk.user_access.note_activity()
+            self.frame.desk.user_access.record_activity()
 
     def accepts_text(self, key: str) -> bool:
         """Return whether this character goes to an input field now."""
         return self.frame is not None and self.frame.accepts_text(key)
 
-    def set_late(self, *, is_late: bool) -> None:
+    def set_event_late(self, *, is_late: bool) -> None:
         """Set whether the current event was delayed by a stall and must not start anything."""
         if self.frame is not None:
-            self.frame.desk.window_state.late_presses.is_late = is_late
+            self.frame.desk.window_state.late_presses.is_press_late = is_late
 
-    def has_screen_changed(self, time_s: float) -> bool:
+    def has_screen_changed_since(self, time_s: float) -> bool:
         """Return whether the screen has changed after this time.
 
         An earlier touch was meant for the previous screen content.
@@ -316,10 +316,10 @@ class MainWindow(QWidget):
         seen = [face for since, face in self._faces if since <= time_s]
         return bool(seen) and self.frame is not None and seen[-1] != self.frame.screen_context
 
-    def report_dropped(self, action: StartingAction) -> None:
+    def report_dropped_press(self, action: BlockedLateAction) -> None:
         """Report a press that is not executed because a stall delayed it."""
         if self.frame is not None:
-            self.frame.desk.window_state.late_presses.report_dropped(action)
+            self.frame.desk.window_state.late_presses.report_dropped_action(action)
 
     def _show_dropped(self, names: tuple[str, ...]) -> None:
         if self.frame is not None:
@@ -341,7 +341,7 @@ class MainWindow(QWidget):
         """Start filtering the keys of the new window, and read the screen's resolution."""
         window = self.windowHandle()
         if window is not None:
-            self.keyboard_filter.filter_window(window)
+            self.keyboard_filter.filter_window_events(window)
             self._update_resolution()
             window.screenChanged.connect(self._update_resolution)
 
@@ -350,7 +350,9 @@ class MainWindow(QWidget):
         screen = self.screen()
         if screen is not None:
             size, real = screen.size(), screen.physicalSize()
-            self.theme.screen = make_panel_size(size.width(), size.height(), real.width(), real.height())
+            self.theme.screen = make_screen_resolution(
+                size.width(), size.height(), real.width(), real.height()
+            )
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Handle a key press.
@@ -370,7 +372,9 @@ class MainWindow(QWidget):
         ):
             self._palm(PALM_BUTTON_KEYS[Qt.Key(event.key())], down=True)
             return
-        if self.typed_keys.handle_typed(frame, event) or self.typed_keys.is_withheld(frame, event):
+        if self.typed_keys.handle_typed_key(frame, event) or self.typed_keys.is_character_rejected(
+            frame, event
+        ):
             return
         name = find_key_name(find_key_code(event), event.modifiers())
         if (
@@ -400,7 +404,7 @@ class MainWindow(QWidget):
     def _palm(self, side: str, *, down: bool) -> None:
         if self.frame is not None:
             desk = self.frame.desk
-            if desk.machine.is_two_hand:
+            if desk.machine.has_two_hand_start:
                 desk.station_controls.palm(side, down)
             elif down and side == "right":
                 desk.station_keys.press_start()
@@ -416,21 +420,21 @@ class MainWindow(QWidget):
             if self.isActiveWindow():
                 self.keyboard_filter.read_pressed_keys()
             else:
-                self.release_all()
+                self.release_all_inputs()
         super().changeEvent(event)
 
     def _tell_keyboard(self) -> None:
         if self.frame is not None:
             self.frame.desk.window_state.set_keyboard_lost(not self.isActiveWindow())
 
-    def release_all(self) -> None:
+    def release_all_inputs(self) -> None:
         """Release all keys, buttons and controls that are pressed."""
         self.keyboard_filter.ignore_pressed_keys()
         if self.frame is not None:
             if self.frame.station_dock is not None:
-                self.frame.station_dock.release_all()
-            self.frame.desk.station_controls.release_all()
-            self.frame.current_page.release_all()
+                self.frame.station_dock.release_all_controls()
+            self.frame.desk.station_controls.release_all_buttons()
+            self.frame.current_page.release_all_keys()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Resize the frame so that it fills the window."""
@@ -458,11 +462,11 @@ class MainWindow(QWidget):
             self.refresh()
             event.ignore()
             return
-        if frame is not None and not (frame.current_page.try_leave() and self._may_close(frame)):
+        if frame is not None and not (frame.current_page.try_leave_page() and self._may_close(frame)):
             self.refresh()
             event.ignore()
             return
         self._timer.stop()
-        self.release_all()
+        self.release_all_inputs()
         event.accept()
         self._closed()

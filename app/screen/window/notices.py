@@ -8,9 +8,9 @@ from app.desk.desk import Desk
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.interrupted_notice import (
     NoticeRow,
-    can_restart,
+    can_restart_program,
     make_interrupted_notice,
-    make_unknown_notice,
+    make_unknown_values_notice,
 )
 from app.desk.translation import tr
 from core.executor.snapshot import MachineState, Snapshot
@@ -27,7 +27,7 @@ def make_notices(
     ``here`` is True while the Automatic page, on which the keys of the notices work, is open.
     """
     rows = []
-    unheard = make_unknown_notice(snapshot)
+    unheard = make_unknown_values_notice(snapshot)
     if unheard is not None:
         rows.append(unheard)
     found = make_interrupted_notice(snapshot, loaded, desk.settings_store.display_units)
@@ -35,16 +35,18 @@ def make_notices(
         rows.append(replace(found, keys=_make_prompt_keys(desk, snapshot, loaded) if here else ()))
     if here and desk.settings_store.current_settings.first_job:
         rows.append(desk.program_runs.first_job_card.notice_row)
-    differs = desk.storage_state.read_file_difference()
+    differs = desk.storage_state.describe_file_difference()
     if differs:
         rows.append(NoticeRow(differs))
     offered_job = desk.page_registry.find_notice(snapshot) if here else None
     if offered_job is not None:
         rows.append(offered_job)
-    if desk.storage_state.read_problem():
-        held = desk.storage_state.read_unsaved()
+    if desk.storage_state.read_storage_problem():
+        held = desk.storage_state.read_unsaved_text()
         waits = tr(Message("NOT SAVED YET: {what}. DO NOT EXIT TURNDESK NOW", what=held)) if held else ""
-        rows.append(NoticeRow(tr(Message("NOT SAVED: {why}", why=desk.storage_state.read_problem())), waits))
+        rows.append(
+            NoticeRow(tr(Message("NOT SAVED: {why}", why=desk.storage_state.read_storage_problem())), waits)
+        )
     return tuple(rows)
 
 
@@ -52,5 +54,5 @@ def _make_prompt_keys(desk: Desk, snapshot: Snapshot, loaded: LoadedProgram) -> 
     """Return the keys for an interrupted job. A start that would be rejected has no key."""
     if snapshot.state is not MachineState.IDLE or not snapshot.interrupted_line:
         return ()
-    searchto = (_SEARCHTO,) if can_restart(loaded) else ()
+    searchto = (_SEARCHTO,) if can_restart_program(loaded) else ()
     return searchto if desk.find_first_move_refusal(snapshot) else (*searchto, _FROM_LINE_1)

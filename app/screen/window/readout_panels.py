@@ -135,7 +135,7 @@ class ReadoutPanel(Panel):
         super().__init__(theme, parent)
         self.title = title
 
-    def make_row(self, y: float, height: float) -> QRectF:
+    def make_row_area(self, y: float, height: float) -> QRectF:
         """Return the rectangle of a row inside the frame.
 
         ``y`` and ``height`` are in theme units.
@@ -186,7 +186,7 @@ class FeedPanel(ReadoutPanel):
         view = self.value
         if not isinstance(view, FeedReadout):
             return
-        top = self.make_row(2.3, 4.8)
+        top = self.make_row_area(2.3, 4.8)
         unit = QRectF(top.right() - 7.6 * self.theme.unit_px, top.y(), 7.6 * self.theme.unit_px, top.height())
         self.draw_value(
             painter,
@@ -201,7 +201,7 @@ class FeedPanel(ReadoutPanel):
             view.programmed_unit,
         )
         self.draw_label(painter, top, view.value_prefix)
-        actual = self.make_row(7.4, 2.8)
+        actual = self.make_row_area(7.4, 2.8)
         self.draw_label(painter, actual, "ACTUAL")
         self.draw_value(
             painter,
@@ -212,7 +212,7 @@ class FeedPanel(ReadoutPanel):
         self.draw_label(
             painter, QRectF(unit.x(), actual.y(), unit.width(), actual.height()), view.measured_unit
         )
-        self.draw_override(painter, self.make_row(11.2, 2.8), view.override_fraction, 1.5)
+        self.draw_override(painter, self.make_row_area(11.2, 2.8), view.override_fraction, 1.5)
 
 
 class SpindlePanel(ReadoutPanel):
@@ -227,7 +227,7 @@ class SpindlePanel(ReadoutPanel):
         if not isinstance(view, SpindleReadout):
             return
         u = self.theme.unit_px
-        top = self.make_row(2.3, 4.8)
+        top = self.make_row_area(2.3, 4.8)
         if not view.is_known:
             self._draw_unknown(painter)
             return
@@ -236,7 +236,7 @@ class SpindlePanel(ReadoutPanel):
         unit = QRectF(top.right() - 5.0 * u, top.y() + u, 5.0 * u, top.height())
         self.draw_value(painter, top.adjusted(12 * u, 0, -5.6 * u, 0), view.commanded_rpm, 4.2)
         self.draw_label(painter, unit, "rpm")
-        actual = self.make_row(7.4, 2.8)
+        actual = self.make_row_area(7.4, 2.8)
         half = actual.width() * 0.50
         self.draw_label(painter, actual, "ACTUAL")
         self.draw_value(
@@ -246,9 +246,9 @@ class SpindlePanel(ReadoutPanel):
             2.5,
         )
         surface = QRectF(actual.x() + half + 1.6 * u, actual.y(), half - 1.6 * u, actual.height())
-        self.draw_label(painter, surface, view.surface_label)
+        self.draw_label(painter, surface, view.surface_speed_label)
         self.draw_value(painter, surface.adjusted(5 * u, 0, 0, 0), view.surface_speed, 2.5)
-        self.draw_override(painter, self.make_row(11.2, 2.8), view.override_fraction, 1.0)
+        self.draw_override(painter, self.make_row_area(11.2, 2.8), view.override_fraction, 1.0)
         if view.load_text:
             # In the top line, next to the title.
             patch = QRectF(self.width() - 11.0 * u, 0.0, 9.8 * u, 2.0 * u)
@@ -258,9 +258,9 @@ class SpindlePanel(ReadoutPanel):
     def _draw_unknown(self, painter: ThemedPainter) -> None:
         """Draw a warning in place of all values, because the spindle's state is unknown."""
         for row, size, text in (
-            (self.make_row(2.6, 4.0), 3.6, "UNKNOWN"),
-            (self.make_row(7.0, 3.0), 2.4, "SPINDLE MAY BE TURNING"),
-            (self.make_row(10.6, 3.0), 2.4, "PRESS E-STOP"),
+            (self.make_row_area(2.6, 4.0), 3.6, "UNKNOWN"),
+            (self.make_row_area(7.0, 3.0), 2.4, "SPINDLE MAY BE TURNING"),
+            (self.make_row_area(10.6, 3.0), 2.4, "PRESS E-STOP"),
         ):
             painter.fill_rect(row, "alarm")
             painter.draw_text_line(row, text, size, "on_state", at=ALIGN_CENTER)
@@ -329,7 +329,13 @@ class ReadoutRow(Panel):
     def show_status(self, status: MachineStatus) -> None:
         """Show a status, and redraw the panel if a value has changed."""
         self.status = status
-        self._shown = (status.position, status.feed, status.spindle, status.tool_text, status.secondary_text)
+        self._shown = (
+            status.position,
+            status.feed,
+            status.spindle,
+            status.tool_text,
+            status.secondary_offset_text,
+        )
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the axis positions and the other readouts in one row, or in two rows in a high panel."""
@@ -394,7 +400,7 @@ class ReadoutRow(Panel):
                 f"{tr(spindle.direction)} {spindle.commanded_rpm}/{spindle.measured_rpm}",
                 0.44,
             ),
-            ("TOOL", f"{view.tool_text} {view.secondary_text}", 0.2),
+            ("TOOL", f"{view.tool_text} {view.secondary_offset_text}", 0.2),
         )
 
     def _figures(self, painter: ThemedPainter, room: QRectF, view: MachineStatus) -> None:

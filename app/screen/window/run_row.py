@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QRectF
 
-from app.desk.status.machine_status import MachineStatus, Tone
+from app.desk.status.machine_status import MachineStatus, StatusTone
 from app.screen.panel import Panel, RedrawingAttribute
 from app.screen.screen_theme import (
     ALIGN_RIGHT,
@@ -17,7 +17,7 @@ from core.message import Message, join_messages
 _COMMENT_WIDTH, _BLOCK_WIDTH = 0.38, 0.24  # Fractions of the width. Parts and times use the rest.
 
 
-class RunRow(Panel):
+class RunStatusRow(Panel):
     """Row with comment, block, parts and times, at the position of the Automatic page's comment line."""
 
     background_color = "panel"
@@ -67,7 +67,7 @@ class RunRow(Panel):
         look, u = self.theme, self.theme.unit_px
         painter.fill_rect(self.find_full_area(), self._tone)
         sign = QRectF(u, 0.3 * u, 2.2 * u, 2.2 * u)
-        draw_state_symbol(painter, sign, Tone(self._tone), look.get_color("on_state"))
+        draw_state_symbol(painter, sign, StatusTone(self._tone), look.get_color("on_state"))
         painter.draw_text_line(
             self.find_full_area().adjusted(4.4 * u, 0, -u, 0), self.stop_text, 2.5, "on_state"
         )

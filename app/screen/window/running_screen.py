@@ -49,7 +49,7 @@ def hand_over_program(program_path: str) -> bool:
     return socket.readLine().data() == ACCEPTED_REPLY
 
 
-class RunningScreen(QObject):
+class OpenProgramReceiver(QObject):
     """Receiver of the programs that a second instance of TurnDesk passes on.
 
     ``open_file`` is called with each path.

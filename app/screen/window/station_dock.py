@@ -44,7 +44,7 @@ class StationDock(TouchPanel):
         self._auto, self.is_start_disabled = snapshot.spindle_auto, bool(find_start_refusal(desk, snapshot))
         palms = frozenset(desk.station_controls.palms.press_times)
         pots = (desk.station_controls.spindle_pot.wanted, desk.station_controls.feed_pot.wanted)
-        latched = desk.settings_store.current_settings.latched and desk.machine.allows_one_hand
+        latched = desk.settings_store.current_settings.latched and desk.machine.allows_one_hand_start
         self._shown = (
             desk.station_controls.is_estop_pressed,
             pots,
@@ -57,7 +57,7 @@ class StationDock(TouchPanel):
         """Turn the override pot under the pointer by one step."""
         steps = 1 if event.angleDelta().y() > 0 else -1
         if self._feed_box().contains(event.position()):
-            self._desk.station_keys.step_override(steps)
+            self._desk.station_keys.step_feed_override(steps)
         elif self._spindle_box().contains(event.position()):
             self._desk.station_controls.turn_spindle_pot(steps)
 
@@ -86,7 +86,9 @@ class StationDock(TouchPanel):
         name = "SPINDLE SPEED"
         self._pot(painter, self._spindle_box(), name, keys, spindle, desk.station_controls.turn_spindle_pot)
         self._label(painter, self._row(36.1, 2.4), "FEED RATE", formats.format_percent(feed.wanted), "text")
-        self._pot(painter, self._feed_box(), "FEED RATE", ("−", "+"), feed, desk.station_keys.step_override)
+        self._pot(
+            painter, self._feed_box(), "FEED RATE", ("−", "+"), feed, desk.station_keys.step_feed_override
+        )
         self._hold(painter)
         self._start(painter)
 
@@ -176,10 +178,10 @@ class StationDock(TouchPanel):
             painter, track.adjusted(0.3 * u, 0.3 * u, -0.3 * u, -0.3 * u), pot.wanted / pot.max_fraction
         )
 
-        def slide(at: QPointF) -> None:
+        def turn_pot_to(at: QPointF) -> None:
             pot.set(round((at.x() - track.x()) / track.width() * pot.max_fraction * 20) / 20)
 
-        self.controls.append(TouchControl(track, slide, slide, name=name, kind="slider"))
+        self.controls.append(TouchControl(track, turn_pot_to, turn_pot_to, name=name, kind="slider"))
 
     def _slider(self, painter: ThemedPainter, inner: QRectF, share: float) -> None:
         u = self.theme.unit_px
@@ -216,12 +218,12 @@ class StationDock(TouchPanel):
     def _start(self, painter: ThemedPainter) -> None:
         desk = self._desk
         head = self._row(54.2, 2.4)
-        text = "CYCLE START: BOTH BUTTONS" if desk.machine.is_two_hand else "CYCLE START"
+        text = "CYCLE START: BOTH BUTTONS" if desk.machine.has_two_hand_start else "CYCLE START"
         if self._is_latching:
             text = "CYCLE START: TAP F11, F12"
         painter.draw_text_line(head, text, 1.6, "pause" if self._is_latching else "soft")
         box = self._row(56.8, 13.6)
-        if not desk.machine.is_two_hand:
+        if not desk.machine.has_two_hand_start:
             self._palm(painter, box, "F12", down=False)
             self.controls.append(make_press_control(box, desk.station_keys.press_start))
             return
@@ -240,12 +242,12 @@ class StationDock(TouchPanel):
 
         They latch if this is selected with F10 7 and all axes are simulated.
         """
-        return self._desk.settings_store.current_settings.latched and self._desk.machine.allows_one_hand
+        return self._desk.settings_store.current_settings.latched and self._desk.machine.allows_one_hand_start
 
     def _palm_control(self, at: QRectF, side: str) -> TouchControl:
         hands = self._desk.station_controls
         if self._is_latching:
-            return TouchControl(at, lambda _at: hands.latch(side), None, hands.release_latched)
+            return TouchControl(at, lambda _at: hands.latch(side), None, hands.release_palm_buttons)
         press, release = (partial(self._desk.station_controls.palm, side, down) for down in (True, False))
         return TouchControl(at, lambda _at: press(), None, release)
 

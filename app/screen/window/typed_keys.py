@@ -21,7 +21,7 @@ from app.screen.window.window_frame import WindowFrame
 from core.message import Message
 
 
-class TypedKeys:
+class TypedKeyHandler:
     """Handler of keys that a question or the current page uses, before the key actions are executed."""
 
     def __init__(
@@ -55,15 +55,15 @@ class TypedKeys:
         The answer yes is accepted only while all other keys are released.
         """
         typed = {find_letter(event), find_typed_text(event)} - {""}
-        if not frame.desk.confirm_key or not typed & {frame.desk.confirm_key, "N"}:
+        if not frame.desk.confirmation_key or not typed & {frame.desk.confirmation_key, "N"}:
             return False
-        if "N" in typed and frame.desk.confirm_key != "N":
+        if "N" in typed and frame.desk.confirmation_key != "N":
             self._press_key(NO_KEY)
         elif not event.isAutoRepeat() and self._keyboard_filter.is_only_key(event):
             self._press_key(YES_KEY)
         return True
 
-    def is_withheld(self, frame: WindowFrame, event: QKeyEvent) -> bool:
+    def is_character_rejected(self, frame: WindowFrame, event: QKeyEvent) -> bool:
         """Return whether an input field rejects the character, which then has no other function.
 
         In an input field, Ctrl+H, Ctrl+Space and Ctrl+E do not stop the machine.
@@ -80,7 +80,7 @@ class TypedKeys:
             self._refresh()
         return True
 
-    def handle_typed(self, frame: WindowFrame, event: QKeyEvent) -> bool:
+    def handle_typed_key(self, frame: WindowFrame, event: QKeyEvent) -> bool:
         """Return whether the alarm log or the page has handled the key as text input."""
         key = find_typed_text(event)
         if frame.alarm_list.isVisible() and frame.alarm_list.handle_key(key):

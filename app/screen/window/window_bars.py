@@ -10,7 +10,7 @@ from PySide6.QtGui import QFont, QFontMetricsF
 from PySide6.QtWidgets import QWidget
 
 from app.desk.status.interrupted_notice import NoticeRow
-from app.desk.status.machine_status import Tone
+from app.desk.status.machine_status import StatusTone
 from app.desk.status.prompt_line import MessageKind
 from app.desk.status.readouts import Lamp
 from app.desk.translation import tr
@@ -50,7 +50,7 @@ class TitleLine(Panel):
 
     page_title = RedrawingAttribute("")
     access_text = RedrawingAttribute("")  # The signed-in user and level; empty if access levels are off.
-    _shown = RedrawingAttribute(("", "STARTING", Tone.OFF, "", ""))
+    _shown = RedrawingAttribute(("", "STARTING", StatusTone.OFF, "", ""))
 
     @property
     def program_text(self) -> str:
@@ -62,7 +62,7 @@ class TitleLine(Panel):
         """Return the displayed state of the machine."""
         return self._shown[1]
 
-    def show_texts(self, program: str, state: str, tone: Tone, machine: str, clock: str) -> None:
+    def show_texts(self, program: str, state: str, tone: StatusTone, machine: str, clock: str) -> None:
         """Show these texts in the title line."""
         self._shown = (program, state, tone, machine, clock)
 
@@ -86,7 +86,7 @@ class TitleLine(Panel):
         right = QRectF(self.width() - 16 * u, 0, 14.6 * u, high)
         painter.draw_text_line(right, clock, 2.2, "text", at=ALIGN_RIGHT, bold=False)
 
-    def _draw_state(self, painter: ThemedPainter, state: str, tone: Tone) -> None:
+    def _draw_state(self, painter: ThemedPainter, state: str, tone: StatusTone) -> None:
         look, u, high, state = self.theme, self.theme.unit_px, self.height(), tr(state)
         box = QRectF(60 * u, 0.2 * u, 50 * u, high - 0.5 * u)
         painter.fill_rect(box, tone.value)
@@ -315,8 +315,8 @@ class LampStrip(Panel):
         for number, lamp in enumerate(self.lamps):
             box = QRectF(number * wide, 0, wide - gap, self.height())
             self._lamp(painter, box, lamp)
-            if lamp.key:
-                self.add_target(box, partial(self._press, lamp.key), kind="lamp", is_on=lamp.is_lit)
+            if lamp.switch_key:
+                self.add_target(box, partial(self._press, lamp.switch_key), kind="lamp", is_on=lamp.is_lit)
 
     def _lamp(self, painter: ThemedPainter, box: QRectF, lamp: Lamp) -> None:
         look, u = self.theme, self.theme.unit_px
@@ -328,12 +328,12 @@ class LampStrip(Panel):
         )
         ink = ("on_state" if lamp.is_warning else "on_lit") if lamp.is_lit else "soft"
         room = box.adjusted(0.5 * u, 0.5 * u, -0.5 * u, -0.5 * u)
-        if lamp.key and lamp.key not in self.hidden_keys:
+        if lamp.switch_key and lamp.switch_key not in self.hidden_keys:
             cap = QRectF(room.x() + 0.1 * u, room.center().y() - 1.5 * u, 2.6 * u, 3.0 * u)
             painter.setPen(look.get_color(ink))
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawRect(cap)
-            painter.draw_text_line(cap, lamp.key, 2.2, ink, at=ALIGN_CENTER)
+            painter.draw_text_line(cap, lamp.switch_key, 2.2, ink, at=ALIGN_CENTER)
             room.setLeft(cap.right() + 0.4 * u)
         words = tr(lamp.label).split(" ", 1)
         room.setHeight(room.height() / len(words))
@@ -389,7 +389,7 @@ class NoticeRows(Panel):
         """Return whether the rows need a height that differs from their current height."""
         return self.needed_height_px != self._stand_for
 
-    def apply_height(self) -> int:
+    def apply_needed_height(self) -> int:
         """Return the height in pixels that the rows need, and treat it as their current height."""
         self._stand_for = self.needed_height_px
         return self.needed_height_px

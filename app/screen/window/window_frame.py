@@ -15,7 +15,7 @@ from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status import formats, prompt_line
 from app.desk.status.machine_status import MachineStatus
 from app.desk.status.readouts import Lamp, make_drives_lamp
-from app.desk.status.state_prompt import find_time_left, make_page_prompt
+from app.desk.status.state_prompt import find_remaining_time_s, make_page_prompt
 from app.desk.translation import tr
 from app.screen import page_table
 from app.screen.page_base import KeyActions, Page, PageHost
@@ -35,7 +35,7 @@ from app.screen.window.readout_panels import (
     TimesPanel,
     ToolPanel,
 )
-from app.screen.window.run_row import RunRow
+from app.screen.window.run_row import RunStatusRow
 from app.screen.window.station_dock import StationDock
 from app.screen.window.window_bars import FunctionKeyBar, LampStrip, NoticeRows, PromptLine, TitleLine
 from app.screen.window_layout import (
@@ -43,8 +43,8 @@ from app.screen.window_layout import (
     Rect,
     find_unit_px,
     find_work_area,
-    make_layout,
-    make_low_layout,
+    make_automatic_layout,
+    make_compact_layout,
 )
 from core.executor.snapshot import MachineState, Snapshot
 from core.message import Message
@@ -75,7 +75,7 @@ class WindowFrame(QWidget):
         self._shown_at, self._paints = 0.0, 0
         self.title_line = TitleLine(theme, self)
         self.readout_line = ReadoutRow(theme, self)
-        self.run_line = RunRow(theme, self)
+        self.run_line = RunStatusRow(theme, self)
         self.position_panel = PositionPanel(theme, self)
         self.feed_panel = FeedPanel(theme, "FEED", self)
         self.spindle_panel = SpindlePanel(theme, "SPINDLE", self)
@@ -114,9 +114,9 @@ class WindowFrame(QWidget):
         if name == self.current_page.NAME:
             return True
         page = self.find_page(name)
-        if not page.can_open() or not self.current_page.try_leave():
+        if not page.can_open() or not self.current_page.try_leave_page():
             return False
-        self.desk.station_controls.release_all()
+        self.desk.station_controls.release_all_buttons()
         self.current_page.hide()
         self.current_page = page
         self._front()
@@ -151,7 +151,9 @@ class WindowFrame(QWidget):
     def _front(self) -> None:
         page = self.current_page
         self.help_panel.close_help()
-        self.desk.window_state.set_page(can_start=page.STARTS, has_field=self.has_text_field)
+        self.desk.window_state.set_page_properties(
+            can_start=page.CAN_START_CYCLES, has_field=self.has_text_field
+        )
         self.key_bar.key_labels, self.key_bar.disabled_keys = (
             page.make_key_labels(),
             page.find_disabled_keys(),
@@ -214,7 +216,7 @@ class WindowFrame(QWidget):
         page = self.current_page
         blocks = make_page_help(page.NAME, page.find_marked_help(), is_log=self.alarm_list.isVisible())
         if blocks:
-            page.stop_held_actions()
+            page.stop_held_key_actions()
             self.help_panel.open_help(blocks)
             self._place_help()
         else:
@@ -240,7 +242,7 @@ class WindowFrame(QWidget):
         It does unless Esc has another function now.
         """
         return (
-            not self.desk.confirm_key
+            not self.desk.confirmation_key
             and not self.alarm_list.isVisible()
             and self.current_page.is_esc_stop_key()
         )
@@ -256,7 +258,7 @@ class WindowFrame(QWidget):
             self.alarm_list.isVisible(),
             self.help_panel.isVisible(),
             self.automatic_page.file_prompt.isVisible(),
-            self.desk.confirm_key,
+            self.desk.confirmation_key,
         )
 
     def apply_theme(self) -> None:
@@ -278,13 +280,15 @@ class WindowFrame(QWidget):
     def _place_parts(self, *, large: bool) -> Rect:
         """Arrange all parts for the current size, and return the rectangle of the page."""
         width, height = self.width(), self.height()
-        self.theme.set_unit(find_unit_px(width, height))
+        self.theme.set_unit_px(find_unit_px(width, height))
         with_dock = self.station_dock is not None and self.desk.settings_store.current_settings.dock
-        at = make_layout(width, height, with_dock)
-        low = make_low_layout(width, height, with_dock, has_axis_motion=self.current_page.STARTS)
+        at = make_automatic_layout(width, height, with_dock)
+        low = make_compact_layout(
+            width, height, with_dock, has_axis_motion=self.current_page.CAN_START_CYCLES
+        )
         self._docked = with_dock
         work = find_work_area(at) if large else low.work_area
-        rows = Rect(work.x, work.y, work.w, min(self.notice_rows.apply_height(), work.h // 3))
+        rows = Rect(work.x, work.y, work.w, min(self.notice_rows.apply_needed_height(), work.h // 3))
         work, over = _find_area_below(work, rows), _find_area_below(at.path if large else low.work_area, rows)
         place_widget(self.notice_rows, rows)
         self.notice_rows.setVisible(bool(rows.h))
@@ -293,7 +297,7 @@ class WindowFrame(QWidget):
             place_widget(part, rect)
             part.setVisible(not large)
         if self.station_dock is not None:
-            self.station_dock.release_all()
+            self.station_dock.release_all_controls()
             self.station_dock.setVisible(with_dock)
             place_widget(self.station_dock, at.dock)
         place_widget(self.title_line, at.title)
@@ -338,7 +342,7 @@ class WindowFrame(QWidget):
 
     # --- display -------------------------------------------------------------------------------------
 
-    def has_changed(self) -> bool:
+    def has_changed_since_refresh(self) -> bool:
         """Return whether the machine, the program or a panel has changed since the last refresh."""
         shown, desk = self._shown, self.desk
         if shown is None or self._paints != Panel.paint_count:
@@ -366,7 +370,9 @@ class WindowFrame(QWidget):
         self._show_bars(snapshot, view, loaded)
         lamps = self._make_lamps(snapshot, view)
         self.strip.lamps = lamps
-        self.strip.hidden_keys = frozenset(lamp.key for lamp in lamps if self._is_dead(lamp.key))
+        self.strip.hidden_keys = frozenset(
+            lamp.switch_key for lamp in lamps if self._is_dead(lamp.switch_key)
+        )
         if self.current_page is self.automatic_page:
             self._show_readouts(snapshot, view, loaded)
             go_on = tr(Message("{start} TO CONTINUE", start=tr(self.desk.start_instruction)))
@@ -429,9 +435,9 @@ class WindowFrame(QWidget):
         state = make_page_prompt(desk, snapshot, loaded, self.current_page.prompt_text())
         self.prompt_line.show_state(state, prompt_line.reason(view) or prompt_line.find_remedy(loaded, state))
         self.prompt_line.show_question(
-            desk.prompt_answers.question_text or self.current_page.find_pending_question(), desk.confirm_key
+            desk.prompt_line.question_text or self.current_page.find_pending_question(), desk.confirmation_key
         )
-        self.prompt_line.show_message(desk.prompt_answers.message, kind=desk.prompt_answers.notice_kind)
+        self.prompt_line.show_message(desk.prompt_line.message, kind=desk.prompt_line.notice_kind)
 
     def _show_readouts(self, snapshot: Snapshot, view: MachineStatus, loaded: LoadedProgram) -> None:
         """Show the values of this instant in the large displays."""
@@ -440,26 +446,26 @@ class WindowFrame(QWidget):
             view.feed,
             view.spindle,
         )
-        self.tool_panel.value = (view.tool_text, view.secondary_text)
+        self.tool_panel.value = (view.tool_text, view.secondary_offset_text)
         self.times_panel.value = self._make_times(snapshot, view, loaded)
 
     def _make_times(
         self, snapshot: Snapshot, view: MachineStatus, loaded: LoadedProgram
     ) -> tuple[tuple[str, str], ...]:
         """Return the part count and the times that the run line also shows."""
-        left = formats.format_duration(find_time_left(snapshot, loaded))
+        left = formats.format_duration(find_remaining_time_s(snapshot, loaded))
         return (
-            ("PARTS", self.desk.program_runs.part_counter.count_text),
-            ("CYCLE", view.cycle_time),
+            ("PARTS", self.desk.program_runs.part_counter.part_count_text),
+            ("CYCLE", view.cycle_time_text),
             ("LEFT", left),
-            ("LAST", view.last_cycle_time),
+            ("LAST", view.last_cycle_time_text),
         )
 
     def _make_lamps(self, snapshot: Snapshot, view: MachineStatus) -> tuple[Lamp, ...]:
         """Return the lamps from left to right."""
         kept = (
             (Lamp("NOT SAVED", is_lit=True, is_warning=True),)
-            if self.desk.storage_state.read_problem()
+            if self.desk.storage_state.read_storage_problem()
             else ()
         )
         return (

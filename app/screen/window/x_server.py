@@ -34,7 +34,7 @@ class XServer:
         self._x.XQueryKeymap(self._display, bits)
         return frozenset(8 * n + bit for n, byte in enumerate(bits) for bit in range(8) if byte >> bit & 1)
 
-    def has_button_down(self) -> bool:
+    def is_mouse_button_down(self) -> bool:
         """Return whether a mouse button is down now."""
         windows = [ctypes.c_ulong(), ctypes.c_ulong()]
         places = [ctypes.c_int() for _ in range(4)]

@@ -78,7 +78,7 @@ class DriveTestMotion:
     speed: float = 0.0
     frequencies_hz: tuple[float, ...] = ()
 
-    def find_refusal(self, limits: AxisTestLimits) -> str:
+    def find_refusal_reason(self, limits: AxisTestLimits) -> str:
         """Return why the test parameters are not permitted, or an empty string if they are."""
         longest = MAX_RAMP_TRAVEL_MM if self.shape is Shape.RAMP else MAX_STEP_TRAVEL_MM
         if not 0.0 < abs(self.travel_mm) <= longest + _ROUNDING_TOLERANCE:
@@ -234,9 +234,9 @@ class DriveTester:
         samples = self._context.ports.samples
         return samples.sample_rate_hz if samples is not None else TICK_SAMPLE_RATE_HZ
 
-    def find_refusal(self, path: DriveTestMotion, lease_s: float) -> str:
+    def find_refusal_reason(self, path: DriveTestMotion, lease_s: float) -> str:
         """Return why this test is refused, or an empty string if it may start."""
-        if why := find_unsupported_reason(self._context.ports) or self._jogger.find_missing_axis_reason(
+        if why := find_unsupported_reason(self._context.ports) or self._jogger.find_axis_refusal_reason(
             path.axis
         ):
             return why
@@ -266,7 +266,7 @@ class DriveTester:
         if axis.is_rotary:
             return Message("{axis} is a rotary axis; drive tests are only for linear axes", axis=axis.name)
         limits = self._limits(axis)
-        return path.find_refusal(limits) or self._no_room(axis, path, limits)
+        return path.find_refusal_reason(limits) or self._no_room(axis, path, limits)
 
     def _no_room(self, axis: Axis, path: DriveTestMotion, limits: AxisTestLimits) -> str:
         here = self._context.axis_sample.demand[self._context.ports.axes.axes.index(axis.name)]
@@ -309,7 +309,7 @@ class DriveTester:
         if jogger.is_testing and not jogger.is_stopping and self._until < self._lasts and lease_s > 0.0:
             self._queue(jogger.axis_name, lease_s)
 
-    def check_guard(self) -> None:
+    def stop_if_guard_open(self) -> None:
         """Stop the test if the guard is open.
 
         The function is called once per tick. Raises DriverError if a driver fails.
@@ -335,5 +335,5 @@ class DriveTester:
         plays = self._jogger.run_drive_test(name, plan_ramps)
         if plays:
             self._until = min(until - self._began, self._lasts)
-            self._jogger.set_test_queued(self._until >= self._lasts)
+            self._jogger.set_test_fully_queued(self._until >= self._lasts)
         return plays

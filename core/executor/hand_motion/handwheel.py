@@ -133,7 +133,7 @@ class Handwheel:
             return False
         return self._follow(clicks)
 
-    def find_jog_refusal(self, state: MachineState) -> str:
+    def find_jog_refusal_reason(self, state: MachineState) -> str:
         """Return why a key cannot jog an axis while the handwheel is active, or an empty string."""
         if self._jogger.target_position is not None:
             self._together("a key or the screen was pressed while the handwheel was turning", state)
@@ -155,7 +155,7 @@ class Handwheel:
         context = self._context
         if not self._there:
             return "this machine has no handwheel"
-        if why := self._jogger.find_missing_axis_reason(command.axis):
+        if why := self._jogger.find_axis_refusal_reason(command.axis):
             return why
         longest = MAX_CLICK_DEG if context.machine.find_axis(command.axis).is_rotary else MAX_CLICK_MM
         if not 0.0 < command.step <= longest + _ROUNDING:
@@ -191,7 +191,9 @@ class Handwheel:
             ),
         )
         found = next((why for so, why in reasons if so), "")
-        return found or self._jogger.find_spinning_reason(axis) or self._jogger.request_c_axis(axis)
+        return (
+            found or self._jogger.find_spindle_turning_reason(axis) or self._jogger.request_c_axis_mode(axis)
+        )
 
     def _follow(self, clicks: int) -> bool:
         context, jogger = self._context, self._jogger

@@ -37,12 +37,12 @@ def get_distance_to_limit(axis: Axis, position: float, direction: float) -> floa
 class JogLine:
     """A straight line of motion in the space of all axes.
 
-    ``axis_shares`` contains the distance of each axis per unit of distance along the line. A single axis
+    ``unit_direction`` contains the distance of each axis per unit of distance along the line. A single axis
     has the share 1.
     """
 
     axes: Sequence[Axis]
-    axis_shares: FloatArray
+    unit_direction: FloatArray
 
     @classmethod
     def from_axis(cls, axes: Sequence[Axis], index: int) -> JogLine:
@@ -63,14 +63,14 @@ class JogLine:
     def has_same_direction(self, other: JogLine | None) -> bool:
         """Return whether both lines have the same direction."""
         return other is not None and bool(
-            np.allclose(self.axis_shares, other.axis_shares, rtol=0.0, atol=_MIN_SHARE)
+            np.allclose(self.unit_direction, other.unit_direction, rtol=0.0, atol=_MIN_SHARE)
         )
 
     def iter_moving_axes(self) -> Iterator[tuple[int, Axis, float]]:
         """Yield the index, the axis and the share of the line's distance for each axis that moves."""
         yield from (
             (place, axis, share)
-            for place, (axis, share) in enumerate(zip(self.axes, self.axis_shares.tolist(), strict=True))
+            for place, (axis, share) in enumerate(zip(self.axes, self.unit_direction.tolist(), strict=True))
             if share
         )
 
@@ -103,14 +103,14 @@ class JogLine:
         n = len(ramps)
         dt = np.array([piece[0] for piece in ramps])
         t = start + np.concatenate([[0.0], np.cumsum(dt)[:-1]])
-        v = np.outer([piece[1] for piece in ramps], self.axis_shares)
-        a = np.outer([piece[2] for piece in ramps], self.axis_shares)
+        v = np.outer([piece[1] for piece in ramps], self.unit_direction)
+        a = np.outer([piece[2] for piece in ramps], self.unit_direction)
         position = np.tile(start_position, (n, 1))
         ways = (v + 0.5 * a * dt[:, np.newaxis]) * dt[:, np.newaxis]
         position[1:] += np.cumsum(ways, axis=0)[:-1]
         return MotionSegments(t, dt, position, v, a)
 
 
-def is_unit_vector_invalid(direction: Direction) -> bool:
+def is_not_unit_vector(direction: Direction) -> bool:
     """Return whether the direction is invalid because it is not a unit vector."""
     return not abs(math.hypot(*direction) - 1.0) <= _UNIT_TOLERANCE

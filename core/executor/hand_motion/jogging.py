@@ -21,7 +21,7 @@ from core.executor.hand_motion.jog_line import (
     JogLine,
     Ramp,
     get_distance_to_limit,
-    is_unit_vector_invalid,
+    is_not_unit_vector,
 )
 from core.executor.hand_motion.jog_ramps import POSITION_TOLERANCE, plan_jog_ramps, plan_step_ramps
 from core.executor.machine_context import MachineContext
@@ -56,11 +56,11 @@ class Jogger:
         """Return the name of the moving axis, or an empty string if no axis moves."""
         return self._context.machine.axes[self._axis].name if self._axis >= 0 else ""
 
-    def find_jog_refusal(
+    def find_jog_refusal_reason(
         self, name: str, velocity: float, lease_s: float, direction: Direction | None = None
     ) -> str:
         """Return why this jog is refused, or an empty string if it may start or continue."""
-        if why := self.find_missing_axis_reason(name) or self._find_direction_refusal(name, direction):
+        if why := self.find_axis_refusal_reason(name) or self._find_direction_refusal(name, direction):
             return why
         if not (math.isfinite(velocity) and math.isfinite(lease_s)) or lease_s <= 0.0:
             return "a jog needs a velocity and a watchdog time greater than 0"
@@ -70,11 +70,11 @@ class Jogger:
             return Message("the jog step of {axis} is not finished", axis=self.axis_name)
         return self._barred(name)
 
-    def find_step_refusal(
+    def find_step_refusal_reason(
         self, name: str, distance: float, speed: float, direction: Direction | None = None
     ) -> str:
         """Return why this step is refused, or an empty string if it may start."""
-        if why := self.find_missing_axis_reason(name) or self._find_direction_refusal(name, direction):
+        if why := self.find_axis_refusal_reason(name) or self._find_direction_refusal(name, direction):
             return why
         if not math.isfinite(speed) or speed <= 0.0:
             return "a jog step needs a speed above 0"
@@ -95,9 +95,7 @@ class Jogger:
             return Message("{axis} is still being jogged", axis=self.axis_name)
         if direction is None:
             return ""
-        if not set("XYZ") <= {axis.name for axis in context.machine.axes} or is_unit_vector_invalid(
-            direction
-        ):
+        if not set("XYZ") <= {axis.name for axis in context.machine.axes} or is_not_unit_vector(direction):
             return "jogging in a tilted plane needs the axes X, Y and Z and a direction vector of length 1"
         if not all(context.axis_sample.homed):
             return "home all axes before jogging in a tilted plane"
@@ -109,7 +107,7 @@ class Jogger:
             return JogLine.from_direction(axes, along)
         return JogLine.from_axis(axes, self._context.ports.axes.axes.index(name))
 
-    def find_missing_axis_reason(self, name: str) -> str:
+    def find_axis_refusal_reason(self, name: str) -> str:
         """Return why this axis does not exist or cannot be jogged, or an empty string."""
         machine = self._context.machine
         known = name in {axis.name for axis in machine.axes}
@@ -122,9 +120,9 @@ class Jogger:
             return "feed hold is pressed"
         if self.axis_name and self.axis_name != name:
             return Message("{axis} is still being jogged", axis=self.axis_name)
-        return self.find_spinning_reason(name) or self.request_c_axis(name)
+        return self.find_spindle_turning_reason(name) or self.request_c_axis_mode(name)
 
-    def find_spinning_reason(self, name: str) -> str:
+    def find_spindle_turning_reason(self, name: str) -> str:
         """Return why C cannot move because the spindle is turning, or an empty string if C can move.
 
         This applies only if the spindle is the C axis.
@@ -135,7 +133,7 @@ class Jogger:
             return "the C axis is the spindle, and the spindle is turning; stop the spindle first"
         return ""
 
-    def request_c_axis(self, name: str) -> str:
+    def request_c_axis_mode(self, name: str) -> str:
         """Start the change to C-axis mode if necessary; return why C cannot move yet, or an empty string."""
         spindle = self._context.spindle
         if (
@@ -214,7 +212,7 @@ class Jogger:
             self._axis, self.is_testing = index, True
         return plays
 
-    def set_test_queued(self, is_queued: bool) -> None:
+    def set_test_fully_queued(self, is_queued: bool) -> None:
         """Store whether the complete drive test has been queued.
 
         If it is stopped before that, its end is logged as a premature stop.
@@ -271,7 +269,7 @@ class Jogger:
         )
         self.is_stepping, self.target_position, self.is_stopping = False, None, True
 
-    def check_button(self) -> None:
+    def stop_if_button_released(self) -> None:
         """Stop the jog if its button is released or unreadable. Raises DriverError if a driver fails."""
         if self.button_input and not self._context.is_button_pressed(self.button_input):
             self.button_input = ""
@@ -383,19 +381,19 @@ class BlockJogger(Jogger):
         self._sink = controller
         self._pressed: _PendingJog | None = None
 
-    def find_jog_refusal(
+    def find_jog_refusal_reason(
         self, name: str, velocity: float, lease_s: float, direction: Direction | None = None
     ) -> str:
         """Return why this jog is refused, or an empty string if it may start or continue."""
-        return super().find_jog_refusal(name, velocity, lease_s, direction) or (
+        return super().find_jog_refusal_reason(name, velocity, lease_s, direction) or (
             "" if self.axis_name else self._unready()
         )
 
-    def find_step_refusal(
+    def find_step_refusal_reason(
         self, name: str, distance: float, speed: float, direction: Direction | None = None
     ) -> str:
         """Return why this step is refused, or an empty string if it may start."""
-        return super().find_step_refusal(name, distance, speed, direction) or self._unready()
+        return super().find_step_refusal_reason(name, distance, speed, direction) or self._unready()
 
     def _find_direction_refusal(self, name: str, direction: Direction | None) -> str:
         """Return why the axis cannot be jogged along this direction, or an empty string."""
@@ -411,7 +409,7 @@ class BlockJogger(Jogger):
         """Start a step from rest. Raises DriverError if the controller rejects it."""
         assert direction is None  # otherwise the request was refused
         index, top = self._speed(name, speed)
-        self._sink.move_by_step(name, self._context.axis_sample.demand[index] + distance, top)
+        self._sink.move_to_target(name, self._context.axis_sample.demand[index] + distance, top)
         self._axis, self.is_stepping = index, True
 
     def start_or_renew_jog(
@@ -483,4 +481,6 @@ class BlockJogger(Jogger):
 
     def _unready(self) -> str:
         state = self._sink.state()
-        return state.start_refusal or ("" if state.is_at_rest else "the controller is still moving the axes")
+        return state.start_refusal_reason or (
+            "" if state.is_at_rest else "the controller is still moving the axes"
+        )

@@ -12,7 +12,7 @@ from core.executor.machine_context import MachineContext
 from core.executor.snapshot import MachineState, TouchPhase, TouchResult
 from core.executor.start_conditions import is_guard_open
 from core.key_declaration import MM_PER_INCH
-from core.machine.setter_table import SetterModel
+from core.machine.setter_table import ToolSetterModel
 from core.message import Message
 from core.ports import PROBE_INPUT, StopMode, TouchLatch, UnknownPart
 
@@ -33,7 +33,7 @@ class TouchOff:
     def __init__(self, context: MachineContext, jogger: Jogger) -> None:
         self._context = context
         self._jogger = jogger
-        self._model = context.machine.hardware.find_driver_table(SetterModel)
+        self._model = context.machine.hardware.find_driver_table(ToolSetterModel)
         self.phase: TouchPhase | None = None
         self.last_result: TouchResult | None = None
         self._ended = _NONE  # number of the key press whose touch-off has ended

@@ -21,7 +21,7 @@ from core.block_ports import (
     RapidOperation,
     ThreadOperation,
 )
-from core.executor.job import BlockReadAhead, compute_nominal_duration_s
+from core.executor.job import ReadAheadQueue, compute_nominal_duration_s
 from core.executor.machine_context import MachineContext
 from core.executor.program_motion.path_section import OverrideFactors, SectionProgress
 from core.executor.program_motion.standstill import StandstillWait, make_spindle_speed_wait
@@ -194,7 +194,7 @@ class ControllerMotion:
     """Motion along a path section, executed by sending its blocks to the controller.
 
     Only the executor's thread uses it. Single block stops at the end of the last block that was sent to the
-    controller, at most ``BlockController.max_lead_s`` seconds later.
+    controller, at most ``BlockController.max_queued_motion_s`` seconds later.
     """
 
     def __init__(self, context: MachineContext, controller: BlockController) -> None:
@@ -202,7 +202,7 @@ class ControllerMotion:
         self._sink = controller
         machine = context.machine
         self._limits = MotionLimits.from_axes(
-            machine.axes, machine.timing.setpoint, machine.limits.corner_tolerance
+            machine.axes, machine.timing.setpoint_duration_s, machine.limits.corner_tolerance
         )
         self._waiting: deque[Block] = deque()  # blocks not yet divided into parts
         self._pieces: deque[BlockPart] = deque()  # parts not yet sent
@@ -225,7 +225,7 @@ class ControllerMotion:
     # --- state --------------------------------------------------------------------------------------------
 
     @property
-    def has_section(self) -> bool:
+    def has_path_section(self) -> bool:
         """Return whether a path section is active."""
         return self._active
 
@@ -266,9 +266,9 @@ class ControllerMotion:
 
     # --- requests -----------------------------------------------------------------------------------------
 
-    def start_section(self, blocks: list[Block]) -> None:
+    def start_path_section(self, blocks: list[Block]) -> None:
         """Start a new path section from rest. Raises AlarmError or DriverError if the start fails."""
-        self.clear_section()
+        self.clear_path_section()
         self._active, self._shown, self._seen = True, blocks[0], self._context.now
         self._thread = blocks[0].kind is BlockKind.THREAD
         self._waiting.extend(blocks)
@@ -282,7 +282,7 @@ class ControllerMotion:
             self._sink.resume()
         self._hand_over()
 
-    def update_progress(self, read_ahead: BlockReadAhead) -> SectionProgress:
+    def update_progress(self, read_ahead: ReadAheadQueue) -> SectionProgress:
         """Apply switches and overrides, send the permitted blocks and return the progress."""
         if not self._active:
             return SectionProgress.DONE
@@ -290,7 +290,7 @@ class ControllerMotion:
         state = self._poll_controller()
         self._detect_absence()
         if not self._thread and read_ahead.pending_blocks and self._ready() < _CUT_AHEAD_S:
-            self._waiting.extend(read_ahead.take_pending_blocks())
+            self._waiting.extend(read_ahead.pop_pending_blocks())
         self._hand_over()
         if state.is_in_feed_hold and not self._still:
             return SectionProgress.IN_FEED_HOLD
@@ -304,12 +304,12 @@ class ControllerMotion:
         if self._thread:
             self._hand_over()
 
-    def hold_on_path(self) -> None:
+    def stop_on_path(self) -> None:
         """Stop on the path (feed hold). A threading pass is completed first."""
         if not self._thread:
-            self._sink.hold_on_path()
+            self._sink.stop_on_path()
 
-    def stop_at_once(self) -> None:
+    def stop_immediately(self) -> None:
         """Stop at once and discard the blocks in the controller."""
         self._empty()
         self._sink.abort_blocks()
@@ -317,7 +317,7 @@ class ControllerMotion:
     def discard_remaining_plan(self) -> None:
         """Do nothing, because the controller stops automatically after its last block."""
 
-    def cancel_waiting_pass(self) -> bool:
+    def cancel_waiting_thread_pass(self) -> bool:
         """Return False, because only the controller knows whether a thread pass is still waiting."""
         return False
 
@@ -325,7 +325,7 @@ class ControllerMotion:
         """Stop a thread pass that has lost spindle synchronization, so that X can be retracted."""
         left = [*(each.block_part.block for each in self._sent), *(each.block for each in self._pieces)]
         self._lost = block, [block, *left, *self._waiting][-1].mx
-        self.stop_at_once()
+        self.stop_immediately()
 
     def continue_retract(self) -> None:
         """Retract X from rest, and raise AlarmError("thread-lost") when the tool is clear of the thread.
@@ -335,12 +335,12 @@ class ControllerMotion:
         assert self._lost is not None
         block, out = self._lost
         x, z = self._context.axis_sample.actual[:2]
-        if abs(x - out) < _POSITION_TOLERANCE_MM or self._sink.state().start_refusal:
+        if abs(x - out) < _POSITION_TOLERANCE_MM or self._sink.state().start_refusal_reason:
             raise AlarmError("thread-lost", line=block.line)
         self._pieces.append(BlockPart(RapidOperation(out, z, block.modal.rapid_rate), block, 0.0))
         self._hand_over()
 
-    def clear_section(self) -> None:
+    def clear_path_section(self) -> None:
         """Clear the path section here and in the controller."""
         self._poll_controller()
         if self._sent:
@@ -360,7 +360,7 @@ class ControllerMotion:
     def _poll_controller(self) -> BlockState:
         """Return the state of the controller, and remove the blocks that it has completed."""
         state = self._sink.state()
-        while self._sent and self._sent[0].ticket_number <= state.last_done_ticket:
+        while self._sent and self._sent[0].ticket_number <= state.last_completed_ticket:
             done = self._sent.popleft().block_part
             self._shown, self._seconds = done.block, self._seconds - done.min_duration_s
         if self._sent:
@@ -400,7 +400,7 @@ class ControllerMotion:
                 self._sink.resume()
         elif not self._still and not self._thread:
             self._still = True
-            self._sink.hold_on_path()
+            self._sink.stop_on_path()
 
     @property
     def _cut_ahead(self) -> float:
@@ -455,15 +455,15 @@ class ControllerMotion:
         acceleration limits of the slower axis apply.
         """
         if block.kind is not BlockKind.ARC:
-            return self._sink.get_max_line_speed(block.x - block.x0, block.z - block.z0)
+            return self._sink.get_max_directional_speed(block.x - block.x0, block.z - block.z0)
         around = (
             CENTRIPETAL_SHARE
             * self._limits.max_plane_acceleration
             * math.hypot(block.x - block.cx, block.z - block.cz)
         )
         return min(
-            self._sink.get_max_line_speed(1.0, 0.0),
-            self._sink.get_max_line_speed(0.0, 1.0),
+            self._sink.get_max_directional_speed(1.0, 0.0),
+            self._sink.get_max_directional_speed(0.0, 1.0),
             math.sqrt(around),
         )
 
@@ -478,7 +478,9 @@ class ControllerMotion:
         if self._thread or not self._sent:
             return True
         slow = max(min(self._overrides.feed_factor, 1.0), _MIN_OVERRIDE)
-        return (self._seconds - self._sent[0].block_part.min_duration_s) / slow < self._sink.max_lead_s
+        return (
+            self._seconds - self._sent[0].block_part.min_duration_s
+        ) / slow < self._sink.max_queued_motion_s
 
     def _single(self, block: Block) -> bool:
         if not self._context.switches.single_block or self._thread:

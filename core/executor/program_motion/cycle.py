@@ -11,7 +11,7 @@ from collections.abc import Callable
 from functools import partial
 
 from core.alarms import CATALOG, AlarmCode
-from core.executor.job import BlockReadAhead, ProgramPass
+from core.executor.job import ProgramPass, ReadAheadQueue
 from core.executor.machine_context import MachineContext
 from core.executor.program_motion.controller_motion import ControllerMotion
 from core.executor.program_motion.path_section import SectionProgress
@@ -65,7 +65,7 @@ class HoldController:
     @property
     def will_resume_in_section(self) -> bool:
         """Return whether motion will resume within the current path section rather than in the next one."""
-        return self._motion.has_section and not self._motion.is_complete
+        return self._motion.has_path_section and not self._motion.is_complete
 
     @property
     def is_retracting(self) -> bool:
@@ -91,7 +91,7 @@ class HoldController:
         self.hold_reason, self._since = reason, self._context.now
         self._context.show_stop(*(find_hold_code(reason, source) if code is None else (code, reason.lower())))
         if self._motion.is_moving:
-            self._motion.hold_on_path()
+            self._motion.stop_on_path()
             return MachineState.STOPPING
         self._motion.discard_remaining_plan()  # a plan whose queue has run out must not be continued
         return MachineState.HOLD
@@ -186,7 +186,7 @@ class Cycle:
         self._enter = change_state
         self._ended = handle_end
         self._needs_end = source.make_checkpoint is None
-        self._feed = BlockReadAhead(source, context.machine)
+        self._feed = ReadAheadQueue(source, context.machine)
         self._state = MachineState.RUN
         self._still = StandstillSequencer(context, self._feed, lambda: self._is_tapping)
         self._hold = HoldController(context, motion, self._still)
@@ -276,11 +276,11 @@ class Cycle:
     def stop_canceled_cycle(self) -> None:
         """Stop the motion of a canceled cycle. The caller waits for ``is_at_rest``."""
         if self._motion.is_moving:
-            self._motion.stop_at_once()
+            self._motion.stop_immediately()
         if self._state in _MOVING_STATES:
             self._change(MachineState.STOPPING)
 
-    def find_resume_refusal(self) -> str:
+    def find_resume_refusal_reason(self) -> str:
         """Return why a stopped cycle cannot resume now, or an empty string."""
         spindle = self._context.spindle
         return (
@@ -390,7 +390,7 @@ class Cycle:
             case NextAction.MOTION:
                 self._change(MachineState.RUN)
                 self._read()
-                self._motion.start_section(self._feed.take_pending_blocks())
+                self._motion.start_path_section(self._feed.pop_pending_blocks())
             case NextAction.END if self._needs_end:
                 raise AlarmError("no-end")
             case NextAction.END:
@@ -430,7 +430,7 @@ class Cycle:
             or not self._motion.is_moving
         ):
             return
-        if block.kind is BlockKind.THREAD and not self._motion.cancel_waiting_pass():
+        if block.kind is BlockKind.THREAD and not self._motion.cancel_waiting_thread_pass():
             self._hold.start_retract(block)
             self._change(MachineState.STOPPING)
         elif (
@@ -438,7 +438,7 @@ class Cycle:
             or (block.per_rev and not block.modal.c_locked)
             or spindle.is_too_slow
         ):
-            self.start_feed_hold(spindle.slow_reason or "SPINDLE BELOW HALF COMMANDED SPEED")
+            self.start_feed_hold(spindle.spindle_stopped_reason or "SPINDLE BELOW HALF COMMANDED SPEED")
 
     def _show_block_at_rest(self, block: Block | None) -> None:
         """Show the last block reached at rest, which may be an executed block without motion."""
@@ -450,7 +450,7 @@ class Cycle:
         self.modal = block.modal
         self._context.line_number = block.line
         if block.moves:
-            self._context.spindle.follow_block(block)
+            self._context.spindle.adopt_block_speed(block)
 
     def _change(self, state: MachineState) -> None:
         if state is not self._state:

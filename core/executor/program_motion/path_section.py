@@ -94,7 +94,7 @@ class PathSection:
         path = self._builder.build_path()
         return path.find_block_span(number)[1] if number in self._blocks else np.inf
 
-    def drop_blocks_before(self, block_number: int | None) -> None:
+    def discard_earlier_blocks(self, block_number: int | None) -> None:
         """Drop the blocks before block ``block_number``."""
         if block_number is None or block_number not in self._blocks:
             return
@@ -162,15 +162,15 @@ class QueuedPlan(NamedTuple):
 
     def get_distance_and_speed(self, time_s: float) -> tuple[float, float]:
         """Return the distance along the path and the speed at ``time_s``."""
-        s, v = self.motion_profile.distance_and_speed_at(time_s - self.time_origin_s)
+        s, v = self.motion_profile.compute_distances_and_speeds(time_s - self.time_origin_s)
         return float(s[0]), float(v[0])
 
     def get_block_number(self, time_s: float) -> int:
         """Return the number of the block that is executed at ``time_s``."""
-        return self.motion_profile.block_number_at(time_s - self.time_origin_s)
+        return self.motion_profile.find_block_number(time_s - self.time_origin_s)
 
 
-class QueuedPlans:
+class QueuedPlanList:
     """The queued plans in order of execution."""
 
     def __init__(self) -> None:
@@ -209,7 +209,7 @@ class PlanQueue:
         self._axes = axes
         self._lateness = lateness
         self._cost = 0.0  # s that recent planning took
-        self._tracks = QueuedPlans()
+        self._tracks = QueuedPlanList()
         self._profile: MotionProfile | None = None
         self._origin = 0.0
         self._queued_to = 0.0  # end of the queued part of the plan, after which the braking tail follows
@@ -305,7 +305,7 @@ class PlanQueue:
         parts = [profile.make_segments(t - origin, end - origin, origin)]
         tracks = [QueuedPlan(t, origin, profile)]
         if end < origin + profile.duration_s - 1e-9:
-            s, v = profile.distance_and_speed_at(end - origin)
+            s, v = profile.compute_distances_and_speeds(end - origin)
             tail = plan_motion(
                 profile.path, start_distance=float(s[0]), start_speed=float(v[0]), stop_early=True
             )
@@ -313,8 +313,8 @@ class PlanQueue:
             tracks.append(QueuedPlan(end, end, tail))
         setpoints = MotionSegments(*[np.concatenate(part) for part in zip(*parts, strict=True)])
         if not len(setpoints.start_times_s):
-            setpoints = MotionSegments.make_rest(
-                t, profile.path.positions_at(np.array([profile.end_distance]))[0]
+            setpoints = MotionSegments.make_standstill(
+                t, profile.path.compute_positions(np.array([profile.end_distance]))[0]
             )
         self._axes.splice(setpoints)
         self._tracks.replace_plans(t, tracks, self._axes.now())

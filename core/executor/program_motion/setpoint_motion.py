@@ -10,7 +10,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from core.executor.job import BlockReadAhead
+from core.executor.job import ReadAheadQueue
 from core.executor.machine_context import MachineContext
 from core.executor.program_motion.path_section import (
     OverrideFactors,
@@ -42,7 +42,7 @@ class SetpointMotion:
         self._context = context
         self._axes = context.ports.axes
         self._limits = MotionLimits.from_axes(
-            machine.axes, machine.timing.setpoint, machine.limits.corner_tolerance
+            machine.axes, machine.timing.setpoint_duration_s, machine.limits.corner_tolerance
         )
         self._queue = PlanQueue(self._axes, context.tick_lateness)
         self._section: PathSection | None = None
@@ -59,14 +59,14 @@ class SetpointMotion:
     # --- state --------------------------------------------------------------------------------------------
 
     @property
-    def has_section(self) -> bool:
+    def has_path_section(self) -> bool:
         """Return whether a path section or a thread pass is active."""
         return self._section is not None or self._pass is not None
 
     @property
     def is_moving(self) -> bool:
         """Return whether a path section or a thread pass is active and the axes are not at rest."""
-        return self.has_section and not self._is_at_rest()
+        return self.has_path_section and not self._is_at_rest()
 
     @property
     def current_block(self) -> Block | None:
@@ -104,7 +104,7 @@ class SetpointMotion:
 
     # --- requests -----------------------------------------------------------------------------------------
 
-    def start_section(self, blocks: list[Block]) -> None:
+    def start_path_section(self, blocks: list[Block]) -> None:
         """Start a new path section, or a thread pass that follows the spindle, from rest.
 
         Raises AlarmError if a thread pass finds the spindle stopped or its angle not measured. Raises
@@ -125,9 +125,9 @@ class SetpointMotion:
         self._single_from = last_executed_block.n + 1 if last_executed_block else None
         self._plan_motion()
 
-    def update_progress(self, read_ahead: BlockReadAhead) -> SectionProgress:
+    def update_progress(self, read_ahead: ReadAheadQueue) -> SectionProgress:
         """Apply switches and overrides, add blocks that were read ahead, and return the progress."""
-        if not self.has_section:
+        if not self.has_path_section:
             return SectionProgress.DONE
         # the queue has run dry within this tick; the next tick holds the cycle
         ran_dry = self.starvation_time_s < self._axes.now()
@@ -154,15 +154,15 @@ class SetpointMotion:
         """Extend the queue while the axes stop."""
         self._extend(self._context.now)
 
-    def hold_on_path(self) -> None:
+    def stop_on_path(self) -> None:
         """Stop as soon as the path permits; a thread pass stops after its pull-out."""
         if self._pass is not None:
-            self._pass.hold_pass()
+            self._pass.cancel_unstarted_pass()
         else:
             overrides = self._present_overrides()
             self._queue.splice_plan(lambda t: self._plan_stop(t, overrides), as_soon_as_possible=True)
 
-    def stop_at_once(self) -> None:
+    def stop_immediately(self) -> None:
         """Stop at once on the path, even in a thread."""
         if self._pass is not None:
             self._pass.stop_in_thread()
@@ -173,19 +173,19 @@ class SetpointMotion:
         """Discard the rest of the plan, but leave the braking tail in the queue."""
         self._queue.discard_remaining_plan()
 
-    def cancel_waiting_pass(self) -> bool:
+    def cancel_waiting_thread_pass(self) -> bool:
         """Cancel a thread pass that is waiting for the index pulse.
 
         Return False if the pass already moves.
         """
         if self._pass is not None:
-            self._pass.hold_pass()
+            self._pass.cancel_unstarted_pass()
         return self._pass is not None and not self._pass.is_fully_queued
 
     def start_retract(self, block: Block) -> None:
         """Stop in a thread that has lost spindle synchronization, and prepare the retract of X."""
         self._retract = ThreadRetract.from_block(block, self._following_blocks(block), self._context.spindle)
-        self.stop_at_once()
+        self.stop_immediately()
 
     def continue_retract(self) -> None:
         """Retract X from rest, and raise AlarmError("thread-lost") when the tool is clear of the thread."""
@@ -197,7 +197,7 @@ class SetpointMotion:
         self._begin_section([self._retract.make_retract_block(at)])
         self._splice(OverrideFactors(), None)
 
-    def clear_section(self) -> None:
+    def clear_path_section(self) -> None:
         """Clear the path section or thread pass."""
         self._retract = None
         self._clear()
@@ -257,14 +257,14 @@ class SetpointMotion:
     def _plan_on(self, t: float, overrides: OverrideFactors, last: int | None) -> MotionProfile:
         assert self._section is not None
         playing = self._block_at(self._axes.now())
-        self._section.drop_blocks_before(playing.n if playing else None)
+        self._section.discard_earlier_blocks(playing.n if playing else None)
         return _make_plan(self._section.scale_path(overrides, last), self._queue.find_plan(t), t)
 
     def _plan_stop(self, t: float, overrides: OverrideFactors) -> MotionProfile:
         assert self._section is not None
         return _make_plan(self._section.scale_path(overrides, None), self._queue.find_plan(t), t, stop=True)
 
-    def _refill(self, feed: BlockReadAhead) -> None:
+    def _refill(self, feed: ReadAheadQueue) -> None:
         """Append blocks that were read ahead.
 
         The blocks are appended before the axes begin to brake for the end of the path section.
@@ -274,7 +274,7 @@ class SetpointMotion:
         ahead = self._context.tick_lateness.lookahead_s
         wanted = feed.pending_motion_s > 0.25 * ahead or feed.is_exhausted or left < 0.75 * ahead
         if feed.pending_blocks and wanted and left < 1.5 * ahead:
-            self._add(feed.take_pending_blocks())
+            self._add(feed.pop_pending_blocks())
             self._plan_motion(as_soon_as_possible=False)
         self._extend(now)
         if self._pass is not None and self._pass.detect_lost_step():

@@ -48,7 +48,7 @@ class SpindleAnglePredictor:
         return self._reads[-1][1] if self._reads else math.nan
 
     @property
-    def is_predictable(self) -> bool:
+    def can_predict_angle(self) -> bool:
         """Return whether enough recent readings are available for a prediction.
 
         The result is False immediately after an interruption of the control, and always without an encoder.
@@ -60,7 +60,7 @@ class SpindleAnglePredictor:
 
         The result is None if there are not enough readings.
         """
-        if not self.is_predictable:
+        if not self.can_predict_angle:
             return None
         if self._fit is None:
             self._fit = self._fit_readings()

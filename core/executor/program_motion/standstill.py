@@ -12,7 +12,7 @@ from enum import Enum, auto
 
 from core.alarms import AlarmCode
 from core.executor import start_conditions
-from core.executor.job import BlockReadAhead
+from core.executor.job import ReadAheadQueue
 from core.executor.machine_context import MachineContext
 from core.executor.raised_alarm import AlarmError
 from core.executor.spindle_control import SpindleRequest
@@ -51,7 +51,7 @@ class StandstillWait:
     is_condition_met: Callable[[float], bool]
     start_time_s: float
     timeout_s: float = float("inf")
-    timeout_alarm: AlarmCode = "internal"
+    timeout_alarm_code: AlarmCode = "internal"
 
     def is_over(self, now: float) -> bool:
         """Return whether the wait is over.
@@ -62,7 +62,7 @@ class StandstillWait:
         if self.is_condition_met(now - self.start_time_s):
             return True
         if now - self.start_time_s > self.timeout_s:
-            raise AlarmError(self.timeout_alarm)
+            raise AlarmError(self.timeout_alarm_code)
         return False
 
     def extend_for_hold(self, hold_duration_s: float) -> None:
@@ -85,22 +85,22 @@ def make_spindle_speed_wait(context: MachineContext, *, is_for_thread: bool = Fa
     """
     spindle = context.spindle
     wait = StandstillWait(
-        lambda: spindle.slow_reason or "AT SPEED",
+        lambda: spindle.spindle_stopped_reason or "AT SPEED",
         lambda _: spindle.is_at_speed(context.now),
         context.now,
-        context.machine.spindle.timeout,
+        context.machine.spindle.timeout_s,
         "at-speed",
     )
 
-    def done(_: float) -> bool:
-        if spindle.slow_reason:
+    def is_spindle_ready(_: float) -> bool:
+        if spindle.spindle_stopped_reason:
             wait.start_time_s = context.now
-        read = spindle.angle.is_predictable or context.ports.spindle.read_angle() is None
+        read = spindle.angle.can_predict_angle or context.ports.spindle.read_angle() is None
         turns = spindle.is_at_speed(context.now)
-        wait.timeout_alarm = "late" if turns else "at-speed"  # the encoder is not read often enough
+        wait.timeout_alarm_code = "late" if turns else "at-speed"  # the encoder is not read often enough
         return turns and (read or not is_for_thread)
 
-    wait.is_condition_met = done
+    wait.is_condition_met = is_spindle_ready
     return wait
 
 
@@ -150,7 +150,7 @@ def _stop_spindle(
 
 
 def _start_spindle(block: Block, context: MachineContext) -> None:
-    if start_conditions.find_collet_refusal(context):
+    if start_conditions.find_collet_inhibit_reason(context):
         raise AlarmError("collet-open", line=block.line)
     context.spindle.request_speed(SpindleRequest.from_block(block))
 
@@ -160,7 +160,7 @@ def _make_spindle_stop_wait(context: MachineContext) -> StandstillWait:
 
     It ensures that a tool or the operator approaches only a stopped spindle.
     """
-    spindle, limit = context.spindle, context.machine.spindle.timeout
+    spindle, limit = context.spindle, context.machine.spindle.timeout_s
     return StandstillWait(
         lambda: "SPINDLE STOP", lambda _: spindle.is_stopped, context.now, limit, "ignores-stop"
     )
@@ -175,7 +175,7 @@ def _lock_spindle(context: MachineContext, *, orient: bool) -> StandstillWait:
     if context.ports.lock is None or not spindle.is_c_axis_ready:
         spindle.stop()
         change = 0.0 if context.ports.lock is None else _CHANGEOVER_TIMEOUT_S
-    limit = context.machine.spindle.timeout + change
+    limit = context.machine.spindle.timeout_s + change
     return StandstillWait(
         lambda: "C AXIS" if spindle.is_stopped else "SPINDLE STOP",
         lambda _: spindle.is_stopped and spindle.engage_c_axis(should_orient=orient),
@@ -188,7 +188,7 @@ def _lock_spindle(context: MachineContext, *, orient: bool) -> StandstillWait:
 def _orient_spindle(context: MachineContext, angle: float, direction: int) -> StandstillWait:
     """Return a ``StandstillWait`` that ends when the drive holds the stopped spindle at ``angle``."""
     spindle, model = context.spindle, context.machine.spindle
-    if spindle.orientation.angle_deg != angle and start_conditions.find_collet_refusal(context):
+    if spindle.orientation.angle_deg != angle and start_conditions.find_collet_inhibit_reason(context):
         raise AlarmError(
             "collet-open",
             Message(
@@ -199,22 +199,22 @@ def _orient_spindle(context: MachineContext, angle: float, direction: int) -> St
     if spindle.is_requested or not spindle.is_stopped:
         spindle.stop()
 
-    def label() -> str:
+    def make_wait_label() -> str:
         return spindle.start_inhibit_reason or (
             "SPINDLE ORIENT" if spindle.is_stopped_or_orienting else "SPINDLE STOP"
         )
 
-    def done(_: float) -> bool:
+    def is_spindle_oriented(_: float) -> bool:
         if spindle.start_inhibit_reason:
             wait.start_time_s = context.now
-        wait.timeout_alarm = "spindle-orient" if spindle.is_stopped_or_orienting else "ignores-stop"
+        wait.timeout_alarm_code = "spindle-orient" if spindle.is_stopped_or_orienting else "ignores-stop"
         return spindle.is_stopped_or_orienting and spindle.orient_spindle(angle, direction)
 
     wait = StandstillWait(
-        label,
-        done,
+        make_wait_label,
+        is_spindle_oriented,
         context.now,
-        model.timeout + _ORIENTATION_TURNS * 60.0 / model.orient_rpm,
+        model.timeout_s + _ORIENTATION_TURNS * 60.0 / model.orient_rpm,
         "spindle-orient",
     )
     return wait
@@ -233,10 +233,10 @@ def _move_collet(closed: bool, context: MachineContext) -> StandstillWait:
             Message("the spindle turns at {measured} rpm", measured=f"{context.spindle.measured_rpm:.0f}"),
         )
     collet = context.machine.collet
-    time = collet.close_time if closed else collet.open_time
+    time = collet.close_time_s if closed else collet.open_time_s
     moved_at: list[float] = []
 
-    def done(passed: float) -> bool:
+    def has_collet_moved(passed: float) -> bool:
         if not moved_at:
             if waits and not context.spindle.is_stopped:
                 return False
@@ -246,9 +246,9 @@ def _move_collet(closed: bool, context: MachineContext) -> StandstillWait:
         switch = context.inputs.get("collet_closed")
         return passed - moved_at[0] >= time if switch is None else switch == closed
 
-    limit = time + _COLLET_TIMEOUT_S + (context.machine.spindle.timeout if waits else 0.0)
+    limit = time + _COLLET_TIMEOUT_S + (context.machine.spindle.timeout_s if waits else 0.0)
     return StandstillWait(
-        lambda: "COLLET" if moved_at else "SPINDLE STOP", done, context.now, limit, "collet"
+        lambda: "COLLET" if moved_at else "SPINDLE STOP", has_collet_moved, context.now, limit, "collet"
     )
 
 
@@ -271,7 +271,7 @@ class StandstillSequencer:
     a tap is in its hole, in which case single block does not stop.
     """
 
-    def __init__(self, context: MachineContext, feed: BlockReadAhead, in_hole: Callable[[], bool]) -> None:
+    def __init__(self, context: MachineContext, feed: ReadAheadQueue, in_hole: Callable[[], bool]) -> None:
         self._context, self._feed, self._in_hole = context, feed, in_hole
         self._wait: StandstillWait | None = None
         self._settled = True  # the axes are in position after the last motion

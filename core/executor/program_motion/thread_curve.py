@@ -29,39 +29,53 @@ _SAME_POINT_TOLERANCE = 1e-9
 
 
 class ThreadCurve(NamedTuple):
-    """Positions of X and Z in machine coordinates at the curve parameters ``s_mm``, all in mm.
+    """Positions of X and Z in machine coordinates at the curve parameters ``curve_positions_mm``, all in mm.
 
-    The first ``s_mm`` is 0. The curve is linear between these points and continues linearly after the last
-    one.
+    The first ``curve_positions_mm`` is 0. The curve is linear between these points and continues linearly
+    after the last one.
     """
 
-    s_mm: FloatArray
+    curve_positions_mm: FloatArray
     x_mm: FloatArray
     z_mm: FloatArray
 
     @property
     def length_mm(self) -> float:
         """Return the value of s at the end of the curve."""
-        return float(self.s_mm[-1])
+        return float(self.curve_positions_mm[-1])
 
-    def evaluate_at(self, s: float) -> tuple[float, float, float, float]:
+    def evaluate_curve(self, s: float) -> tuple[float, float, float, float]:
         """Return X and Z at ``s``, and their derivatives with respect to s."""
-        i = int(np.clip(np.searchsorted(self.s_mm, s, side="right") - 1, 0, len(self.s_mm) - 2))
-        step = float(self.s_mm[i + 1] - self.s_mm[i])
+        i = int(
+            np.clip(
+                np.searchsorted(self.curve_positions_mm, s, side="right") - 1,
+                0,
+                len(self.curve_positions_mm) - 2,
+            )
+        )
+        step = float(self.curve_positions_mm[i + 1] - self.curve_positions_mm[i])
         dx, dz = float(self.x_mm[i + 1] - self.x_mm[i]) / step, float(self.z_mm[i + 1] - self.z_mm[i]) / step
-        ahead = s - float(self.s_mm[i])
+        ahead = s - float(self.curve_positions_mm[i])
         return float(self.x_mm[i]) + dx * ahead, float(self.z_mm[i]) + dz * ahead, dx, dz
 
-    def find_s(self, z: float) -> float:
+    def find_curve_position(self, z: float) -> float:
         """Return the s at which Z equals ``z``.
 
         The curve is extrapolated before its start and after its end.
         """
         sign = math.copysign(1.0, float(self.z_mm[-1] - self.z_mm[0]))
-        i = int(np.clip(np.searchsorted(sign * self.z_mm, sign * z, side="right") - 1, 0, len(self.s_mm) - 2))
+        i = int(
+            np.clip(
+                np.searchsorted(sign * self.z_mm, sign * z, side="right") - 1,
+                0,
+                len(self.curve_positions_mm) - 2,
+            )
+        )
         return float(
-            self.s_mm[i]
-            + (z - self.z_mm[i]) * (self.s_mm[i + 1] - self.s_mm[i]) / (self.z_mm[i + 1] - self.z_mm[i])
+            self.curve_positions_mm[i]
+            + (z - self.z_mm[i])
+            * (self.curve_positions_mm[i + 1] - self.curve_positions_mm[i])
+            / (self.z_mm[i + 1] - self.z_mm[i])
         )
 
     def compute_max_acceleration(self, x_max_acceleration: float, z_max_acceleration: float) -> float:
@@ -70,15 +84,15 @@ class ThreadCurve(NamedTuple):
         ``x_max_acceleration`` and ``z_max_acceleration`` are the limits of the axes.
         """
         dx, dz = (
-            np.abs(np.diff(self.x_mm) / np.diff(self.s_mm)),
-            np.abs(np.diff(self.z_mm) / np.diff(self.s_mm)),
+            np.abs(np.diff(self.x_mm) / np.diff(self.curve_positions_mm)),
+            np.abs(np.diff(self.z_mm) / np.diff(self.curve_positions_mm)),
         )
         return float(
             min(z_max_acceleration / dz.max(), x_max_acceleration / dx.max() if dx.max() else math.inf)
         )
 
 
-def count_spindle_revolutions(block: Block) -> float:
+def calculate_spindle_revolutions(block: Block) -> float:
     """Return the number of spindle revolutions of a thread block, whose feed is its mean lead."""
     return abs(block.z - block.z0) / block.feed
 
@@ -86,7 +100,7 @@ def count_spindle_revolutions(block: Block) -> float:
 def build_thread_curve(blocks: Sequence[Block], limits: MotionLimits) -> ThreadCurve:
     """Return the curve of a chain of thread blocks; s is scaled by the lead of the first block."""
     first = blocks[0]
-    unit = first.feed - 0.5 * first.growth * count_spindle_revolutions(first)
+    unit = first.feed - 0.5 * first.growth * calculate_spindle_revolutions(first)
     s, x, z = [0.0], [first.x0 + first.offset_x], [first.z0 + first.offset_z]
     joints: list[float] = []
     for block in blocks:
@@ -102,7 +116,7 @@ def build_thread_curve(blocks: Sequence[Block], limits: MotionLimits) -> ThreadC
 
 def _chord_points(block: Block) -> list[tuple[float, float]]:
     """Return points along a block as (fraction of its length, revolutions since the previous point)."""
-    whole = count_spindle_revolutions(block)
+    whole = calculate_spindle_revolutions(block)
     if not block.growth:
         return [(1.0, whole)]
     count = max(math.ceil(whole * _CHORDS_PER_REVOLUTION), 2)
@@ -119,10 +133,13 @@ def _round_joints(
 
     ``speed`` is the speed along s, in mm/s.
     """
-    s, points = list(raw.s_mm), {float(k): (float(a), float(b)) for k, a, b in zip(*raw, strict=True)}
+    s, points = (
+        list(raw.curve_positions_mm),
+        {float(k): (float(a), float(b)) for k, a, b in zip(*raw, strict=True)},
+    )
     for joint in joints:
-        x0, z0, dx1, dz1 = raw.evaluate_at(joint)
-        _, _, dx0, dz0 = raw.evaluate_at(joint - 1e-6)
+        x0, z0, dx1, dz1 = raw.evaluate_curve(joint)
+        _, _, dx0, dz0 = raw.evaluate_curve(joint - 1e-6)
         ax, az = limits.amax[:2]
         half = 0.5 * speed * speed * max(abs(dx1 - dx0) / ax, abs(dz1 - dz0) / az) / _SHARE
         at = s.index(joint)

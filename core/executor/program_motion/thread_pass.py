@@ -15,7 +15,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from core.executor.program_motion.spindle_angle import SpindleAnglePredictor
-from core.executor.program_motion.thread_curve import count_spindle_revolutions
+from core.executor.program_motion.thread_curve import calculate_spindle_revolutions
 from core.executor.program_motion.thread_path import Phases, ThreadPath
 from core.interpreter.shared.elementary_blocks import Block
 from core.motion.axis_limits import MotionLimits
@@ -43,7 +43,7 @@ _ROUNDING = 1e-9  # turns
 _START_ERROR_CODES = {"late", "broken-path"}  # error codes of a driver if the pass is about to start
 
 
-class SpindlePass:
+class SynchronizedThreadPass:
     """A thread pass that follows the spindle, and records the largest deviation from it."""
 
     def __init__(
@@ -66,7 +66,7 @@ class SpindlePass:
         """Return the thread block that is cut ``revolutions`` revolutions after the start of the pass."""
         cut = [self.blocks[0], *(block for block in self.blocks[1:] if block.continues)]
         for block in cut:
-            revolutions -= count_spindle_revolutions(block)
+            revolutions -= calculate_spindle_revolutions(block)
             if revolutions < 0.0:
                 return block
         return cut[-1]
@@ -85,7 +85,7 @@ class SpindlePass:
         return self._reported and not before
 
 
-class ThreadPass(SpindlePass):
+class ThreadPass(SynchronizedThreadPass):
     """A thread pass that is executed by setpoints.
 
     The thread is followed by its pull-out or by a straight rapid in X. The methods that plan the pass, such
@@ -102,7 +102,7 @@ class ThreadPass(SpindlePass):
     ) -> None:
         super().__init__(axes, limits, spindle_angle, blocks)
         self._top = limits.vmax[1]
-        self._lead, self._ramp = self._path.lead_mm, _SHARE * self._path.acceleration
+        self._lead, self._ramp = self._path.lead_mm, _SHARE * self._path.path_acceleration
         self._index = 0.0  # unsigned revolutions at which s = 0 is in step
         self._begins = 0.0, 0.0  # start time of the run-up, and its final speed
         self._leaves = math.inf  # time at which the thread itself ends
@@ -168,13 +168,13 @@ class ThreadPass(SpindlePass):
         self._cost = max(min(self._axes.now() - now, 0.2), 0.8 * self._cost)
         return True
 
-    def hold_pass(self) -> None:
+    def cancel_unstarted_pass(self) -> None:
         """Cancel the pass if it has not started to move. A pass that already moves is completed."""
         t = self._axes.now() + self._axes.commit + max(1.5 * self._cost, _BRAKING_DELAY_S)
         if self._stopped or t >= self._begins[0]:
             return
         place, _ = self._axes.demand_at(t)
-        self._axes.splice(MotionSegments.make_rest(t, place))
+        self._axes.splice(MotionSegments.make_standstill(t, place))
         self._stopped, self._ends, self._leaves = True, t, math.inf
 
     def restart_pass(self) -> None:
@@ -190,11 +190,11 @@ class ThreadPass(SpindlePass):
         if (
             self._stopped
             or t >= self._leaves
-            or s + 0.5 * v * v / self._path.acceleration >= self._path.length_mm
+            or s + 0.5 * v * v / self._path.path_acceleration >= self._path.length_mm
         ):
             return
-        self._axes.splice(self._path.make_stop(t, s, v))
-        self._stopped, self._ends, self._leaves = True, t + v / self._path.acceleration, math.inf
+        self._axes.splice(self._path.make_stop_setpoints(t, s, v))
+        self._stopped, self._ends, self._leaves = True, t + v / self._path.path_acceleration, math.inf
 
     def _queue(self, t: float) -> None:
         s, v = self._demand(t)
@@ -235,7 +235,7 @@ class ThreadPass(SpindlePass):
             gain, ahead = (speed - v) / half, (goal - s - v * time) / (half * half)
             first, second = ahead - 0.5 * gain, 1.5 * gain - ahead
             onwards = min(v + first * half, speed) >= 0.0 or v < 0.0
-            if onwards and max(abs(first), abs(second)) <= path.acceleration:
+            if onwards and max(abs(first), abs(second)) <= path.path_acceleration:
                 return [(half, first), (half, second), *rest]
             time *= 2.0
         return None
@@ -284,14 +284,14 @@ class ThreadPass(SpindlePass):
 
     def _demand(self, t: float) -> tuple[float, float]:
         (_, z, _), (_, v, _) = self._axes.demand_at(t)
-        return self._path.find_s_and_speed(z, v)
+        return self._path.find_position_and_speed(z, v)
 
 
 def _end(segments: MotionSegments) -> float:
     return float(segments.start_times_s[-1] + segments.durations_s[-1])
 
 
-class GearedThreadPass(SpindlePass):
+class GearedThreadPass(SynchronizedThreadPass):
     """A thread pass that is planned as a cam, along which the driver's axes follow the spindle.
 
     The axis is in step if s = lead · revolutions, counted from the index pulse that is selected at the
@@ -327,8 +327,8 @@ class GearedThreadPass(SpindlePass):
             return self.blocks[0] if self._stopped else self.blocks[-1]
         return (
             self.blocks[-1]
-            if geared.revolutions >= self._leaves
-            else self.get_block_at_revolution(geared.revolutions)
+            if geared.cam_revolutions >= self._leaves
+            else self.get_block_at_revolution(geared.cam_revolutions)
         )
 
     def start_pass(self) -> None:
@@ -349,13 +349,13 @@ class GearedThreadPass(SpindlePass):
         state = self._turns.predict_angle(self._axes.now())
         if self._stopped or geared is None or state is None:
             return
-        if self._ramp < geared.revolutions < self._leaves:
+        if self._ramp < geared.cam_revolutions < self._leaves:
             self.max_deviation = max(self.max_deviation, abs(geared.lag_revolutions))
         speed = self._sign * state[1]
         if abs(speed - self._speed) > _SPEED_CHANGE_FRACTION * self._speed and speed > _MIN_SPINDLE_SPEED:
             self._replan_for_speed(speed, geared)
 
-    def hold_pass(self) -> None:
+    def cancel_unstarted_pass(self) -> None:
         """Cancel the pass if it has not started to move. A pass that already moves is completed."""
         t = self._axes.now() + self._axes.commit + _CHANGE_LEAD_S
         geared = self._gear.geared()
@@ -363,7 +363,7 @@ class GearedThreadPass(SpindlePass):
             return
         place, _ = self._axes.demand_at(t)
         try:
-            self._axes.splice(MotionSegments.make_rest(t, place))
+            self._axes.splice(MotionSegments.make_standstill(t, place))
         except DriverError as error:
             if error.code not in _START_ERROR_CODES:
                 raise
@@ -373,7 +373,7 @@ class GearedThreadPass(SpindlePass):
     def restart_pass(self) -> None:
         """Start the pass again at another index pulse, if a hold canceled it before its first motion."""
         (_, z, *_), _ = self._axes.demand_at(self._axes.now())
-        if self._stopped and self._gear.geared() is None and abs(z - self._path.z) <= _AT_START:
+        if self._stopped and self._gear.geared() is None and abs(z - self._path.start_z) <= _AT_START:
             self.start_pass()
 
     def stop_in_thread(self) -> None:
@@ -404,7 +404,7 @@ class GearedThreadPass(SpindlePass):
         An axis that accelerates from rest lags an axis already in motion by v²/2a. It must therefore start
         v/2a earlier, which is half of its run-up.
         """
-        return 0.5 * self._path.lead_mm * speed**2 / (_GEARED_SHARE * self._path.acceleration)
+        return 0.5 * self._path.lead_mm * speed**2 / (_GEARED_SHARE * self._path.path_acceleration)
 
     def _replan_for_speed(self, speed: float, geared: GearState) -> None:
         """Plan the run-up, or the motion after the thread, again for another spindle speed.
@@ -453,7 +453,7 @@ class GearedThreadPass(SpindlePass):
         path, share = self._path, _GEARED_SHARE / speed**2
         out = path.retract_x_mm if path.exit_length_mm else path.end_x_mm
         return path._replace(
-            acceleration=path.acceleration * share,
+            path_acceleration=path.path_acceleration * share,
             x_acceleration=path.x_acceleration * share,
             z_acceleration=path.z_acceleration * share,
             retract_x_mm=out,
@@ -464,4 +464,4 @@ class GearedThreadPass(SpindlePass):
 
         The spindle speed is assumed not to rise.
         """
-        return geared.revolutions + max(self._speed, geared.speed) * (t - self._axes.now())
+        return geared.cam_revolutions + max(self._speed, geared.speed) * (t - self._axes.now())

@@ -17,7 +17,7 @@ import numpy.typing as npt
 from core.executor.program_motion.thread_curve import (
     ThreadCurve,
     build_thread_curve,
-    count_spindle_revolutions,
+    calculate_spindle_revolutions,
 )
 from core.executor.raised_alarm import AlarmError
 from core.executor.spindle_control import SpindleControl
@@ -39,27 +39,27 @@ class ThreadPath(NamedTuple):
     - The thread starts at ``x z`` and has ``length_mm`` along Z in the direction ``z_direction`` (±1). X
       changes by ``x_slope`` per unit of s.
     - X then moves to ``retract_x_mm`` while Z continues in step with the spindle by ``exit_length_mm``.
-      If this length is 0, X moves at ``rapid_speed`` with Z at rest.
-    - ``acceleration`` applies along the thread, ``x_acceleration`` and ``z_acceleration`` to the axes.
-    - A chain of threads has a ``curve`` with s = revolutions · ``lead_mm``. ``x_slope`` and ``end_lead``
+      If this length is 0, X moves at ``rapid_speed_mm_s`` with Z at rest.
+    - ``path_acceleration`` applies along the thread, ``x_acceleration`` and ``z_acceleration`` to the axes.
+    - A chain of threads has a ``curve`` with s = revolutions · ``lead_mm``. ``x_slope`` and ``end_z_slope``
       are then the changes of X and Z per unit of s at its end.
     """
 
-    x: float
-    z: float
-    c: float
+    start_x: float
+    start_z: float
+    start_c: float
     z_direction: float
     length_mm: float
     x_slope: float
     retract_x_mm: float
     exit_length_mm: float
-    rapid_speed: float
+    rapid_speed_mm_s: float
     lead_mm: float
-    acceleration: float
+    path_acceleration: float
     x_acceleration: float
     z_acceleration: float
     curve: ThreadCurve | None = None
-    end_lead: float = 1.0
+    end_z_slope: float = 1.0
 
     @classmethod
     def from_blocks(cls, blocks: Sequence[Block], limits: MotionLimits) -> ThreadPath:
@@ -74,17 +74,17 @@ class ThreadPath(NamedTuple):
         ax, az = limits.amax[:2]
         slope = (first.x - first.x0) / length
         return cls(
-            x=first.x0 + first.offset_x,
-            z=first.z0 + first.offset_z,
-            c=first.c0 + first.modal.offset_c,
+            start_x=first.x0 + first.offset_x,
+            start_z=first.z0 + first.offset_z,
+            start_c=first.c0 + first.modal.offset_c,
             z_direction=math.copysign(1.0, first.z - first.z0),
             length_mm=length,
             x_slope=slope,
             retract_x_mm=out.mx,
             exit_length_mm=abs(out.z - out.z0) if out is not first and out.kind is BlockKind.THREAD else 0.0,
-            rapid_speed=min(out.feed, limits.vmax[0]) if out.kind is BlockKind.RAPID else limits.vmax[0],
+            rapid_speed_mm_s=min(out.feed, limits.vmax[0]) if out.kind is BlockKind.RAPID else limits.vmax[0],
             lead_mm=first.feed,
-            acceleration=min(az, ax / abs(slope)) if slope else az,
+            path_acceleration=min(az, ax / abs(slope)) if slope else az,
             x_acceleration=ax,
             z_acceleration=az,
         )
@@ -97,37 +97,41 @@ class ThreadPath(NamedTuple):
         """
         first = cut[0]
         curve, (ax, az) = build_thread_curve(cut, limits), limits.amax[:2]
-        _, _, slope, along = curve.evaluate_at(curve.length_mm)
+        _, _, slope, along = curve.evaluate_curve(curve.length_mm)
         in_step = last is not cut[-1] and last.kind is BlockKind.THREAD
         return cls(
-            x=float(curve.x_mm[0]),
-            z=float(curve.z_mm[0]),
-            c=first.c0 + first.modal.offset_c,
+            start_x=float(curve.x_mm[0]),
+            start_z=float(curve.z_mm[0]),
+            start_c=first.c0 + first.modal.offset_c,
             z_direction=math.copysign(1.0, along),
             length_mm=curve.length_mm,
             x_slope=slope,
             retract_x_mm=last.mx,
             exit_length_mm=abs(last.z - last.z0) / abs(along) if in_step else 0.0,
-            rapid_speed=min(last.feed, limits.vmax[0]) if last.kind is BlockKind.RAPID else limits.vmax[0],
-            lead_mm=first.feed - 0.5 * first.growth * count_spindle_revolutions(first),
-            acceleration=curve.compute_max_acceleration(ax, az),
+            rapid_speed_mm_s=min(last.feed, limits.vmax[0])
+            if last.kind is BlockKind.RAPID
+            else limits.vmax[0],
+            lead_mm=first.feed - 0.5 * first.growth * calculate_spindle_revolutions(first),
+            path_acceleration=curve.compute_max_acceleration(ax, az),
             x_acceleration=ax,
             z_acceleration=az / abs(along),
             curve=curve,
-            end_lead=abs(along),
+            end_z_slope=abs(along),
         )
 
     @property
     def end_x_mm(self) -> float:
         """Return X at the end of the thread, in machine coordinates."""
-        return self.x + self.x_slope * self.length_mm if self.curve is None else float(self.curve.x_mm[-1])
+        return (
+            self.start_x + self.x_slope * self.length_mm if self.curve is None else float(self.curve.x_mm[-1])
+        )
 
-    def find_s_and_speed(self, z: float, z_velocity: float) -> tuple[float, float]:
+    def find_position_and_speed(self, z: float, z_velocity: float) -> tuple[float, float]:
         """Return s and the speed along s when Z is at ``z`` with the velocity ``z_velocity``."""
         if self.curve is not None:
-            s = self.curve.find_s(z)
-            return s, z_velocity / self.curve.evaluate_at(s)[3]
-        return (z - self.z) * self.z_direction, z_velocity * self.z_direction
+            s = self.curve.find_curve_position(z)
+            return s, z_velocity / self.curve.evaluate_curve(s)[3]
+        return (z - self.start_z) * self.z_direction, z_velocity * self.z_direction
 
     def find_full_depth_end(self, speed: float) -> float:
         """Return the s up to which a pass at ``speed`` is within the thread, before it exits or brakes."""
@@ -151,7 +155,7 @@ class ThreadPath(NamedTuple):
         z_phases = [each for each in (*lead_in_phases, (cruise, 0.0), *ramp) if each[0] > _SHORT_TIME_S]
         left, v_left = _target_time(z_phases, s, entry_speed, self.length_mm)
         x_from = self.end_x_mm
-        top = v_left * self.end_lead if self.exit_length_mm else self.rapid_speed
+        top = v_left * self.end_z_slope if self.exit_length_mm else self.rapid_speed_mm_s
         sign = math.copysign(1.0, self.retract_x_mm - x_from)
         x_out = _plan_trapezoid(
             abs(self.retract_x_mm - x_from), sign * self.x_slope * v_left, top, self.x_acceleration
@@ -162,7 +166,7 @@ class ThreadPath(NamedTuple):
             x = _motion_before(thread, left).append_phases(x_from, self.x_slope * v_left, out)
             return self._join_axes(start_time_s, x, z), start_time_s + left
         x_thread = [(dt, self.x_slope * acc) for dt, acc in _phases_before(z_phases, left)]
-        x = _axis_motion(self.x + self.x_slope * s, self.x_slope * entry_speed, [*x_thread, *out])
+        x = _axis_motion(self.start_x + self.x_slope * s, self.x_slope * entry_speed, [*x_thread, *out])
         return self._join_axes(start_time_s, x, self._z(s, entry_speed, z_phases)), start_time_s + left
 
     def make_retract(self) -> MotionSegments | None:
@@ -171,29 +175,39 @@ class ThreadPath(NamedTuple):
         The result is None if the thread has a pull-out. Time is measured from the start of the retract.
         """
         x = self.end_x_mm
-        phases = _plan_trapezoid(abs(self.retract_x_mm - x), 0.0, self.rapid_speed, self.x_acceleration)
+        phases = _plan_trapezoid(abs(self.retract_x_mm - x), 0.0, self.rapid_speed_mm_s, self.x_acceleration)
         if self.exit_length_mm or not phases:
             return None
         sign = math.copysign(1.0, self.retract_x_mm - x)
         still = [(sum(dt for dt, _ in phases), 0.0)]
-        end = self.z + self.z_direction * self.length_mm if self.curve is None else float(self.curve.z_mm[-1])
+        end = (
+            self.start_z + self.z_direction * self.length_mm
+            if self.curve is None
+            else float(self.curve.z_mm[-1])
+        )
         return self._join_axes(
             0.0, _axis_motion(x, 0.0, [(dt, sign * a) for dt, a in phases]), _axis_motion(end, 0.0, still)
         )
 
-    def make_stop(self, start_time_s: float, s: float, speed: float) -> MotionSegments:
+    def make_stop_setpoints(self, start_time_s: float, s: float, speed: float) -> MotionSegments:
         """Return the setpoints of an immediate stop along the thread."""
-        phases = [(speed / self.acceleration, -self.acceleration)] if speed > 0.0 else [(_SHORT_TIME_S, 0.0)]
+        phases = (
+            [(speed / self.path_acceleration, -self.path_acceleration)]
+            if speed > 0.0
+            else [(_SHORT_TIME_S, 0.0)]
+        )
         if self.curve is not None:
             return self._join_axes(start_time_s, *_map_to_curve(self.curve, s, speed, phases))
         x = _axis_motion(
-            self.x + self.x_slope * s, self.x_slope * speed, [(dt, self.x_slope * acc) for dt, acc in phases]
+            self.start_x + self.x_slope * s,
+            self.x_slope * speed,
+            [(dt, self.x_slope * acc) for dt, acc in phases],
         )
         return self._join_axes(start_time_s, x, self._z(s, speed, phases))
 
     def _z(self, s: float, v: float, phases: Phases) -> _AxisMotion:
         along = self.z_direction
-        return _axis_motion(self.z + along * s, along * v, [(dt, along * acc) for dt, acc in phases])
+        return _axis_motion(self.start_z + along * s, along * v, [(dt, along * acc) for dt, acc in phases])
 
     def _join_axes(self, t: float, x: _AxisMotion, z: _AxisMotion) -> MotionSegments:
         """Return the motion of both axes, divided into common phases of constant acceleration."""
@@ -212,7 +226,7 @@ class ThreadPath(NamedTuple):
             p[:, column] = track.positions[i] + (track.velocities[i] + 0.5 * accel * u) * u
             v[:, column] = track.velocities[i] + accel * u
             a[:, column] = accel
-        p[:, 2] = self.c
+        p[:, 2] = self.start_c
         return MotionSegments(t + starts, dt, p, v, a)
 
 
@@ -260,11 +274,11 @@ def _map_to_curve(curve: ThreadCurve, s: float, v: float, phases: Phases) -> tup
     for whole, acc in phases:
         for dt in _knot_durations(curve, s, v, whole, acc):
             middle = s + (v + 0.25 * acc * dt) * 0.5 * dt
-            x, z, dx, dz = curve.evaluate_at(middle)
+            x, z, dx, dz = curve.evaluate_curve(middle)
             for rows, at, ratio in ((tracks[0], x, dx), (tracks[1], z, dz)):
                 rows.append((t, at - ratio * (middle - s), ratio * v, ratio * acc))
             s, v, t = s + (v + 0.5 * acc * dt) * dt, v + acc * dt, t + dt
-    x, z, dx, dz = curve.evaluate_at(s)
+    x, z, dx, dz = curve.evaluate_curve(s)
     speed = 0.0 if abs(v) < 1e-6 else v
     made = []
     for rows, at, ratio in ((tracks[0], x, dx), (tracks[1], z, dz)):
@@ -276,7 +290,12 @@ def _map_to_curve(curve: ThreadCurve, s: float, v: float, phases: Phases) -> tup
 def _knot_durations(curve: ThreadCurve, s: float, v: float, duration: float, acc: float) -> list[float]:
     """Return the durations of the parts of a phase, which is divided at the points of the curve."""
     end = s + (v + 0.5 * acc * duration) * duration
-    gone = curve.s_mm[(curve.s_mm > s + 1e-9) & (curve.s_mm < end - 1e-9)] - s
+    gone = (
+        curve.curve_positions_mm[
+            (curve.curve_positions_mm > s + 1e-9) & (curve.curve_positions_mm < end - 1e-9)
+        ]
+        - s
+    )
     root = np.sqrt(np.maximum(v * v + 2.0 * acc * gone, 0.0))
     times = np.concatenate([[0.0], 2.0 * gone / np.maximum(v + root, 1e-12), [duration]])
     return [float(dt) for dt in np.diff(times) if dt > 0.0]
@@ -345,13 +364,13 @@ class ThreadRetract(NamedTuple):
     """The retract from a thread that has lost spindle synchronization.
 
     The axes stop along the thread, and then X moves. ``retract_x_mm`` is the X of the programmed pull-out
-    in machine coordinates. ``is_cutting`` is True if the tool was cutting the thread and not in its
+    in machine coordinates. ``is_tool_in_thread`` is True if the tool was cutting the thread and not in its
     pull-out. ``reason`` is the spindle fault, as a text for the operator.
     """
 
     block: Block
     retract_x_mm: float
-    is_cutting: bool
+    is_tool_in_thread: bool
     reason: str
 
     @classmethod
@@ -390,7 +409,7 @@ class ThreadRetract(NamedTuple):
 
     def _describe_thread_state(self, z: float) -> str:
         """Return the alarm text with the cause and the state of the thread on the part."""
-        if not self.is_cutting:
+        if not self.is_tool_in_thread:
             return Message(
                 "{why} during the pull-out: the thread is cut, but the thread runout is shorter than "
                 "programmed",
@@ -407,8 +426,8 @@ class ThreadRetract(NamedTuple):
 
 
 def _why_lost(spindle: SpindleControl) -> str:
-    if spindle.slow_reason:
-        return spindle.slow_reason.lower()
+    if spindle.spindle_stopped_reason:
+        return spindle.spindle_stopped_reason.lower()
     if spindle.measured_rpm * spindle.commanded_rpm < 0.0:
         return Message(
             "the spindle turned in the wrong direction at {measured} rpm",

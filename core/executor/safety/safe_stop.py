@@ -10,9 +10,9 @@ import logging
 from collections.abc import Callable
 from functools import partial
 
-from core.alarms import Reaction
+from core.alarms import AlarmReaction
 from core.executor.machine_context import MachineContext
-from core.executor.raised_alarm import CaughtAttempt
+from core.executor.raised_alarm import ErrorCatcher
 from core.message import Message
 from core.ports import DriverError, StopMode
 
@@ -41,9 +41,9 @@ class SafeStop:
         """Return the names of the steps that failed repeatedly as text, or an empty string."""
         return ", ".join(name for name, _ in self._failed) if self._tries > 1 else ""
 
-    def run_steps(self, reaction: Reaction) -> None:
+    def run_steps(self, reaction: AlarmReaction) -> None:
         """Brake all axes, stop the spindle and switch the outputs to their safe states."""
-        off = reaction is Reaction.DRIVES_OFF
+        off = reaction is AlarmReaction.DRIVES_OFF
         brake = partial(self._brake, StopMode.RAMP_OFF if off else StopMode.RAMP_HOLD)
         self._begin([(_AXES_STEP_NAME, brake), *self._functions(coast=off)])
 
@@ -69,7 +69,7 @@ class SafeStop:
         if self._failed and self._context.now - self._tried_at >= _RETRY_INTERVAL_S:
             self._carry_out(self._failed)
 
-    def retry_last_time(self) -> None:
+    def make_final_retry(self) -> None:
         """Repeat the failed steps a last time. Switch off the drives if the axes cannot be braked."""
         if self._failed:
             self._carry_out(self._failed)
@@ -86,7 +86,7 @@ class SafeStop:
 
     def _run_step(self, name: str, step: Callable[[], None]) -> bool:
         """Run one step and return whether it succeeded. An error does not prevent the next step."""
-        with CaughtAttempt() as trial:
+        with ErrorCatcher() as trial:
             step()
         error = trial.error
         if error is not None and self._tries == 1:
@@ -105,7 +105,7 @@ class SafeStop:
     def _brake(self, mode: StopMode) -> None:
         """Brake the axes, or switch the drives off if braking fails unexpectedly."""
         axes = self._context.ports.axes
-        with CaughtAttempt() as trial:
+        with ErrorCatcher() as trial:
             axes.stop(mode)
         if trial.error is not None:
             if not isinstance(trial.error, DriverError):
@@ -115,7 +115,7 @@ class SafeStop:
     def _switch_outputs_safe(self) -> None:
         """Switch all outputs to their safe states together, or one by one if that fails."""
         io = self._context.ports.io
-        with CaughtAttempt() as trial:
+        with ErrorCatcher() as trial:
             io.switch_to_safe_state()
         if trial.error is not None:
             for output in self._context.machine.outputs.values():

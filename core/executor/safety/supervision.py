@@ -20,7 +20,7 @@ from core.executor.machine_context import MachineContext
 from core.executor.program_run import ProgramRun
 from core.executor.raised_alarm import AlarmError
 from core.executor.snapshot import ACTIVE_STATES, CYCLE_STATES, STOPPED_STATES, MachineState
-from core.executor.start_conditions import AnnouncedStart
+from core.executor.start_conditions import AnnouncedFunction
 from core.faults import DriverHostTrip, get_fault_code
 from core.machine.machine_model import Axis
 from core.message import Message, join_messages
@@ -40,7 +40,7 @@ _POWERED = CYCLE_STATES | {MachineState.IDLE, MachineState.JOG, MachineState.HOM
 _NO_DATA_TIMEOUT_S = 0.25  # s without axis data before a driver must report a fault
 
 
-class FollowingErrorWatch:
+class FollowingErrorMonitor:
     """Supervision of the position of all axes, at rest and in motion, with drives on or off.
 
     ``check_sample`` is called once per tick.
@@ -113,7 +113,7 @@ class _AxisWatch:
         self._encoder(demand, actual)
         rest = self._t - self._sent_at
         limit = axis.compute_max_following_error(self._speed)
-        if self._lasts("off", error > limit) > axis.following_time_s + _HOST_DELAY_S:
+        if self._lasts("off", error > limit) > axis.following_error_time_s + _HOST_DELAY_S:
             code: AlarmCode = "standstill" if rest > axis.standstill_time_s else "following"
             raise AlarmError(
                 code, Message("{axis} is {error} off its setpoint", axis=axis.name, error=self._words(error))
@@ -217,10 +217,10 @@ class Supervisor:
 
     def __init__(self, context: MachineContext) -> None:
         self._context = context
-        self._axes = FollowingErrorWatch(context.machine.axes)
+        self._axes = FollowingErrorMonitor(context.machine.axes)
         self.max_following_error = 0.0
 
-    def accept_positions(self) -> None:
+    def accept_current_positions(self) -> None:
         """Accept the current positions of the axes because the operator has acknowledged an alarm."""
         self._axes.reset_supervision()
 
@@ -275,7 +275,7 @@ class Supervisor:
         """Raise AlarmError if the collet switch remains off for longer than contact bounce lasts."""
         now = self._context.now
         self._open_since = now if self._open_since is None else self._open_since
-        if now - self._open_since > 2.0 * self._context.machine.collet.close_time:
+        if now - self._open_since > 2.0 * self._context.machine.collet.close_time_s:
             raise AlarmError("collet-lost")
 
     _open_since: float | None = None
@@ -285,7 +285,7 @@ class Supervisor:
 # --- outputs and the driver host ----------------------------------------------------------------------
 
 
-class OutputWatch:
+class OutputMonitor:
     """Supervision of the outputs and the driver host in every tick.
 
     It is used on the executor's thread only.
@@ -324,13 +324,13 @@ class OutputWatch:
         if new:
             self._disturbed("switched-off", " AND ".join(each.description for each in new))
 
-    def list_restart_outputs(self) -> Iterator[AnnouncedStart]:
+    def iter_output_announcements(self) -> Iterator[AnnouncedFunction]:
         """Yield announcements of the outputs that a resume would switch back to their commanded states."""
         if self._program_run.status.state in STOPPED_STATES:
             for name, wanted in self._context.commanded_outputs.find_mismatches():
                 words = Message("{output} TURNS ON" if wanted else "{output} TURNS OFF", output=name.upper())
                 begin = partial(self._context.commanded_outputs.write, name, wanted)
-                yield AnnouncedStart(Message("output {name}", name=name), words, begin)
+                yield AnnouncedFunction(Message("output {name}", name=name), words, begin)
 
     def _handle_trip(self, trip: DriverHostTrip) -> None:
         """Hold the cycle if the driver host has switched off outputs or the spindle.
@@ -344,7 +344,7 @@ class OutputWatch:
             return
         if trip.spindle:
             context.spindle.record_external_stop("DRIVER HOST STOPPED SPINDLE/OUTPUTS")
-        context.commanded_outputs.mark_switched_off(outputs)
+        context.commanded_outputs.mark_outputs_switched_off(outputs)
         self._known_off |= set(outputs)
         template = (
             "NO SIGNAL FROM MACHINE FOR {away} S, OUTPUTS FOUND ON AND SWITCHED OFF: {off}"
@@ -365,7 +365,7 @@ class OutputWatch:
         self._context.log_text("disturbed", words)
         if program_run.cycle is None or state not in CYCLE_STATES:
             return
-        program_run.mark_part_disturbed(words.lower())
+        program_run.exclude_part_from_count(words.lower())
         if state in ACTIVE_STATES:
             self._context.spindle.cancel_orientation()
         else:

@@ -14,7 +14,7 @@ import threading
 from collections.abc import Callable, Iterable
 
 from core.executor.executor import TICK_PAUSE_S, Executor
-from core.executor.raised_alarm import CaughtAttempt, ReportedAttempt
+from core.executor.raised_alarm import ErrorCatcher, ErrorReporter
 from core.ports import Clock
 
 _log = logging.getLogger(__name__)
@@ -82,7 +82,7 @@ class ExecutorThread:
 
     def _run(self) -> None:
         while not self._closing.is_set():
-            with ReportedAttempt(self.executor.handle_failure):
+            with ErrorReporter(self.executor.handle_failure):
                 self.executor.run_tick()
                 self.check_watchdog(self._clock.now())
                 if not self.executor.wait_at_rest():
@@ -94,7 +94,7 @@ class ExecutorThread:
 # --- the watchdog ---------------------------------------------------------------------------------------
 
 
-def is_thread_running(name: str) -> bool:
+def is_python_thread_alive(name: str) -> bool:
     """Return whether a thread with this name is alive."""
     return any(thread.name == name for thread in threading.enumerate())
 
@@ -120,13 +120,13 @@ class MachineHalter:
 
     def _run(self) -> None:
         assert self._halt is not None
-        with CaughtAttempt() as halting:
+        with ErrorCatcher() as halting:
             self._halt()
         if halting.error is not None:
             _log.error("the drivers cannot be halted", exc_info=halting.error)
 
 
-class ThreadWatch:
+class ThreadMonitor:
     """Supervision of threads by their names, including threads that start later.
 
     ``report_failure`` receives the name of each ended thread once. A thread is supervised from the first
@@ -148,10 +148,10 @@ class ThreadWatch:
 
         After ``stop_reporting``, ended threads are not reported.
         """
-        for name in [name for name in self._awaited if is_thread_running(name)]:
+        for name in [name for name in self._awaited if is_python_thread_alive(name)]:
             self._awaited.remove(name)
             self._running.append(name)
-        for name in [name for name in self._running if not is_thread_running(name)]:
+        for name in [name for name in self._running if not is_python_thread_alive(name)]:
             self._running.remove(name)
             self._awaited.append(name)  # the thread may be started again
             if not self._closing.is_set():
@@ -167,7 +167,7 @@ class ThreadWatch:
 
     def _look_again(self) -> None:
         while not self._closing.wait(CHECK_INTERVAL_S * EXECUTOR_CHECKS_PER_THREAD_CHECK):
-            with ReportedAttempt(_report):
+            with ErrorReporter(_report):
                 self.check_threads()
 
 
@@ -192,7 +192,7 @@ class Watchdog:
     ) -> None:
         self._executor, self._tell = executor, report_failure
         self._halting = MachineHalter(halt)
-        self._others = ThreadWatch(thread_names, report_failure)
+        self._others = ThreadMonitor(thread_names, report_failure)
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._watch, name=WATCHDOG_THREAD_NAME, daemon=True)
         self.check_count = 0
@@ -232,7 +232,7 @@ class Watchdog:
 
     def check_threads(self) -> None:
         """Check the executor and the other threads once. This function never raises an exception."""
-        with CaughtAttempt() as trial:
+        with ErrorCatcher() as trial:
             self._mind_executor()
             if self.check_count % EXECUTOR_CHECKS_PER_THREAD_CHECK == 0:
                 self._others.check_threads()
@@ -265,7 +265,7 @@ class Watchdog:
         if again:
             self._halting.start_halt()
         if first:
-            executor.report_unresponsive(
+            executor.show_unresponsive_alarm(
                 "the software thread of the control has ended"
                 if dead
                 else ("the software thread of the control is stuck")

@@ -62,7 +62,7 @@ def hash_pin(pin: str, salt: bytes | None = None) -> PinHash:
     return PinHash(salt, bytes(DEFAULT_COST) + _scrypt(pin, salt, DEFAULT_COST))
 
 
-def matches_hash(pin: str, stored_hash: PinHash) -> bool:
+def is_pin_correct(pin: str, stored_hash: PinHash) -> bool:
     """Return whether the PIN matches the hash. The result is False for an empty hash.
 
     The calculation is slow, so call it in a worker thread.
@@ -100,7 +100,7 @@ FREE_ATTEMPT_COUNT = 2  # wrong PINs that cause no delay
 _FIRST, _MOST = 5.0, 300.0  # s
 
 
-def calculate_delay(wrong_attempts: int) -> float:
+def calculate_retry_delay(wrong_attempts: int) -> float:
     """Return the delay in seconds after a number of consecutive wrong PINs.
 
     The delays are 0, 0, 5, 10, 20 and so on, up to 300 s.
@@ -125,7 +125,7 @@ class WrongPinCounter:
 
     def get_remaining_delay(self, now: float) -> float:
         """Return the time in seconds until the next PIN is accepted, or 0 if it is accepted now."""
-        return max(0.0, self.last_attempt_s + calculate_delay(self.wrong_pin_count) - now)
+        return max(0.0, self.last_attempt_s + calculate_retry_delay(self.wrong_pin_count) - now)
 
     def count_wrong_pin(self, now: float) -> None:
         """Increment the count and record ``now`` as the time of the last wrong PIN."""

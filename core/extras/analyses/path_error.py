@@ -227,7 +227,7 @@ class PathError:
 class WorstDeviation:
     """The largest deviation of a program line, with its position and its distance in mm."""
 
-    line: int
+    line_number: int
     distance_mm: float
     position: tuple[float, ...]
     sample_index: int

@@ -205,7 +205,7 @@ class Bandwidth:
 def calculate_bandwidth(responses: Sequence[SineResponse]) -> Bandwidth:
     """Return the bandwidth from sine responses, interpolated on a logarithmic frequency scale."""
 
-    def reached(values: list[float]) -> float | None:
+    def find_crossing_frequency(values: list[float]) -> float | None:
         for i in range(1, len(values)):
             if values[i - 1] < 0.0 <= values[i]:
                 part = -values[i - 1] / (values[i] - values[i - 1])
@@ -216,8 +216,10 @@ def calculate_bandwidth(responses: Sequence[SineResponse]) -> Bandwidth:
         return None
 
     return Bandwidth(
-        reached([-20.0 * math.log10(each.gain) + 20.0 * math.log10(math.sqrt(0.5)) for each in responses]),
-        reached([each.phase_lag_deg - 90.0 for each in responses]),
+        find_crossing_frequency(
+            [-20.0 * math.log10(each.gain) + 20.0 * math.log10(math.sqrt(0.5)) for each in responses]
+        ),
+        find_crossing_frequency([each.phase_lag_deg - 90.0 for each in responses]),
     )
 
 
@@ -237,7 +239,7 @@ def find_trip_time(times: FloatArray, error: FloatArray, limit_mm: float, durati
     return None
 
 
-def find_narrowest_limit(times: FloatArray, error: FloatArray, duration_s: float) -> float:
+def find_smallest_error_limit(times: FloatArray, error: FloatArray, duration_s: float) -> float:
     """Return the smallest error limit in mm at which this error would not cause a trip.
 
     A trip occurs if the error exceeds the limit for ``duration_s`` seconds. The limit is found by bisection

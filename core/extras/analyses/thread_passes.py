@@ -25,7 +25,7 @@ _POINTS = 24  # points per revolution at which the travel is compared
 
 
 @dataclass(frozen=True, slots=True)
-class ThreadPass:
+class MeasuredThreadPass:
     """Measured values of one threading pass.
 
     - ``first_sample`` and ``last_sample``: sample numbers
@@ -43,7 +43,7 @@ class ThreadPass:
     entry_angle_deg: float
     lead_mm: float
     depth_mm: float
-    speed_before_rpm: float
+    speed_before_cut_rpm: float
     min_speed_rpm: float
     speed_ripple_rpm: float
 
@@ -53,7 +53,7 @@ class ThreadPass:
 
         The drop is measured from the highest speed just before the cut.
         """
-        return self.speed_before_rpm - self.min_speed_rpm
+        return self.speed_before_cut_rpm - self.min_speed_rpm
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ class ThreadAnalysis:
     """The passes of one thread, with the signed reference lead in mm per revolution."""
 
     reference_lead_mm: float
-    passes: tuple[ThreadPass, ...]
+    passes: tuple[MeasuredThreadPass, ...]
 
     @property
     def entry_spread_deg(self) -> float:
@@ -75,7 +75,7 @@ class ThreadAnalysis:
         return max((each.lead_mm - self.reference_lead_mm for each in self.passes), key=abs)
 
 
-def calculate_max_rpm(lead: float, max_axis_speed: float) -> float:
+def calculate_max_threading_rpm(lead: float, max_axis_speed: float) -> float:
     """Return the highest spindle speed in rpm at which an axis can follow the lead.
 
     ``lead`` is in mm per revolution, and ``max_axis_speed`` is the speed limit of the axis in mm/s.
@@ -199,13 +199,13 @@ def _passes(
     along: FloatArray,
     depth: FloatArray,
     speed: FloatArray,
-) -> tuple[ThreadPass, ...]:
+) -> tuple[MeasuredThreadPass, ...]:
     """Return the threading passes with their best-fit lines and entry angles.
 
     Entry angles differ by at most half a revolution from that of the first pass.
     """
     begin = float(np.median([along[first] for first, *_ in runs]))
-    found: list[ThreadPass] = []
+    found: list[MeasuredThreadPass] = []
     base = 0.0
     for number, (first, last, _, out) in enumerate(runs):
         cut = slice(first, last + 1)
@@ -219,7 +219,7 @@ def _passes(
         before = speed[max(0, out - max(1, (last - first) // 4)) : first + 1]
         within = speed[cut]
         found.append(
-            ThreadPass(
+            MeasuredThreadPass(
                 first,
                 last,
                 t - whole,

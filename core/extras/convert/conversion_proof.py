@@ -10,7 +10,7 @@ from core.extras.convert.path_steps import MOVE_KINDS, PathStep, SpindleState, S
 from core.interpreter.dialects import interpret_program
 from core.interpreter.shared import actions
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
-from core.interpreter.shared.job_setup import ControlLimits, SecondaryOffset, Setup, ToolOffset
+from core.interpreter.shared.job_setup import ControlLimits, InterpreterSetup, SecondaryOffset, ToolOffset
 from core.interpreter.shared.units import MM_S_PER_FT_MIN, MM_S_PER_M_MIN
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, ProgramSource
@@ -57,7 +57,8 @@ def prove(
     tools = dict.fromkeys(range(1, 33), _OFFSET)
     nose = dict.fromkeys(range(1, 33), SecondaryOffset())
     done = interpret_program(
-        ProgramSource("converted", text, Dialect.OMNITURN), Setup(tools=tools, secondary=nose, limits=limits)
+        ProgramSource("converted", text, Dialect.OMNITURN),
+        InterpreterSetup(tools=tools, secondary=nose, limits=limits),
     )
     blocks = list(done.generate_blocks())
     errors = [each for each in done.diagnostics if each.severity is Severity.ERROR]

@@ -118,7 +118,7 @@ class ExpressionReader:
         self.skip_blanks()
         return self.text[self.at : self.at + 1]
 
-    def accept_text(self, sign: str) -> bool:
+    def skip_text(self, sign: str) -> bool:
         """Skip ``sign`` if the text at the reading position starts with it; return whether it does."""
         self.skip_blanks()
         found = self.text[self.at : self.at + len(sign)].upper() == sign
@@ -148,16 +148,16 @@ class ExpressionReader:
         except (ZeroDivisionError, ValueError, OverflowError) as error:
             raise make_error(self.line, begin + 1, "division") from error
 
-    def read_bracket(self) -> float:
+    def read_bracketed_expression(self) -> float:
         """Return the value of the expression in ``[ ]``. Raises ProgramError if it is invalid."""
         begin = self.at
-        if not self.accept_text("["):
+        if not self.skip_text("["):
             raise self._error(begin)
         try:
             found = self._finite(begin, self._binary(0))
         except (ZeroDivisionError, ValueError, OverflowError) as error:
             raise make_error(self.line, begin + 1, "division") from error
-        if not self.accept_text("]"):
+        if not self.skip_text("]"):
             raise self._error(begin)
         return found
 
@@ -175,7 +175,7 @@ class ExpressionReader:
         Raises ProgramError if it is invalid.
         """
         self.at += 1
-        if self.accept_text("<"):
+        if self.skip_text("<"):
             end = self.text.find(">", self.at)
             if end < 0:
                 raise self._error(self.at)
@@ -192,7 +192,7 @@ class ExpressionReader:
             sign = next((each for each in _LEVELS[level] if self._is_operator(each)), None)
             if sign is None:
                 return found
-            self.accept_text(sign)
+            self.skip_text(sign)
             found = _CALCULATE[sign](found, right := self._binary(level + 1))
             if sign == "MOD" and found < 0.0 and not self.variables.is_fanuc:
                 found += abs(right)  # A remainder of LinuxCNC is never negative.
@@ -205,7 +205,7 @@ class ExpressionReader:
 
     def _power(self) -> float:
         found = self._signed()
-        while self.accept_text("**"):
+        while self.skip_text("**"):
             found = math.pow(found, self._signed())  # Unlike **, pow raises an error for a complex result.
         return found
 
@@ -236,7 +236,7 @@ class ExpressionReader:
     def _nested_atom(self) -> float:
         sign = self.peek_character()
         if sign == "[":
-            return self.read_bracket()
+            return self.read_bracketed_expression()
         if sign == "#":
             begin = self.at
             key = self.read_variable_key()
@@ -259,19 +259,19 @@ class ExpressionReader:
         word = name[0].upper()
         self.at = name.end()
         if word == "ATAN":
-            first = self.read_bracket()
-            if self.accept_text("/"):
-                angle = math.degrees(math.atan2(first, self.read_bracket()))
+            first = self.read_bracketed_expression()
+            if self.skip_text("/"):
+                angle = math.degrees(math.atan2(first, self.read_bracketed_expression()))
                 return angle % 360.0 if self.variables.is_fanuc else angle
             return math.degrees(math.atan(first))
-        if word == "EXISTS" and self.accept_text("["):
+        if word == "EXISTS" and self.skip_text("["):
             known = self.read_variable_key() in self.variables
-            self.accept_text("]")
+            self.skip_text("]")
             return float(known)
         functions = _FUNCTIONS_OF_FANUC if self.variables.is_fanuc else _FUNCTIONS
         if word not in functions:
             raise self._error(begin)
-        return float(functions[word](self.read_bracket()))
+        return float(functions[word](self.read_bracketed_expression()))
 
     def _error(self, begin: int) -> ProgramError:
         return make_error(

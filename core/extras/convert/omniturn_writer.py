@@ -44,11 +44,13 @@ class OmniTurnWriter:
     feed: float | None = None
     spindle: SpindleState = field(default_factory=SpindleState)
     tool_number: int = 0
-    active_tool: int = 0  # T that is active in the converted program
+    active_tool_number: int = 0  # T that is active in the converted program
     nose_code: int = 0  # D that the next move needs
     needs_both_axes: bool = True
     pending_step: PathStep | None = None  # rapid with an unknown coordinate
-    last_infeed: tuple[int, float | None, float | None, bool] | None = None  # last rapid: line, start, G00
+    last_rapid_move: tuple[int, float | None, float | None, bool] | None = (
+        None  # last rapid: line, start, G00
+    )
 
     # --- numbers
 
@@ -73,10 +75,10 @@ class OmniTurnWriter:
     def make_comment(self, step: PathStep) -> str:
         """Return the comment for the line of a step, or an empty string if comments are disabled."""
         stop = step.kind is StepKind.M and step.number in {0, 1}
-        if not self.options.has_comments and not (stop and step.comment):
+        if not self.options.writes_comments and not (stop and step.comment):
             return ""
         words = _NOT_IN_COMMENTS.sub(" ", step.comment)[:_LONGEST].strip()
-        place = f"L{step.line}" if self.options.has_comments else ""
+        place = f"L{step.line}" if self.options.writes_comments else ""
         return f"({f'{place} {words}'.strip()})"
 
     # --- steps
@@ -121,7 +123,7 @@ class OmniTurnWriter:
 
     def _select(self, step: PathStep) -> None:
         self.append_line(f"T{self.tool_number}", step)
-        self.active_tool, self.needs_both_axes = self.tool_number, True
+        self.active_tool_number, self.needs_both_axes = self.tool_number, True
 
     def _unresolved(self) -> None:
         if self.pending_step is not None:
@@ -136,7 +138,7 @@ class OmniTurnWriter:
         if self.pending_step is not None:
             self.warnings.append(make_warning(self.pending_step.line, 1, "approach-joined"))
             self.pending_step = None
-        if self.tool_number and self.active_tool != self.tool_number:
+        if self.tool_number and self.active_tool_number != self.tool_number:
             self._select(step)
         after = steps[at + 1 : at + 4]
         if step.kind is StepKind.THREAD:
@@ -168,7 +170,7 @@ class OmniTurnWriter:
             self.append_line(words, step)
             self.needs_both_axes = self.needs_both_axes and not moved
         if step.kind is StepKind.RAPID and moved:
-            self.last_infeed = len(self.lines), self.x, self.z, before
+            self.last_rapid_move = len(self.lines), self.x, self.z, before
         self.x, self.z = step.x, step.z
 
     def round_x(self, x: float | None) -> float:
@@ -198,10 +200,10 @@ class OmniTurnWriter:
         if self.pending_step is not None and not (step.x is not None and step.z is not None):
             self._unresolved()
         self.pending_step = None
-        if self.active_tool != -1:
+        if self.active_tool_number != -1:
             self.append_line("T0", step)
             step = replace(step, comment="")
-        self.active_tool = -1
+        self.active_tool_number = -1
         words = ("X0" if step.x is not None else "") + ("Z0" if step.z is not None else "")
         self.append_line(("" if self.is_rapid else "G00") + words, step)
         self.is_rapid, self.needs_both_axes = True, True
@@ -315,9 +317,9 @@ def _returns(out: PathStep, after: Sequence[PathStep], start_z: float) -> int:
 
 def _drop_infeed(writer: OmniTurnWriter, start_z: float) -> None:
     """Remove the last rapid if it is the infeed to the pass depth, because the cycle makes this move."""
-    if writer.last_infeed is None:
+    if writer.last_rapid_move is None:
         return
-    count, x, z, was_rapid = writer.last_infeed
+    count, x, z, was_rapid = writer.last_rapid_move
     if z is not None and abs(z - start_z) < _NEAR and x is not None and count == len(writer.lines):
         writer.lines.pop()
         writer.x, writer.z = x, z

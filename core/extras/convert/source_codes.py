@@ -35,7 +35,7 @@ def execute_mode(state: SourceState, statement: SourceStatement, word: SourceWor
 
 def is_mode(state: SourceState, code: float) -> bool:
     """Return whether ``execute_mode`` executes or reports this G code."""
-    fanuc, system_a = state.source_control.is_fanuc, state.source_control.has_system_a
+    fanuc, system_a = state.source_control.is_fanuc, state.source_control.uses_code_system_a
     return (
         code in _ALWAYS_ACTIVE | _LEFT_OUT | {17, 19, 20, 21, 40, 41, 42, 43, 49, 80, 96, 97}
         or code in get_feed_codes(state)
@@ -48,7 +48,7 @@ def is_mode(state: SourceState, code: float) -> bool:
 
 def get_feed_codes(state: SourceState) -> frozenset[int]:
     """Return the codes for feed per minute and feed per revolution."""
-    return frozenset({98, 99}) if state.source_control.has_system_a else frozenset({94, 95})
+    return frozenset({98, 99}) if state.source_control.uses_code_system_a else frozenset({94, 95})
 
 
 def _select_numbers(state: SourceState, word: SourceWord) -> bool:
@@ -58,7 +58,7 @@ def _select_numbers(state: SourceState, word: SourceWord) -> bool:
         state.is_metric = code in {21, 71}
     elif code in {7, 8} and not fanuc:
         state.is_x_diameter = code == 7
-    elif code in {90, 91} and not state.source_control.has_system_a:
+    elif code in {90, 91} and not state.source_control.uses_code_system_a:
         state.is_absolute = code == 90
     else:
         return False
@@ -74,8 +74,8 @@ def _select_feed_mode(state: SourceState, word: SourceWord) -> bool:
         state.is_feed_per_rev = per_rev
     elif code == 93 and not state.source_control.is_fanuc:
         raise make_error(word.line_number, word.column, "inverse-time")
-    elif code in {98, 99} and not state.source_control.has_system_a:
-        state.returns_to_r = code == 99
+    elif code in {98, 99} and not state.source_control.uses_code_system_a:
+        state.returns_to_r_plane = code == 99
     else:
         return False
     return True

@@ -15,7 +15,7 @@ def read_seconds(state: SourceState, word: SourceWord) -> float:
     """Return the time of a dwell in seconds. Raises ProgramError if its unit is unknown."""
     if state.source_control is SourceControl.MACH:
         state.add_warning(word, "dwell-unit", word=word.text)
-    if not state.source_control.is_fanuc or word.has_point:
+    if not state.source_control.is_fanuc or word.has_decimal_point:
         return word.value
     if word.letter == "P":
         return word.value / 1000.0

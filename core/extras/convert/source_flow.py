@@ -40,7 +40,7 @@ _KEYWORDS = frozenset({"if", "while", "repeat", "call"})
 class _Return(NamedTuple):
     return_index: int
     remaining_calls: int  # number of further calls
-    begin_index: int
+    subprogram_start_index: int
     local_variables: dict[str, float] | None  # of the caller; None if the call shares them
 
 
@@ -77,7 +77,7 @@ class ProgramFlow:
         self._count_lines(1, line)
         if line.o_keyword:
             self._o_word(line)
-        elif _MACRO.match(line.code, line.start_index):
+        elif _MACRO.match(line.code, line.words_start_index):
             yield from self._macro(line)
         else:
             yield from self._statement(line)
@@ -115,7 +115,7 @@ class ProgramFlow:
         """Return the first and the last line number of each part of the program that was not executed."""
         found: list[tuple[int, int]] = []
         for index, line in enumerate(self.lines):
-            code = line.code[line.start_index :].strip()
+            code = line.code[line.words_start_index :].strip()
             if not code or line.o_keyword or _LOOP_END.fullmatch(code):
                 continue
             if index in self._executed:
@@ -128,7 +128,7 @@ class ProgramFlow:
 
     def _statement(self, line: SourceLine) -> Iterator[SourceStatement]:
         statement = read_words(line, self.variables)
-        if statement.has_g(65):
+        if statement.has_g_code(65):
             self._call_macro(statement)
             return
         m = next((each for each in statement.find_words("M") if each.value in {97, 98, 99}), None)
@@ -193,7 +193,7 @@ class ProgramFlow:
         call = self._calls.pop()
         if call.remaining_calls:
             self._calls.append(call._replace(remaining_calls=call.remaining_calls - 1))
-            self.at = call.begin_index
+            self.at = call.subprogram_start_index
             return
         self.at = call.return_index
         if call.local_variables is not None:
@@ -230,31 +230,34 @@ class ProgramFlow:
     # --- macros of Fanuc
 
     def _macro(self, line: SourceLine) -> Iterator[SourceStatement]:
-        reader = ExpressionReader(line.line_number, line.code, self.variables, line.start_index)
-        if reader.accept_text("IF"):
-            if not reader.read_bracket():
+        reader = ExpressionReader(line.line_number, line.code, self.variables, line.words_start_index)
+        if reader.skip_text("IF"):
+            if not reader.read_bracketed_expression():
                 return
-            if reader.accept_text("THEN"):
-                yield from self._statement(line._replace(start_index=reader.at))
+            if reader.skip_text("THEN"):
+                yield from self._statement(line._replace(words_start_index=reader.at))
                 return
-        if reader.accept_text("WHILE"):
-            if not reader.read_bracket():
+        if reader.skip_text("WHILE"):
+            if not reader.read_bracketed_expression():
                 self.at = self._end_of(line, reader) + 1
             return
-        if reader.accept_text("GOTO"):
+        if reader.skip_text("GOTO"):
             begin = reader.at
             value, _ = reader.read_value()
             text = line.code[begin : reader.at].strip()
             self._require_line_end(reader)
             self.at = self._block(value, SourceWord("N", value, False, line.line_number, begin + 1, text))
             return
-        if reader.accept_text("END"):
+        if reader.skip_text("END"):
             self.at = self._begin_of(line)
             return
-        if reader.accept_text("DO"):
+        if reader.skip_text("DO"):
             return
         raise make_error(
-            line.line_number, line.start_index + 1, "bad-word", text=line.code[line.start_index :].strip()
+            line.line_number,
+            line.words_start_index + 1,
+            "bad-word",
+            text=line.code[line.words_start_index :].strip(),
         )
 
     def _require_line_end(self, reader: ExpressionReader) -> None:
@@ -263,20 +266,20 @@ class ProgramFlow:
             raise make_error(reader.line, reader.at + 1, "bad-word", text=reader.text[reader.at :].strip())
 
     def _end_of(self, line: SourceLine, reader: ExpressionReader) -> int:
-        if not reader.accept_text("DO"):
+        if not reader.skip_text("DO"):
             raise make_error(line.line_number, reader.at + 1, "bad-word", text=line.code.strip())
         number = line.code[reader.at :].strip()
         for index in range(self.at, len(self.lines)):
             if re.fullmatch(
                 rf"END\s*{number}",
-                self.lines[index].code[self.lines[index].start_index :].strip(),
+                self.lines[index].code[self.lines[index].words_start_index :].strip(),
                 re.IGNORECASE,
             ):
                 return index
         raise make_error(line.line_number, reader.at + 1, "label", word=f"END{number}")
 
     def _begin_of(self, line: SourceLine) -> int:
-        number = line.code[line.start_index :].strip()[3:].strip()
+        number = line.code[line.words_start_index :].strip()[3:].strip()
         for index in range(self.at - 1, -1, -1):
             if re.search(rf"DO\s*{number}\s*$", self.lines[index].code, re.IGNORECASE):
                 return index
@@ -285,7 +288,7 @@ class ProgramFlow:
     # --- O words of LinuxCNC
 
     def _o_word(self, line: SourceLine) -> None:
-        reader = ExpressionReader(line.line_number, line.code, self.variables, line.start_index)
+        reader = ExpressionReader(line.line_number, line.code, self.variables, line.words_start_index)
         jump = _JUMPS.get(line.o_keyword)
         if jump is not None:
             back, keys, beyond = jump
@@ -296,7 +299,7 @@ class ProgramFlow:
             getattr(self, f"_{line.o_keyword}")(line, reader)
             return
         elif line.o_keyword not in {"endif", "do"}:
-            raise make_error(line.line_number, line.start_index + 1, "bad-word", text=line.code.strip())
+            raise make_error(line.line_number, line.words_start_index + 1, "bad-word", text=line.code.strip())
         if line.o_keyword not in {"elseif", "endwhile"}:
             self._require_line_end(reader)
 
@@ -315,10 +318,10 @@ class ProgramFlow:
             line = self.lines[index]
             if line.o_keyword != "elseif":
                 return
-            reader = ExpressionReader(line.line_number, line.code, self.variables, line.start_index)
+            reader = ExpressionReader(line.line_number, line.code, self.variables, line.words_start_index)
 
     def _read_condition(self, reader: ExpressionReader) -> bool:
-        is_true = bool(reader.read_bracket())
+        is_true = bool(reader.read_bracketed_expression())
         self._require_line_end(reader)
         return is_true
 
@@ -331,7 +334,7 @@ class ProgramFlow:
     def _repeat(self, line: SourceLine, reader: ExpressionReader) -> None:
         index = line.line_number - 1
         left = self._loops.pop(index, None)
-        left = round(reader.read_bracket()) if left is None else left
+        left = round(reader.read_bracketed_expression()) if left is None else left
         if left <= 0:
             self.at = self._find(line, ("endrepeat",)) + 1
         else:
@@ -341,9 +344,9 @@ class ProgramFlow:
         begin = self._find_sub(line.o_word)
         passed: dict[str, float] = {}
         while reader.peek_character() == "[":
-            passed[str(len(passed) + 1)] = reader.read_bracket()
+            passed[str(len(passed) + 1)] = reader.read_bracketed_expression()
         self._require_line_end(reader)
-        name = SourceWord("O", 0, True, line.line_number, line.start_index, f"O{line.o_word}")
+        name = SourceWord("O", 0, True, line.line_number, line.words_start_index, f"O{line.o_word}")
         passed |= {str(n): 0.0 for n in range(len(passed) + 1, 31)}
         self._enter(name, begin, 1, passed)
 

@@ -21,7 +21,7 @@ class SourceLine(NamedTuple):
 
     ``code`` is the text with comments replaced by blanks. ``n`` is the block number, or 0 if it has none.
     If the line has an O word, ``o_word`` is its number or name and ``o_keyword`` its keyword.
-    ``start_index`` is the index at which the other words begin.
+    ``words_start_index`` is the index at which the other words begin.
     """
 
     line_number: int
@@ -31,19 +31,19 @@ class SourceLine(NamedTuple):
     n: float = 0
     o_word: str = ""
     o_keyword: str = ""
-    start_index: int = 0
-    is_block_delete: bool = False
+    words_start_index: int = 0
+    has_block_delete: bool = False
 
 
 class SourceWord(NamedTuple):
     """A word of a source line, such as X1.5.
 
-    ``has_point`` is False only for a number without a decimal point.
+    ``has_decimal_point`` is False only for a number without a decimal point.
     """
 
     letter: str
     value: float
-    has_point: bool
+    has_decimal_point: bool
     line_number: int
     column: int
     text: str
@@ -65,7 +65,7 @@ class SourceStatement:
         """Return all words of the line with this letter."""
         return [each for each in self.words if each.letter == letter]
 
-    def has_g(self, *codes: float) -> bool:
+    def has_g_code(self, *codes: float) -> bool:
         """Return whether the line contains one of these G codes."""
         return any(each.letter == "G" and each.value in codes for each in self.words)
 
@@ -101,7 +101,7 @@ def _line(number: int, text: str, control: SourceControl) -> SourceLine:
     program = _PROGRAM.match(code, start)
     if program is not None:
         return SourceLine(number, code, comment, text, n, program["o"], "", program.start("rest"), deleted)
-    return SourceLine(number, code, comment, text, n, start_index=start, is_block_delete=deleted)
+    return SourceLine(number, code, comment, text, n, words_start_index=start, has_block_delete=deleted)
 
 
 def _without_comments(number: int, text: str) -> tuple[str, str]:
@@ -127,7 +127,7 @@ def _without_comments(number: int, text: str) -> tuple[str, str]:
 
 def read_words(line: SourceLine, variables: Variables) -> SourceStatement:
     """Return a line's words and assign its variables. Raises ProgramError if a word is invalid."""
-    reader = ExpressionReader(line.line_number, line.code, variables, line.start_index)
+    reader = ExpressionReader(line.line_number, line.code, variables, line.words_start_index)
     assigned: dict[str, float] = {}
     words = tuple(_words(reader, assigned))
     variables.update(assigned)
@@ -139,11 +139,11 @@ def _words(reader: ExpressionReader, assigned: dict[str, float]) -> Iterator[Sou
         begin = reader.at
         if reader.peek_character() == "#":
             key = reader.read_variable_key()
-            if not reader.accept_text("="):
+            if not reader.skip_text("="):
                 raise make_error(reader.line, begin + 1, "bad-word", text=reader.text[begin : begin + 24])
             assigned[key] = reader.read_expression()
             continue
-        corner = reader.accept_text(",")
+        corner = reader.skip_text(",")
         letter = reader.peek_character().upper()
         if not letter.isalpha():
             raise make_error(reader.line, begin + 1, "bad-word", text=reader.text[begin : begin + 24])

@@ -16,7 +16,7 @@ class SourceControl(StrEnum):
     MACH = "mach"
 
     @property
-    def has_system_a(self) -> bool:
+    def uses_code_system_a(self) -> bool:
         """Return whether the control uses G-code system A.
 
         In system A, U and W are increments and G90 is a cycle.
@@ -52,7 +52,7 @@ class ConversionOptions:
     diameter: bool | None = None
     front: bool = False
     skipped_m_codes: frozenset[int] = frozenset()
-    has_comments: bool = True
+    writes_comments: bool = True
     rapid: float = 7620.0  # mm/min
     max_rpm: float = 3500.0
     max_feed_mm_min: float = 7620.0  # mm/min

@@ -55,7 +55,7 @@ class SourceReader:
     def read_program(self) -> None:
         """Read the whole program. Raises ProgramError at the first line that cannot be converted."""
         for each in self.flow.lines:
-            if each.is_block_delete:
+            if each.has_block_delete:
                 word = SourceWord("/", 0, False, each.line_number, each.code.index("/") + 1, "/")
                 self.state.add_warning(word, "block-delete", word=each.code.strip())
         for statement in self.flow.iter_statements():
@@ -91,7 +91,7 @@ class SourceReader:
         """Execute the words of one line. Raises ProgramError if the line cannot be converted."""
         state = self.state
         if statement.comment:
-            state.comment = f"{state.comment} {statement.comment}".strip()
+            state.pending_comment = f"{state.pending_comment} {statement.comment}".strip()
         statement = self._without_y(statement)
         if not statement.words:
             return
@@ -121,7 +121,7 @@ class SourceReader:
             return
         if (
             state.is_feed_per_rev
-            and not word.has_point
+            and not word.has_decimal_point
             and state.source_control.is_fanuc
             and state.options.no_point != 1
         ):
@@ -141,8 +141,8 @@ class SourceReader:
         """
         if not self.state.source_control.is_fanuc:
             return False
-        code = 92 if self.state.source_control.has_system_a else 78
-        if statement.has_g(32, 33, 76, code):
+        code = 92 if self.state.source_control.uses_code_system_a else 78
+        if statement.has_g_code(32, 33, 76, code):
             return True
         has_axes = any(each.letter in "XZUW" for each in statement.words)
         others = [each for each in statement.find_words("G") if self._uses_axes(each)]
@@ -194,7 +194,7 @@ class SourceReader:
                 self._motion_before_cycle = state.motion_code
             state.motion_code = motion[-1].value
             if motion[-1].value != state.cycle_code:
-                state.cycle_code, state.hole_words = -1, {}
+                state.cycle_code, state.hole_cycle_words = -1, {}
             return
         cancel = next((each for each in statement.find_words("G") if each.value == 80), None)
         if cancel is None:
@@ -218,7 +218,7 @@ class SourceReader:
             code in {4, 28, 30, 53}
             or code in LEFT_OUT_WITH_AXES
             or (code == 50 and control.is_fanuc)
-            or (code == 92 and not control.has_system_a)
+            or (code == 92 and not control.uses_code_system_a)
             or self._cycles.is_one_shot(code)
         )
 
@@ -284,14 +284,14 @@ class SourceReader:
     def _belongs_to_code(self, statement: SourceStatement, word: SourceWord) -> bool:
         """Return whether a word belongs to a code of its line that is executed or reported elsewhere."""
         letter = word.letter
-        if letter == "D" and statement.has_g(41, 42):
+        if letter == "D" and statement.has_g_code(41, 42):
             if word.value != self.state.tool_number:
                 self.state.add_warning(word, "left-out", word=word.text)
             return True
         return (
             is_angle_word(self.state, word)
-            or (letter == "D" and statement.has_g(96) and not self.state.source_control.is_fanuc)
-            or (letter == "H" and statement.has_g(43))
+            or (letter == "D" and statement.has_g_code(96) and not self.state.source_control.is_fanuc)
+            or (letter == "H" and statement.has_g_code(43))
             or letter in get_left_out_letters(statement)
         )
 

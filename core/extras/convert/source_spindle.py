@@ -60,8 +60,8 @@ def _set_speed(state: SourceState, statement: SourceStatement, spindle: SpindleS
     S is the maximum rpm in G50, and in G92 except in system A. Old programs of system B use G50 too.
     """
     control = state.source_control
-    limit = (control.is_fanuc and statement.has_g(50)) or (
-        statement.has_g(92) and not control.has_system_a and control is not SourceControl.LINUXCNC
+    limit = (control.is_fanuc and statement.has_g_code(50)) or (
+        statement.has_g_code(92) and not control.uses_code_system_a and control is not SourceControl.LINUXCNC
     )
     word = statement.find_word("S")
     if word is not None and word.value < 0:
@@ -72,7 +72,7 @@ def _set_speed(state: SourceState, statement: SourceStatement, spindle: SpindleS
         spindle = replace(spindle, speed=word.value if spindle.is_css else _limit_rpm(state, word))
         state.speed_request = None
     most = statement.find_word("D")
-    if most is not None and statement.has_g(96) and not control.is_fanuc:
+    if most is not None and statement.has_g_code(96) and not control.is_fanuc:
         spindle = replace(spindle, max_rpm=_limit_rpm(state, most))
     return spindle
 

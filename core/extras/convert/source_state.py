@@ -48,12 +48,12 @@ class SourceState:
     has_preset: bool = False
     preset_shift: tuple[float, float] | None = (0.0, 0.0)  # X and Z of all presets; None if unknown
     move_error: ProgramError | None = None  # raised by the next move
-    comment: str = ""
+    pending_comment: str = ""
     cycle_code: float = -1  # single cycle whose values are stored
-    cycle_end: tuple[float, float] | None = None
+    cycle_end_point: tuple[float, float] | None = None
     cycle_taper: float = 0.0
-    hole_words: dict[str, SourceWord] = field(default_factory=dict)  # words of the active hole cycle
-    returns_to_r: bool = False  # G99 of G-code systems B and C
+    hole_cycle_words: dict[str, SourceWord] = field(default_factory=dict)  # words of the active hole cycle
+    returns_to_r_plane: bool = False  # G99 of G-code systems B and C
     _recorded: set[tuple[int, str, str]] = field(default_factory=set)
 
     @property
@@ -78,7 +78,7 @@ class SourceState:
         if not word.value:
             return 0.0
         unit = self.get_unit_mm(word)
-        if word.has_point or not self.source_control.is_fanuc or self.options.no_point == 1:
+        if word.has_decimal_point or not self.source_control.is_fanuc or self.options.no_point == 1:
             return word.value * unit
         if not self.options.no_point:
             raise make_error(word.line_number, word.column, "no-point", word=word.text)
@@ -96,7 +96,7 @@ class SourceState:
 
         The value is in least increments unless the word has a decimal point.
         """
-        if word.has_point or not self.source_control.is_fanuc:
+        if word.has_decimal_point or not self.source_control.is_fanuc:
             return word.value * self.get_unit_mm(word)
         return word.value * self.get_unit_mm(word) * _LEAST[bool(self.is_metric)]
 
@@ -161,9 +161,9 @@ class SourceState:
             raise make_error(step.line, 1, "too-many-moves", most=MAX_STEP_COUNT)
         if self.speed_request is not None and step.kind in _NEED_SPEED:
             raise self.speed_request
-        if self.comment:
-            object.__setattr__(step, "comment", self.comment)
-            self.comment = ""
+        if self.pending_comment:
+            object.__setattr__(step, "comment", self.pending_comment)
+            self.pending_comment = ""
         self.steps.append(step)
 
     def append_move(

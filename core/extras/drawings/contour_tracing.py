@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
-from core.extras.drawings.drawing import DrawingError, check_work_limit
+from core.extras.drawings.drawing import DrawingError, check_processor_time
 from core.geometry.lines_and_arcs import Arc, BoundingBox, Element, Line, Point, find_intersections, make_arc
 from core.message import Message
 
@@ -165,15 +165,15 @@ def _hanging(count: int, pairs: Sequence[tuple[int, int]]) -> list[int]:
     """Return for each node the number of the node that represents its group of connected nodes."""
     owner = list(range(count))
 
-    def root(n: int) -> int:
+    def find_root(n: int) -> int:
         while owner[n] != n:
             owner[n] = owner[owner[n]]
             n = owner[n]
         return n
 
     for a, b in pairs:
-        owner[root(a)] = root(b)
-    return [root(n) for n in range(count)]
+        owner[find_root(a)] = find_root(b)
+    return [find_root(n) for n in range(count)]
 
 
 def _split_at_touching_ends(elements: list[Element], gap: float) -> list[Element]:
@@ -189,7 +189,7 @@ def _split_at_touching_ends(elements: list[Element], gap: float) -> list[Element
             cells.setdefault(math.floor((end[1] - low) / size), []).append(end)
     found: list[Element] = []
     for each, box in zip(elements, boxes, strict=True):
-        check_work_limit()
+        check_processor_time()
         if each.length <= 2.0 * gap:  # every point is within the gap of one of its ends
             found.append(each)
             continue
@@ -301,7 +301,7 @@ def _walk(
     best: list[tuple[int, int]] = []
     node, seen = start, {start}
     while True:
-        check_work_limit()
+        check_processor_time()
         step = _next(group, at_node[node], node, shut, path_steps, back, hand)
         if step is not None:
             shut.add(step)
@@ -340,13 +340,13 @@ def _next(
         back = _angle(_from(group.elements[last], group.element_end_nodes[last], node))
     free = [n for n in there if n not in shut]
 
-    def turned(n: int) -> float:
+    def calculate_turn_angle(n: int) -> float:
         found = (hand * (_angle(_from(group.elements[n], group.element_end_nodes[n], node)) - back)) % (
             2.0 * math.pi
         )
         return found if found > 1e-6 else 2.0 * math.pi
 
-    return min(free, key=turned, default=None)
+    return min(free, key=calculate_turn_angle, default=None)
 
 
 def _elements(net: ElementGroup, start: int, path_steps: Iterable[tuple[int, int]]) -> list[Element]:
@@ -400,7 +400,7 @@ def _overlapping(walked: Sequence[Element]) -> Iterator[tuple[int, int]]:
     order = sorted(range(len(walked)), key=lambda n: boxes[n][2])
     lows = [boxes[n][2] for n in order]
     for at, i in enumerate(order):
-        check_work_limit()
+        check_processor_time()
         inner, outer, _, high = boxes[i]
         for k in order[at + 1 : bisect_right(lows, high)]:
             if inner <= boxes[k][1] and boxes[k][0] <= outer:

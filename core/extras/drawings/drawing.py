@@ -45,13 +45,13 @@ class Drawing:
     """A drawing as lines and arcs.
 
     ``unit_mm`` is the size of one drawing unit in mm, or 0 if the file does not specify it.
-    ``omitted_counts`` contains the number of omitted objects, such as texts and dimensions, by kind.
+    ``omitted_object_counts`` contains the number of omitted objects, such as texts and dimensions, by kind.
     """
 
     name: str
     elements: tuple[DrawnElement, ...]
     unit_mm: float = 0.0
-    omitted_counts: Mapping[str, int] = field(default_factory=dict)
+    omitted_object_counts: Mapping[str, int] = field(default_factory=dict)
 
     @property
     def layers(self) -> tuple[str, ...]:
@@ -165,7 +165,7 @@ def encode_drawing(drawing: Drawing) -> bytes:
     head = {
         "name": drawing.name,
         "unit": drawing.unit_mm,
-        "left_out": dict(drawing.omitted_counts),
+        "left_out": dict(drawing.omitted_object_counts),
         "layers": layers,
     }
     return _with_head(head) + rows
@@ -219,14 +219,16 @@ MAX_READING_TIME_S = 30.0  # s of processor time for one program from a drawing
 class _Limit:
     start_time_s: float
     limit_s: float
-    report_elapsed: Callable[[float], None]
+    report_elapsed_time: Callable[[float], None]
 
 
 _limit: ContextVar[_Limit | None] = ContextVar("drawing_work", default=None)
 
 
 @contextmanager
-def limit_work(report_time: Callable[[float], None], limit_s: float = MAX_READING_TIME_S) -> Iterator[None]:
+def limit_processor_time(
+    report_time: Callable[[float], None], limit_s: float = MAX_READING_TIME_S
+) -> Iterator[None]:
     """Limit the processor time of this thread in the ``with`` block to ``limit_s`` seconds.
 
     ``report_time`` is called with the processor time used so far, in seconds.
@@ -238,7 +240,7 @@ def limit_work(report_time: Callable[[float], None], limit_s: float = MAX_READIN
         _limit.reset(token)
 
 
-def check_work_limit() -> None:
+def check_processor_time() -> None:
     """Check the work limit; to be called inside loops over elements.
 
     Raises DrawingError if the limit is exceeded, or the exception that ``report_time`` raises.
@@ -247,7 +249,7 @@ def check_work_limit() -> None:
     if limit is None:
         return
     spent = time.thread_time() - limit.start_time_s
-    limit.report_elapsed(spent)
+    limit.report_elapsed_time(spent)
     if spent > limit.limit_s:
         words = "the drawing has too many parallel lines. Save only the contour of the part."
         raise DrawingError(words, "too-slow")

@@ -18,7 +18,7 @@ from core.extras.drawings.drawing import DrawingError, encode_drawing, encode_er
 from core.extras.drawings.drawing_file import read_drawing
 
 
-def limit_process(memory: int, seconds: int) -> None:
+def limit_process_resources(memory: int, seconds: int) -> None:
     """Limit this process to ``memory`` bytes of address space and ``seconds`` of processor time.
 
     The limits apply only on Linux.
@@ -35,7 +35,7 @@ def limit_process(memory: int, seconds: int) -> None:
         resource.setrlimit(kind, (soft, hard))
 
 
-def read_and_encode(path: Path) -> bytes:
+def read_and_encode_drawing(path: Path) -> bytes:
     """Read a drawing and return it encoded as bytes, or return the encoded error if reading fails."""
     try:
         return encode_drawing(read_drawing(path))
@@ -53,8 +53,8 @@ def run() -> None:
     logging.disable(logging.CRITICAL)
     warnings.simplefilter("ignore")
     gc.disable()  # the process ends before there is much to collect
-    limit_process(memory, seconds)
-    out.write(read_and_encode(path))
+    limit_process_resources(memory, seconds)
+    out.write(read_and_encode_drawing(path))
     out.flush()
     os._exit(0)
 

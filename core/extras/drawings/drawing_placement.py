@@ -230,7 +230,7 @@ def place_elements(elements: Iterable[Element], placement: DrawingPlacement) -> 
     """
     turn = 1.0 if placement.front is FaceEnd.RIGHT else -1.0
 
-    def placed(p: Point) -> Point:
+    def place_point(p: Point) -> Point:
         (dy, dx), y, x = (
             placement.axis.direction,
             p[0] - placement.axis.point[0],
@@ -242,9 +242,9 @@ def place_elements(elements: Iterable[Element], placement: DrawingPlacement) -> 
     for each in elements:
         if isinstance(each, Arc):
             clockwise = each.clockwise if turn > 0.0 else not each.clockwise
-            yield Arc(placed(each.start), placed(each.end), placed(each.center), clockwise)
+            yield Arc(place_point(each.start), place_point(each.end), place_point(each.center), clockwise)
         else:
-            yield Line(placed(each.start), placed(each.end))
+            yield Line(place_point(each.start), place_point(each.end))
 
 
 def find_contours(drawing: Drawing, placement: DrawingPlacement, layer: str = "") -> list[ElementGroup]:

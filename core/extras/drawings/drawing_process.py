@@ -42,7 +42,7 @@ class ReadingLimits:
 DEFAULT_LIMITS = ReadingLimits()
 
 
-def read_in_process(
+def read_drawing_in_process(
     path: Path, check_canceled: CancelCheck = lambda _seconds: None, limits: ReadingLimits = DEFAULT_LIMITS
 ) -> Drawing:
     """Return the lines and arcs of a drawing, read in a separate process.

@@ -23,7 +23,7 @@ from core.extras.drawings.drawing import (
     make_bulged_segment,
     make_line,
 )
-from core.extras.drawings.reader_tools import BlockContent, CurvePoint, check_expansion, fit_arcs
+from core.extras.drawings.reader_tools import BlockContent, CurvePoint, check_block_expansion, fit_arcs
 from core.geometry.lines_and_arcs import Element
 from core.message import Message
 
@@ -53,7 +53,7 @@ def read_dxf(path: Path, data: bytes) -> Drawing:
     document = _document(path, data)
     unit = _UNITS.get(int(document.header.get("$INSUNITS", 0)), 0.0)
     left_out: Counter[str] = Counter()
-    check_expansion(path.name, "", partial(_content, document))
+    check_block_expansion(path.name, "", partial(_content, document))
     drawn = tuple(
         check_elements(_drawn(document, calculate_arc_tolerance(unit), left_out, path.name), path.name)
     )
@@ -233,12 +233,12 @@ def _ellipse(entity: Any, near: float) -> Iterator[Element]:
     minor = -major.y * ratio * side, major.x * ratio * side
     sweep = (entity.dxf.end_param - begin) % (2.0 * math.pi) or 2.0 * math.pi
 
-    def place(u: float) -> CurvePoint:
+    def compute_curve_point(u: float) -> CurvePoint:
         c, s = math.cos(begin + sweep * u), math.sin(begin + sweep * u)
         point = at.x + c * major.x + s * minor[0], at.y + c * major.y + s * minor[1]
         return CurvePoint(point, (c * minor[0] - s * major.x, c * minor[1] - s * major.y))
 
-    yield from fit_arcs(place, near, max(1, math.ceil(sweep / (math.pi / 2.0) - 1e-9)))
+    yield from fit_arcs(compute_curve_point, near, max(1, math.ceil(sweep / (math.pi / 2.0) - 1e-9)))
 
 
 def _spline(entity: Any, near: float) -> Iterator[Element]:

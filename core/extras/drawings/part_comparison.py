@@ -51,7 +51,7 @@ class DrawingComparison:
     deviations: tuple[PartDeviation, ...]
 
 
-def compare_part(
+def compare_part_with_drawing(
     profile: ContourProfile, part: Sequence[tuple[float, float]], tolerance: float = DEFAULT_TOLERANCE_MM
 ) -> DrawingComparison:
     """Compare one side of the part with the drawing's profile.
@@ -80,7 +80,7 @@ def _find_drawing_radii(
     fine = np.arange(z[0] - _WALL, z[-1] + _WALL + _STEP / 2.0, _STEP / 2.0)
     outer = np.full(fine.shape, np.nan)
     for each in elements:
-        points = np.array(convert_to_points(each))
+        points = np.array(convert_element_to_points(each))
         order = np.argsort(points[:, 1])
         zs, rs = points[order, 1], side * points[order, 0]
         there = (fine >= zs[0] - 1e-9) & (fine <= zs[-1] + 1e-9)
@@ -94,7 +94,7 @@ def _find_drawing_radii(
     return np.interp(z, fine, low), np.interp(z, fine, high)
 
 
-def convert_to_points(element: Element) -> list[tuple[float, float]]:
+def convert_element_to_points(element: Element) -> list[tuple[float, float]]:
     """Convert an element to a polyline of points (r, z) with a chord error of at most 0.0005 mm."""
     if not isinstance(element, Arc):
         return [element.start, element.end]

@@ -167,7 +167,7 @@ _SKIN = 0.2  # mm of diameter, smallest amount to be cut from a bar
 _EDGE = 1.0  # first cutting edge of a tool in SINUMERIK
 
 
-def propose_fields(
+def propose_program_fields(
     profile: ContourProfile,
     given_values: FieldValues,
     shapes: Mapping[int, ToolShape],
@@ -187,8 +187,8 @@ def propose_fields(
         fields.setdefault("STOCK", _FACE[is_metric])
     kind = ToolKind.BORING if inside else ToolKind.TURNING
     free = next(n for n in range(1, len(shapes) + 2) if n not in shapes)
-    fields.setdefault("T", float(find_first_tool(shapes, kind, is_inside=inside) or free))
-    blade = find_first_tool(shapes, ToolKind.GROOVING, is_inside=inside)
+    fields.setdefault("T", float(find_first_tool_number(shapes, kind, is_inside=inside) or free))
+    blade = find_first_tool_number(shapes, ToolKind.GROOVING, is_inside=inside)
     if blade:
         fields.setdefault("BLADE", float(blade))
     tool = shapes.get(int(float(fields["T"])))
@@ -204,7 +204,7 @@ def propose_bar_diameter(profile: ContourProfile, *, is_metric: bool) -> float:
     return round(step * math.ceil(across / (1.0 if is_metric else 25.4) / step - 1e-6), 4)
 
 
-def find_first_tool(shapes: Mapping[int, ToolShape], kind: ToolKind, *, is_inside: bool) -> int:
+def find_first_tool_number(shapes: Mapping[int, ToolShape], kind: ToolKind, *, is_inside: bool) -> int:
     """Return the number of the first tool of a kind in the tool data, or 0 if there is none."""
     fits = (n for n, each in sorted(shapes.items()) if each.kind is kind and each.internal is is_inside)
     return next((n for n in fits if not shapes[n].is_rear_tool), 0)

@@ -13,14 +13,14 @@ from core.extras.drawings.turning_contour import (
     OmittedGroove,
     TurningContour,
     add_nose_fillets,
-    calculate_tool_reach,
+    calculate_tool_angle_limits,
     join_elements,
     make_turning_contour,
 )
 from core.extras.shapes.contour import ContourPoint
-from core.extras.shapes.editor_shape import FilledShape, Shape, fill_shape
+from core.extras.shapes.editor_shape import Shape, ShapeInstance, make_shape_instance
 from core.extras.shapes.shape_fields import FieldError, FieldValue, FieldValues, ProgramSettings
-from core.extras.shapes.shape_pieces import find_settings
+from core.extras.shapes.shape_pieces import find_active_settings
 from core.extras.shapes.shape_table import SHAPES_BY_DIALECT
 from core.geometry.lines_and_arcs import Arc, Element, Line, find_intersections
 from core.language.source import Dialect
@@ -62,7 +62,7 @@ class ProfileProgram:
     With each shape, the settings that are active before it are stored.
     """
 
-    shapes: tuple[tuple[FilledShape, ProgramSettings], ...]
+    shapes: tuple[tuple[ShapeInstance, ProgramSettings], ...]
     lines: tuple[str, ...]
     uncut_ranges: tuple[UncutRange, ...]
     contour: TurningContour
@@ -96,7 +96,7 @@ def make_profile_program(
     _check_tip(tool, _number(entered_values, "T"), writer.current_settings)
     outside = profile.side is ContourSide.OUTSIDE
     mm = writer.current_settings.mm
-    contour = make_turning_contour(profile, calculate_tool_reach(tool, profile.side))
+    contour = make_turning_contour(profile, calculate_tool_angle_limits(tool, profile.side))
     if not outside:
         contour = replace(
             contour,
@@ -105,12 +105,16 @@ def make_profile_program(
     if _number(entered_values, "COMP"):
         reached = add_nose_fillets(contour.elements, find_nose_radius(tool), is_inside=not outside)
         contour = replace(contour, elements=reached)
-    past = _number(entered_values, "PAST") * mm if "PAST" in entered_values else calculate_end_extension(tool)
+    past = (
+        _number(entered_values, "PAST") * mm
+        if "PAST" in entered_values
+        else calculate_contour_extension(tool)
+    )
     beyond = [*_add_face_approach(contour.elements, outside=outside)]
     contour = replace(contour, elements=tuple(join_elements(_past(beyond, past, find_nose_radius(tool)))))
     if outside and _number(entered_values, "STOCK"):
         writer.add("F", _face(profile, entered_values, writer.current_settings))
-    rows = tuple(make_contour_rows(contour.elements, mm))
+    rows = tuple(make_contour_points(contour.elements, mm))
     writer.add("T", _turn(profile, contour, entered_values, writer.current_settings), rows)
     left = [UncutRange(*each) for each in contour.unreachable_ranges]
     for groove in contour.grooves:
@@ -136,14 +140,14 @@ class _Writer:
     """Writer of consecutive shapes, each with the settings that earlier lines leave active."""
 
     def __init__(self, lines: list[str], settings: ProgramSettings) -> None:
-        self.lines, self.shapes = lines, list[tuple[FilledShape, ProgramSettings]]()
+        self.lines, self.shapes = lines, list[tuple[ShapeInstance, ProgramSettings]]()
         self.refusals: list[FieldError] = []
         self._new = settings
 
     @property
     def current_settings(self) -> ProgramSettings:
         """Return the settings that are active after the lines written so far."""
-        return find_settings(self.lines, len(self.lines), self._new.shop, self._new)
+        return find_active_settings(self.lines, len(self.lines), self._new.shop, self._new)
 
     def _shape(self, key: str) -> Shape:
         return SHAPES_BY_DIALECT[self._new.dialect][key]
@@ -151,13 +155,13 @@ class _Writer:
     def add(self, key: str, typed: FieldValues, rows: tuple[ContourPoint, ...] = ()) -> None:
         """Add the shape with this key, filled with the typed values, unless it has errors."""
         now = self.current_settings
-        one = fill_shape(self._shape(key), typed, now, rows)
+        one = make_shape_instance(self._shape(key), typed, now, rows)
         refused = one.find_errors(now)
         self.refusals += refused
         if not refused:
             self._take(one, now)
 
-    def _take(self, one: FilledShape, now: ProgramSettings) -> None:
+    def _take(self, one: ShapeInstance, now: ProgramSettings) -> None:
         self.shapes.append((one, now))
         self.lines += one.make_lines(now)
 
@@ -168,10 +172,10 @@ class _Writer:
             yield UncutRange(*span, typed)
             return
         now = self.current_settings
-        one = fill_shape(self._shape("G"), typed, now)
+        one = make_shape_instance(self._shape("G"), typed, now)
         refused = one.find_errors(now)
         if refused:
-            yield UncutRange(*span, refused[0].text)
+            yield UncutRange(*span, refused[0].message)
         else:
             self._take(one, now)
 
@@ -261,7 +265,7 @@ def make_nose_offset(tool: ToolShape | None, number: int, dialect: Dialect) -> N
     return NoseOffset(number, across * r, along * r, r)
 
 
-def calculate_end_extension(tool: ToolShape | None) -> float:
+def calculate_contour_extension(tool: ToolShape | None) -> float:
     """Return the distance in mm by which the contour must extend past the part.
 
     The extension is necessary because the nose leaves a fillet at the end of the contour.
@@ -316,7 +320,7 @@ def _cut_at_radius(elements: Iterable[Element], r: float) -> Iterator[Element]:
 # --- Rows of a contour
 
 
-def make_contour_rows(elements: Iterable[Element], mm_per_unit: float) -> Iterator[ContourPoint]:
+def make_contour_points(elements: Iterable[Element], mm_per_unit: float) -> Iterator[ContourPoint]:
     """Yield the rows of a contour's point table.
 
     ``mm_per_unit`` is the size of the program's length unit in mm.

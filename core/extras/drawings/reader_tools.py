@@ -158,15 +158,15 @@ BlockKey = TypeVar("BlockKey", bound=Hashable)
 class BlockContent(NamedTuple):
     """Content of a block or group.
 
-    ``entity_count`` is the number of entities without those of other blocks. ``references`` contains the
-    other blocks with their counts.
+    ``entity_count`` is the number of entities without those of other blocks. ``block_references`` contains
+    the other blocks with their counts.
     """
 
     entity_count: int
-    references: Sequence[tuple[int, Hashable]]
+    block_references: Sequence[tuple[int, Hashable]]
 
 
-def check_expansion(
+def check_block_expansion(
     name: str, root: BlockKey, content: Callable[[BlockKey], BlockContent], remaining_count: int = 0
 ) -> None:
     """Reject a file whose blocks contain themselves or expand to more than ``MAX_ELEMENTS`` entities.
@@ -201,7 +201,7 @@ def _count(name: str, root: BlockKey, content: Callable[[BlockKey], BlockContent
             stack.pop()
         else:
             waiting[here] = content(here)  # type: ignore[arg-type]
-            below = [each for _, each in waiting[here].references if each not in known]
+            below = [each for _, each in waiting[here].block_references if each not in known]
             if any(each in waiting for each in below):
                 words = Message(
                     "A repeated group in {name} contains itself: save only the contour of the part.",

@@ -86,25 +86,25 @@ def make_span_curve(spans: SplineSpans, number: int) -> CurveFunction:
     length = float(spans.parameter_lengths[number])
     scale = (len(points) - 1) / length
 
-    def pair(u: float) -> list[list[float]]:
+    def compute_last_point_pair(u: float) -> list[list[float]]:
         """Return the last two weighted points of De Casteljau's algorithm at ``u``."""
         found = points
         while len(found) > 2:
             found = [[a + (b - a) * u for a, b in zip(p, q, strict=True)] for p, q in pairwise(found)]
         return found
 
-    def place(u: float) -> CurvePoint:
-        (ax, ay, aw), (bx, by, bw) = pair(u)
+    def compute_curve_point(u: float) -> CurvePoint:
+        (ax, ay, aw), (bx, by, bw) = compute_last_point_pair(u)
         w = aw + (bw - aw) * u
         at = (ax + (bx - ax) * u) / w, (ay + (by - ay) * u) / w
         held = min(max(u, _INSIDE), 1.0 - _INSIDE)
         if held != u:
-            (ax, ay, aw), (bx, by, bw) = pair(held)
+            (ax, ay, aw), (bx, by, bw) = compute_last_point_pair(held)
             w = aw + (bw - aw) * held
         size = scale / (w * w)
         return CurvePoint(at, (size * (bx * aw - ax * bw), size * (by * aw - ay * bw)))
 
-    return place
+    return compute_curve_point
 
 
 # --- Two arcs for each span. Points and directions are (n, 2).

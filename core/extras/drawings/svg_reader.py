@@ -24,7 +24,7 @@ from core.extras.drawings.drawing import (
     make_arc,
     make_line,
 )
-from core.extras.drawings.reader_tools import BlockContent, CurvePoint, check_expansion, fit_arcs
+from core.extras.drawings.reader_tools import BlockContent, CurvePoint, check_block_expansion, fit_arcs
 from core.geometry.lines_and_arcs import Element, Point
 from core.message import Message
 
@@ -117,12 +117,12 @@ def _check_elements(name: str, text: bytes) -> None:
         _check_numbers(name, each)
         by_id.setdefault(f"#{each.get('id')}", []).append(each)
 
-    def content(element: Element_) -> BlockContent:
+    def get_block_content(element: Element_) -> BlockContent:
         used = element.get("href") or element.get(_HREF) or ""
         targets = by_id.get(used, []) if str(element.tag).endswith("use") else []
         return BlockContent(1, [(1, each) for each in (*element, *targets)])
 
-    check_expansion(name, root, content, remaining_count=count)
+    check_block_expansion(name, root, get_block_content, remaining_count=count)
 
 
 def _check_numbers(name: str, element: Element_) -> None:
@@ -192,24 +192,24 @@ def _make_ellipse_curve(element: Any) -> Any:
     """
     begin, step = element.get_start_t(), 1e-6
 
-    def at(u: float) -> Point:
+    def compute_position(u: float) -> Point:
         return _up(element.point_at_t(begin + element.sweep * u))
 
-    def place(u: float) -> CurvePoint:
-        a, b = at(u - step), at(u + step)
-        return CurvePoint(at(u), (b[0] - a[0], b[1] - a[1]))
+    def compute_curve_point(u: float) -> CurvePoint:
+        a, b = compute_position(u - step), compute_position(u + step)
+        return CurvePoint(compute_position(u), (b[0] - a[0], b[1] - a[1]))
 
-    return place
+    return compute_curve_point
 
 
 def _of_bezier(each: Any) -> Any:
     points = [_up(p) for p in each]
 
-    def place(u: float) -> CurvePoint:
+    def compute_curve_point(u: float) -> CurvePoint:
         held = min(max(u, 1e-6), 1.0 - 1e-6)
         return CurvePoint(_bezier(points, u), _slope(points, held))
 
-    return place
+    return compute_curve_point
 
 
 def _bezier(points: list[Point], u: float) -> Point:

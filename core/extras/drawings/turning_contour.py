@@ -18,7 +18,7 @@ from core.geometry.contour_offset import GougeError, TrimError, offset_known_con
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point, find_intersections
 from core.message import Message
 from core.part.swept_edge import find_axis_facing_edge
-from core.part.tool_outline import make_outline
+from core.part.tool_outline import make_tool_outline
 from core.part.tool_shape import ToolShape
 
 _SAME = 1e-4  # mm
@@ -64,7 +64,7 @@ class TurningContour:
 
 
 @dataclass(frozen=True, slots=True)
-class ToolReach:
+class ToolAngleLimits:
     """Slope angles of a contour that the edges of a tool can follow, in radians.
 
     ``max_falling_angle_rad`` applies where the radius decreases toward the chuck, and
@@ -75,19 +75,19 @@ class ToolReach:
     max_rising_angle_rad: float = math.pi / 2.0
 
 
-def calculate_tool_reach(shape: ToolShape | None, side: ContourSide) -> ToolReach:
+def calculate_tool_angle_limits(shape: ToolShape | None, side: ContourSide) -> ToolAngleLimits:
     """Return the reach of a tool, calculated from its outline.
 
     A tool without tool data can turn only cylinders, faces and shoulders.
     """
-    cutting = make_outline(shape).cutting_outlines if shape is not None else ()
+    cutting = make_tool_outline(shape).cutting_outlines if shape is not None else ()
     if not cutting:
-        return ToolReach()
+        return ToolAngleLimits()
     edge = find_axis_facing_edge(cutting[0] * [1.0, -1.0 if side is ContourSide.INSIDE else 1.0])
     points = [(float(z), float(r)) for z, r in zip(edge.z, edge.r, strict=True)]
     tip = int(edge.r.argmin())
     back_angle, before = _straight(points[tip:]), _straight(points[tip::-1])
-    return ToolReach(back_angle or 0.0, before or math.pi / 2.0)
+    return ToolAngleLimits(back_angle or 0.0, before or math.pi / 2.0)
 
 
 def _straight(points: Sequence[Point]) -> float | None:
@@ -101,7 +101,7 @@ def _straight(points: Sequence[Point]) -> float | None:
     return None
 
 
-def make_turning_contour(profile: ContourProfile, reach: ToolReach) -> TurningContour:
+def make_turning_contour(profile: ContourProfile, reach: ToolAngleLimits) -> TurningContour:
     """Return the part of a profile that a tool with the given reach can turn.
 
     Raises DrawingError if nothing remains to be turned, or if the tool's leading edge would cut into a
@@ -244,7 +244,7 @@ def _rise(each: Element) -> float:
     return max(math.atan2(direction[0], max(-direction[1], 0.0)) for direction in ways)
 
 
-def _not_too_steep(kept: Iterable[Element], reach: ToolReach) -> None:
+def _not_too_steep(kept: Iterable[Element], reach: ToolAngleLimits) -> None:
     """Raise DrawingError if the tool's leading edge would cut into a shoulder."""
     if reach.max_rising_angle_rad >= math.pi / 2.0 - 1e-3:
         return

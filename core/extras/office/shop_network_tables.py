@@ -117,7 +117,7 @@ def parse_broker_address(text: str) -> tuple[str, int]:
 
 
 def _page_rules(file: MachineFileReading) -> Iterator[FileFinding]:
-    values = file.values
+    values = file.file_values
     if not values.has_values(
         "status_page.bind", "status_page.token", "status_page.desks", "status_page.agents"
     ):
@@ -148,7 +148,7 @@ def _page_rules(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _announce_rules(file: MachineFileReading) -> Iterator[FileFinding]:
-    values = file.values
+    values = file.file_values
     if not values.has_values("announce.mqtt", "announce.hook", "announce.topic"):
         return
     broker, hook = values.text("announce.mqtt"), values.text("announce.hook")

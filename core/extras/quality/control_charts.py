@@ -267,7 +267,7 @@ class RuleViolation(NamedTuple):
 
     point_index: int
     rule_number: int
-    text: str
+    rule_text: str
 
 
 def find_rule_violations(chart: ControlChart) -> tuple[RuleViolation, ...]:

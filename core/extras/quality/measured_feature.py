@@ -171,13 +171,13 @@ _FAR = 3.0  # tolerance widths; a larger deviation cannot be wear
 class CorrectionRule:
     """Rule for corrections, with a dead band and a step.
 
-    Within ``dead_band_share`` of the tolerance, nothing is corrected. ``reading_count`` newest readings are
-    averaged, and ``step_share`` of their deviation is corrected. A step of one half also halves the effect
-    of the variation between parts.
+    Within ``dead_band_fraction`` of the tolerance, nothing is corrected. ``reading_count`` newest readings
+    are averaged, and ``step_fraction`` of their deviation is corrected. A step of one half also halves the
+    effect of the variation between parts.
     """
 
-    dead_band_share: float = 0.1
-    step_share: float = 0.5
+    dead_band_fraction: float = 0.1
+    step_fraction: float = 0.5
     reading_count: int = 5
 
 
@@ -231,11 +231,11 @@ def propose_correction(
         )
     mean = float(newest.mean())
     deviation = mean - feature.middle
-    if abs(deviation) <= rule.dead_band_share * feature.width + 1e-12:
+    if abs(deviation) <= rule.dead_band_fraction * feature.width + 1e-12:
         return _nothing(
             feature, len(newest), mean, "the deviation is within the dead band, so no correction is needed"
         )
-    change = -feature.grows * _round_to_resolution(rule.step_share * deviation, resolution)
+    change = -feature.grows * _round_to_resolution(rule.step_fraction * deviation, resolution)
     if change == 0.0:
         return _nothing(
             feature,

@@ -92,7 +92,7 @@ class Availability(NamedTuple):
     producing_s: float
 
     @property
-    def producing_share(self) -> float:
+    def producing_fraction(self) -> float:
         """Return the fraction of the shift in which a cycle ran, 0 to 1."""
         return self.producing_s / self.planned_s
 

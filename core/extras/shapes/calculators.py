@@ -9,7 +9,7 @@ from dataclasses import replace
 from core.extras.shapes import cutting_data
 from core.extras.shapes.common_fields import MAX_RPM, check_rpm
 from core.extras.shapes.cutting_data import CUTTING_DATA, Operation, propose_roughing_depth
-from core.extras.shapes.editor_shape import FilledShape, Shape
+from core.extras.shapes.editor_shape import Shape, ShapeInstance
 from core.extras.shapes.lines.code_lines import CodeWriter, format_short_number
 from core.extras.shapes.shape_fields import (
     FieldError,
@@ -57,21 +57,21 @@ def solve_taper(known_values: Mapping[str, FieldValue]) -> dict[str, float]:
 
 
 def _of_triangle(word: str) -> ValueProposal:
-    def proposed(values: FieldValues, _setting: ProgramSettings) -> FieldValue | None:
+    def propose_taper_value(values: FieldValues, _setting: ProgramSettings) -> FieldValue | None:
         found = solve_taper(values).get(word)
         return None if found is None else round(found, 5)
 
-    return proposed
+    return propose_taper_value
 
 
-def _taper_lines(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter) -> None:
+def _taper_lines(filled: ShapeInstance, _setting: ProgramSettings, code: CodeWriter) -> None:
     code.append_lines(
         code.format_point(filled.get_number("SMALL") / 2.0, 0.0),
         code.format_point(filled.get_number("LARGE") / 2.0, -filled.get_number("LONG")),
     )
 
 
-def _taper_checks(filled: FilledShape, _setting: ProgramSettings) -> Iterator[FieldError]:
+def _taper_checks(filled: ShapeInstance, _setting: ProgramSettings) -> Iterator[FieldError]:
     found = solve_taper({word: filled.get_number(word) for word in ("SMALL", "LARGE", "LONG")})
     angle = found.get("ANGLE", 0.0)
     if abs(angle - filled.get_number("ANGLE")) > 0.01:
@@ -84,7 +84,7 @@ def _taper_checks(filled: FilledShape, _setting: ProgramSettings) -> Iterator[Fi
         yield FieldError("SMALL", "The taper crosses the spindle centerline: check the angle and the length.")
 
 
-def _taper_says(filled: FilledShape, _setting: ProgramSettings) -> tuple[str, ...]:
+def _taper_says(filled: ShapeInstance, _setting: ProgramSettings) -> tuple[str, ...]:
     rise, long = (filled.get_number("LARGE") - filled.get_number("SMALL")) / 2.0, filled.get_number("LONG")
     ratio = f"1 : {format_short_number(long / (2.0 * rise), 4)}" if rise else "none"
     return (
@@ -94,7 +94,7 @@ def _taper_says(filled: FilledShape, _setting: ProgramSettings) -> tuple[str, ..
     )
 
 
-def _taper_sketch(_filled: FilledShape) -> Sketch:
+def _taper_sketch(_filled: ShapeInstance) -> Sketch:
     solid = make_part_outline((0, 0), (0, 5), (-16, 9), (-22, 9), (-22, 0))
     dims = (
         Dimension("SMALL", (-1, -5), (-1, 5)),
@@ -166,14 +166,14 @@ def _per_minute(values: FieldValues, _setting: ProgramSettings) -> FieldValue | 
     return round(rpm * feed, 3) if rpm and feed else None
 
 
-def _speed_lines(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter) -> None:
+def _speed_lines(filled: ShapeInstance, _setting: ProgramSettings, code: CodeWriter) -> None:
     code.append_lines(
         f"M03S{format_short_number(filled.get_number('RPM'), 0)}",
         f"G95F{format_short_number(filled.get_number('FEED'), 6)}",
     )
 
 
-def _speed_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+def _speed_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
     yield from check_rpm(filled, setting)
     rate = filled.get_number("RPM") * filled.get_number("FEED")
     if abs(rate - filled.get_number("RATE")) > 0.01 * max(rate, 1e-6):
@@ -186,8 +186,8 @@ def _speed_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[Fie
         yield FieldError("RATE", words)
 
 
-def _speed_says(filled: FilledShape, setting: ProgramSettings) -> tuple[str, ...]:
-    turns = _around(filled.values, setting)
+def _speed_says(filled: ShapeInstance, setting: ProgramSettings) -> tuple[str, ...]:
+    turns = _around(filled.field_values, setting)
     real = filled.get_number("RPM") / turns if turns else 0.0
     unit = "m/min" if setting.metric else "ft/min"
     return (
@@ -205,18 +205,18 @@ def _speed_says(filled: FilledShape, setting: ProgramSettings) -> tuple[str, ...
     )
 
 
-def _make_depth_remarks(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[str]:
+def _make_depth_remarks(filled_shape: ShapeInstance, settings: ProgramSettings) -> Iterator[str]:
     """Yield a remark about the depth of a roughing pass, for turning and boring."""
-    work = _work(filled_shape.values)
+    work = _work(filled_shape.field_values)
     if work in {Operation.TURN, Operation.BORE}:
-        now = _of_material(filled_shape.values, settings)
+        now = _of_material(filled_shape.field_values, settings)
         depth = propose_roughing_depth(
             now, 0.0, filled_shape.get_number("DIA"), is_inside=work is Operation.BORE
         )
         yield Message("roughing passes {depth} deep per side", depth=format_short_number(depth, 4))
 
 
-def _speed_sketch(_filled: FilledShape) -> Sketch:
+def _speed_sketch(_filled: ShapeInstance) -> Sketch:
     solid = make_part_outline((0, 0), (0, 8), (-22, 8), (-22, 0))
     dims = (Dimension("DIA", (-14, -8), (-14, 8)), Dimension("FEED", (-4, 10)), Dimension("RPM", (-19, 4)))
     return make_sketch(solid, make_cut_outline((0, 8), (-8, 8)), dimensions=dims)
@@ -264,7 +264,7 @@ def _first(values: FieldValues, _setting: ProgramSettings) -> FieldValue | None:
     return round(deep / math.sqrt(passes), 5) if passes and deep else None
 
 
-def _thread_lines(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _thread_lines(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     infeed = filled.get_number("INFEED")
     c = "" if not infeed else "C" if infeed == 29.0 else f"C{format_short_number(infeed)}"
     words = f"{code.format_x(filled.get_number('ROOT') / 2.0)}{code.format_z(-filled.get_number('LONG'))}"
@@ -272,7 +272,7 @@ def _thread_lines(filled: FilledShape, setting: ProgramSettings, code: CodeWrite
     code.append_lines(f"G33{words}K{format_short_number(filled.get_number('PITCH'), 6)}{c}")
 
 
-def _thread_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+def _thread_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
     yield from THREAD_SHAPE.find_field_conflicts(filled, setting)
     deep = calculate_first_depth(filled)
     if abs(deep - filled.get_number("FIRST")) > 1e-4:
@@ -295,7 +295,7 @@ def _passes(values: FieldValues, settings: ProgramSettings) -> FieldValue | None
     return _own("PASSES").propose_value(values, settings)
 
 
-def _thread_says(filled: FilledShape, setting: ProgramSettings) -> tuple[str, ...]:
+def _thread_says(filled: ShapeInstance, setting: ProgramSettings) -> tuple[str, ...]:
     deep, first, count = (
         calculate_thread_depth(filled),
         calculate_first_depth(filled),

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 from core.extras.shapes import cutting_data
 from core.extras.shapes.cutting_data import Operation
-from core.extras.shapes.editor_shape import FilledShape
+from core.extras.shapes.editor_shape import ShapeInstance
 from core.extras.shapes.shape_fields import (
     FieldError,
     FieldKind,
@@ -29,7 +29,7 @@ def make_tool_field(*kinds: ToolKind) -> ShapeField:
     The proposal is the first unused tool of these kinds, or the next free number if there is none.
     """
 
-    def proposed(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
+    def propose_tool_number(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
         inside = values.get("SIDE") == "BORE" or kinds == (ToolKind.BORING,)
         sheets = sorted(setting.shop.tools.items())
         fits = [n for n, shape in sheets if shape.kind in kinds and shape.internal is inside]
@@ -37,12 +37,14 @@ def make_tool_field(*kinds: ToolKind) -> ShapeField:
             n for n in fits if setting.shop.tools[n].is_rear_tool is (values.get("SIDE") == "REAR")
         ] or fits
         fresh = [n for n in fits if n not in setting.used]
-        return float((fresh or fits)[0] if fits else find_next_tool(setting))
+        return float((fresh or fits)[0] if fits else find_next_tool_number(setting))
 
-    return ShapeField("T", "TOOL", FieldKind.TOOL, proposed, maximum=_MOST_TOOL, tool_kinds=tuple(kinds))
+    return ShapeField(
+        "T", "TOOL", FieldKind.TOOL, propose_tool_number, maximum=_MOST_TOOL, tool_kinds=tuple(kinds)
+    )
 
 
-def find_next_tool(settings: ProgramSettings) -> int:
+def find_next_tool_number(settings: ProgramSettings) -> int:
     """Return the first tool number above all used numbers that is not in the tool data."""
     first = max(settings.used, default=0) + 1
     free = (n for n in range(first, _MOST_TOOL + 1) if n not in settings.shop.tools)
@@ -62,10 +64,10 @@ def make_diameter_reader(word: str) -> Callable[[FieldValues], float]:
 def make_rpm_field(operation: Operation, read_diameter: Callable[[FieldValues], float]) -> ShapeField:
     """Return a spindle speed field, with a proposal that depends on material, diameter and spindle."""
 
-    def proposed(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
+    def propose_spindle_rpm(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
         return cutting_data.rpm(operation, read_diameter(values) or setting.bar or 0.5, setting)
 
-    return ShapeField("RPM", "SPINDLE SPEED, RPM", FieldKind.RPM, proposed, maximum=MAX_RPM)
+    return ShapeField("RPM", "SPINDLE SPEED, RPM", FieldKind.RPM, propose_spindle_rpm, maximum=MAX_RPM)
 
 
 def make_feed_field(
@@ -73,12 +75,12 @@ def make_feed_field(
 ) -> ShapeField:
     """Return a field for the feed per revolution, with a proposal that depends on material and tool."""
 
-    def proposed(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
+    def propose_feed_per_rev(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
         return cutting_data.propose_feed(operation, setting, number(values, "T"), number(values, "DIA"))
 
     only = more.get("only", lambda _values: True)
     assert callable(only)
-    return ShapeField(word, label, FieldKind.FEED, proposed, applies_to=only)
+    return ShapeField(word, label, FieldKind.FEED, propose_feed_per_rev, applies_to=only)
 
 
 def make_surface_speed_field() -> ShapeField:
@@ -86,7 +88,7 @@ def make_surface_speed_field() -> ShapeField:
     return ShapeField("SURF", "SURFACE SPEED", FieldKind.SURFACE_SPEED, 0.0, allows_zero=True)
 
 
-def check_rpm(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[FieldError]:
+def check_rpm(filled_shape: ShapeInstance, settings: ProgramSettings) -> Iterator[FieldError]:
     """Yield an error if the rpm exceeds the limit of the spindle."""
     turns = filled_shape.get_number("RPM")
     if turns > settings.shop.max_rpm:
@@ -103,7 +105,7 @@ def check_rpm(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[
         )
 
 
-def check_feeds(filled_shape: FilledShape, settings: ProgramSettings, *words: str) -> Iterator[FieldError]:
+def check_feeds(filled_shape: ShapeInstance, settings: ProgramSettings, *words: str) -> Iterator[FieldError]:
     """Yield errors for feeds per revolution that exceed a plausible maximum."""
     most = 0.05 * 25.4 / settings.mm
     for word in words:
@@ -116,7 +118,7 @@ def check_feeds(filled_shape: FilledShape, settings: ProgramSettings, *words: st
             yield FieldError(word, text)
 
 
-def check_flute_length(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[FieldError]:
+def check_flute_length(filled_shape: ShapeInstance, settings: ProgramSettings) -> Iterator[FieldError]:
     """Yield an error if the depth (DEEP) exceeds the flute length in the tool data."""
     shape, deep = settings.tool(filled_shape.get_number("T")), filled_shape.get_number("DEEP")
     if shape is not None and shape.length and deep > shape.length / settings.mm + 1e-9:

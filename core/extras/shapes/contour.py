@@ -50,7 +50,7 @@ def make_point_label(number: int) -> str:
     return f"#{number}"
 
 
-def resolve_points(rows: Iterable[ContourPoint]) -> list[Point]:
+def resolve_contour_points(rows: Iterable[ContourPoint]) -> list[Point]:
     """Return the points of the rows as (z, r). Missing values are copied from the previous row."""
     x = z = 0.0
     found = []
@@ -109,7 +109,7 @@ def find_contour_errors(rows: Sequence[ContourPoint]) -> Iterator[FieldError]:
     if rows[0].x is None or rows[0].z is None:
         yield FieldError(make_point_label(1), "The first point is the start of the contour: enter X and Z.")
         return
-    there = resolve_points(rows)
+    there = resolve_contour_points(rows)
     for number, (row, begin, end) in enumerate(zip(rows[1:], there, there[1:], strict=False), 2):
         yield from _row(row, number, begin, end)
     for number, row in enumerate(rows[1:], 2):
@@ -212,7 +212,7 @@ def make_outline(rows: Sequence[ContourPoint]) -> list[Point]:
 
     Corners are chamfered or rounded, and arcs are divided into chords.
     """
-    there = resolve_points(rows)
+    there = resolve_contour_points(rows)
     if not there:
         return []
     drawn = [there[0]]

@@ -26,7 +26,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from core.extras.shapes.shape_fields import ProgramSettings
-from core.part.insert_codes import Insert, InsertCodeError, decode_insert_code, make_insert
+from core.part.insert_codes import CuttingInsert, InsertCodeError, decode_insert_code, make_insert
 
 M_PER_FOOT = 0.3048  # m
 _INCHES = 12.0
@@ -169,7 +169,7 @@ _LEAVE = {False: 0.01, True: 0.25}  # by metric, finishing allowance
 _FACING = 0.75  # fraction of the depth along a profile
 
 
-def find_max_depth(settings: ProgramSettings, tool: float) -> float:
+def find_max_cutting_depth(settings: ProgramSettings, tool: float) -> float:
     """Return the largest permitted depth of cut for the insert of a tool, in the unit of the program."""
     insert = _insert(settings, tool)
     if not insert.edge_lengths:
@@ -185,7 +185,7 @@ def propose_roughing_depth(
     by_material = find_cutting_data(settings).roughing_depth_in * 25.4 / settings.mm
     depth = min(
         by_material,
-        _PROPOSED * find_max_depth(settings, tool),
+        _PROPOSED * find_max_cutting_depth(settings, tool),
         _limit_depth_by_torque(settings, tool, diameter),
     )
     return _rounded(depth * (_BAR if is_inside else 1.0), settings)
@@ -222,7 +222,7 @@ def _limit_depth_by_torque(settings: ProgramSettings, tool: float, diameter: flo
     )
 
 
-def _insert(setting: ProgramSettings, tool: float) -> Insert:
+def _insert(setting: ProgramSettings, tool: float) -> CuttingInsert:
     shape = setting.tool(tool)
     try:
         return decode_insert_code(shape.insert) if shape is not None and shape.insert else _SMALL

@@ -30,7 +30,7 @@ from core.part.tool_shape import ToolKind
 from core.sketch import Sketch
 
 
-def _no_checks(_filled: FilledShape, _setting: ProgramSettings) -> Iterator[FieldError]:
+def _no_checks(_filled: ShapeInstance, _setting: ProgramSettings) -> Iterator[FieldError]:
     return iter(())
 
 
@@ -55,55 +55,55 @@ class Shape:
     name: str
     summary: str
     fields: tuple[ShapeField, ...]
-    write_lines: Callable[[FilledShape, ProgramSettings, CodeWriter], None]
-    make_sketch: Callable[[FilledShape], Sketch]
-    find_field_conflicts: Callable[[FilledShape, ProgramSettings], Iterator[FieldError]] = field(
+    write_lines: Callable[[ShapeInstance, ProgramSettings, CodeWriter], None]
+    make_sketch: Callable[[ShapeInstance], Sketch]
+    find_field_conflicts: Callable[[ShapeInstance, ProgramSettings], Iterator[FieldError]] = field(
         default=_no_checks
     )
     has_point_table: bool = False
-    make_program_end_lines: Callable[[FilledShape], tuple[str, ...]] = field(default=lambda _filled: ())
+    make_program_end_lines: Callable[[ShapeInstance], tuple[str, ...]] = field(default=lambda _filled: ())
     has_comment: bool = True
-    find_blocking_errors: Callable[[FilledShape, ProgramSettings], Iterator[FieldError]] = field(
+    find_blocking_errors: Callable[[ShapeInstance, ProgramSettings], Iterator[FieldError]] = field(
         default=_no_checks
     )
-    make_notes: Callable[[FilledShape, ProgramSettings], tuple[str, ...]] = field(
+    make_notes: Callable[[ShapeInstance, ProgramSettings], tuple[str, ...]] = field(
         default=lambda _filled, _setting: ()
     )
     calculate_extent: Callable[[Sequence[ContourPoint]], FieldValues] = field(default=lambda _rows: {})
 
     def find_field(self, word: str) -> ShapeField | None:
         """Return the field with this word, or None if the shape has no such field."""
-        return next((each for each in self.fields if each.word == word), None)
+        return next((each for each in self.fields if each.name == word), None)
 
 
 @dataclass(frozen=True, slots=True)
-class FilledShape:
+class ShapeInstance:
     """A shape with the entered values, and with proposals for the other fields."""
 
     shape: Shape
-    values: FieldValues
+    field_values: FieldValues
     contour_points: tuple[ContourPoint, ...] = ()
 
     def get_number(self, word: str) -> float:
         """Return the value of a number field, or 0 if it is missing."""
-        value = self.values.get(word, 0.0)
+        value = self.field_values.get(word, 0.0)
         return 0.0 if isinstance(value, str) else float(value)
 
     def get_text(self, word: str) -> str:
         """Return the value of a text field, or an empty string if it is missing."""
-        value = self.values.get(word, "")
+        value = self.field_values.get(word, "")
         return value if isinstance(value, str) else ""
 
     @property
-    def fields(self) -> tuple[ShapeField, ...]:
+    def applicable_fields(self) -> tuple[ShapeField, ...]:
         """Return the fields of the shape that apply to the current values."""
-        return tuple(each for each in self.shape.fields if each.applies_to(self.values))
+        return tuple(each for each in self.shape.fields if each.applies_to(self.field_values))
 
     def find_errors(self, settings: ProgramSettings) -> list[FieldError]:
         """Return the errors of single fields or, if there are none, the conflicts between fields."""
         if first := list(self.shape.find_blocking_errors(self, settings)):
             return first
-        said = (each.find_error(self.values.get(each.word)) for each in self.fields)
+        said = (each.find_error(self.field_values.get(each.name)) for each in self.applicable_fields)
         found = [refused for refused in said if refused is not None]
         return found or [*self._tool(settings), *self.shape.find_field_conflicts(self, settings)]
 
@@ -137,24 +137,24 @@ class FilledShape:
         The comment contains the name of the shape, and the value and word of each field with a value.
         """
         said = [self.shape.name]
-        for each in self.fields:
-            value = self.values.get(each.word)
+        for each in self.applicable_fields:
+            value = self.field_values.get(each.name)
             if (
-                each.word == TOOL_FIELD_WORD
+                each.name == TOOL_FIELD_WORD
                 or value is None
                 or (value == 0.0 and each.allows_zero and not each.default)
             ):
                 continue
-            said += [_said(each, value, settings), each.word]
+            said += [_said(each, value, settings), each.name]
         return " ".join(said)
 
 
-def fill_shape(
+def make_shape_instance(
     shape: Shape,
     entered_values: FieldValues,
     settings: ProgramSettings,
     contour_points: tuple[ContourPoint, ...] = (),
-) -> FilledShape:
+) -> ShapeInstance:
     """Return the shape with the entered values, and with proposals for all other fields.
 
     The proposals are made in the order of the fields.
@@ -162,13 +162,13 @@ def fill_shape(
     values: dict[str, FieldValue] = {}
     drawn = shape.calculate_extent(contour_points)
     for each in shape.fields:
-        value = entered_values.get(each.word)
+        value = entered_values.get(each.name)
         if value is None and each.applies_to({**entered_values, **values}):
             value = each.propose_value({**drawn, **entered_values, **values}, settings)
             value = 0.0 if value is None and each.allows_zero else value
         if value is not None:
-            values[each.word] = value
-    return FilledShape(shape, values, contour_points)
+            values[each.name] = value
+    return ShapeInstance(shape, values, contour_points)
 
 
 def read_comment(shape: Shape, words: list[str]) -> dict[str, FieldValue] | None:
@@ -186,8 +186,8 @@ def read_comment(shape: Shape, words: list[str]) -> dict[str, FieldValue] | None
             return None
         found[word] = value
     for each in shape.fields:
-        if each.word not in found and each.allows_zero:
-            found[each.word] = 0.0
+        if each.name not in found and each.allows_zero:
+            found[each.name] = 0.0
     return found
 
 

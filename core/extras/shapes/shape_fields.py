@@ -49,8 +49,8 @@ TEXT_KINDS = frozenset({FieldKind.CHOICE, FieldKind.NAME})
 class FieldError(NamedTuple):
     """An error in a field of a shape: the field's name, and a sentence with the cause and a remedy."""
 
-    field_word: str
-    text: str
+    field_name: str
+    message: str
 
 
 def _always(_values: FieldValues) -> bool:
@@ -69,7 +69,7 @@ class ShapeField:
       value as a tool size without knowing the program's unit.
     """
 
-    word: str
+    name: str
     label: str
     kind: FieldKind = FieldKind.LENGTH
     default: ValueProposal | FieldValue | None = None
@@ -87,7 +87,7 @@ class ShapeField:
     def find_error(self, value: FieldValue | None) -> FieldError | None:
         """Return the error in a value entered in this field, or None if the value is valid."""
         said = self._wrong_word(value) if isinstance(value, str | None) else self._wrong_number(value)
-        return FieldError(self.word, said) if said else None
+        return FieldError(self.name, said) if said else None
 
     def _wrong_word(self, value: str | None) -> str:
         if value is None:
@@ -168,11 +168,11 @@ class ShopData:
     max_rpm: float = 3500.0
     spindle_power_w: float = 1500.0  # W at the highest speed; the default is a small drive
     max_acceleration_mm_s2: float = 0.0  # mm/s², or 0 if it is unknown
-    max_c_rpm: float = 200.0
+    max_c_axis_rpm: float = 200.0
     live_tool_codes: tuple[int, int] = (15, 16)  # =
     has_live_output: bool = True  # SINUMERIK: an output drives the live tool as spindle 2
-    third_axis: str = "C"  # name of the C axis in SINUMERIK programs; empty without a C axis
-    has_spindle_as_c: bool = True  # the C axis is the spindle, so rigid tapping is possible
+    third_axis_name: str = "C"  # name of the C axis in SINUMERIK programs; empty without a C axis
+    is_spindle_c_axis: bool = True  # the C axis is the spindle, so rigid tapping is possible
     chuck_codes: tuple[int, int] | None = None  # SINUMERIK: M codes that open and close the chuck
     travel_mm: tuple[float, float] = (0.0, 0.0)  # mm, travel of X (as a radius) and of Z, or 0 if unknown
     tools: Mapping[int, ToolShape] = field(default_factory=dict)

@@ -11,7 +11,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from core.extras.shapes.contour import ContourPoint, read_contour
-from core.extras.shapes.editor_shape import TOOL_FIELD_WORD, FilledShape, Shape, fill_shape, read_comment
+from core.extras.shapes.editor_shape import (
+    TOOL_FIELD_WORD,
+    Shape,
+    ShapeInstance,
+    make_shape_instance,
+    read_comment,
+)
 from core.extras.shapes.shape_fields import (
     LENGTH_KINDS,
     FieldKind,
@@ -50,19 +56,19 @@ _MOST_CHANGES = 4  # largest number of hand-changed values that are adopted
 
 
 @dataclass(frozen=True, slots=True)
-class ShapePiece:
+class ProgramShape:
     """A shape in the text of a program.
 
     ``first_line`` is the number of its first line, counted from 0, and ``line_count`` is the number of its
-    lines. ``adopted_fields`` are the fields whose values were adopted from the lines. ``edited_line`` is
+    lines. ``adopted_field_names`` are the fields whose values were adopted from the lines. ``edited_line`` is
     the line, counted from 0, that differs from the lines that the fields produce, or -1.
     """
 
     first_line: int
     line_count: int
-    filled_shape: FilledShape
+    shape_instance: ShapeInstance
     settings: ProgramSettings
-    adopted_fields: tuple[str, ...] = ()
+    adopted_field_names: tuple[str, ...] = ()
     edited_line: int = -1
 
     @property
@@ -71,7 +77,7 @@ class ShapePiece:
         return self.first_line + self.line_count
 
 
-def strip_line(line: str, dialect: Dialect = Dialect.OMNITURN) -> str:
+def normalize_line(line: str, dialect: Dialect = Dialect.OMNITURN) -> str:
     """Return a line in capitals without comments and spaces.
 
     A plane selection in comment syntax is retained. In SINUMERIK, the block number is removed.
@@ -98,14 +104,14 @@ def has_units(lines: Sequence[str], dialect: Dialect) -> bool:
     """Return whether a program already specifies its units, in its header or in other lines."""
     if dialect is Dialect.OMNITURN:
         return any(line.upper().startswith(("G90", "G91")) for line in lines[:1])
-    codes = [code for line in lines if (code := strip_line(line, dialect))]
+    codes = [code for line in lines if (code := normalize_line(line, dialect))]
     return any(not code.startswith("%") and not _END[dialect].match(code) for code in codes)
 
 
 # --- Settings in force at a line
 
 
-def find_settings(
+def find_active_settings(
     lines: Sequence[str], line_number: int, shop: ShopData, initial_settings: ProgramSettings | None = None
 ) -> ProgramSettings:
     """Return the settings that are active before line ``line_number``, counted from 0.
@@ -115,13 +121,13 @@ def find_settings(
     now = replace(initial_settings or ProgramSettings(), shop=shop)
     for line in lines[:line_number]:
         now = _after(line, now)
-    used = {int(n) for line in lines for n in _SUB[now.dialect].findall(strip_line(line, now.dialect))}
+    used = {int(n) for line in lines for n in _SUB[now.dialect].findall(normalize_line(line, now.dialect))}
     free = next(number for number in range(1, len(used) + 2) if number not in used)
     return replace(now, free_subroutine_number=free)
 
 
 def _after(line: str, now: ProgramSettings) -> ProgramSettings:
-    code = strip_line(line, now.dialect)
+    code = normalize_line(line, now.dialect)
     if code.startswith("("):
         return now
     if now.dialect is Dialect.SINUMERIK:
@@ -166,7 +172,7 @@ def _parse_comment(line: str, dialect: Dialect) -> tuple[Shape, dict[str, FieldV
     values = read_comment(shape, words)
     if not words or values is None:
         return None
-    tool = _TOOL.search(strip_line(line, dialect))
+    tool = _TOOL.search(normalize_line(line, dialect))
     if shape.find_field(TOOL_FIELD_WORD) is not None:
         if tool is None:
             return None
@@ -191,7 +197,7 @@ def find_damaged_comment(
         shape, words = known
         if _parse_comment(lines[line], dialect) is not None:
             return None
-        if sum(each.word in words for each in shape.fields) > 1:
+        if sum(each.name in words for each in shape.fields) > 1:
             return line, shape
     return None
 
@@ -199,11 +205,11 @@ def find_damaged_comment(
 # --- Shapes of a text
 
 
-def find_pieces(
+def find_program_shapes(
     lines: Sequence[str], shop: ShopData, initial_settings: ProgramSettings | None = None
-) -> list[ShapePiece]:
+) -> list[ProgramShape]:
     """Return all shapes of a program in order."""
-    found: list[ShapePiece] = []
+    found: list[ProgramShape] = []
     now, at = replace(initial_settings or ProgramSettings(), shop=shop), 0
     while at < len(lines):
         head = _parse_comment(lines[at], now.dialect)
@@ -220,7 +226,7 @@ def find_pieces(
 
 def _piece(
     lines: Sequence[str], at: int, head: tuple[Shape, dict[str, FieldValue]], setting: ProgramSettings
-) -> ShapePiece:
+) -> ProgramShape:
     shape, values = head
     if shape.name == "HEAD":
         setting = _with_head(values, setting)
@@ -230,10 +236,10 @@ def _piece(
         reach < len(lines) and not end.match(lines[reach]) and _parse_comment(lines[reach], dialect) is None
     ):
         reach += 1
-    there = [strip_line(line, dialect) for line in lines[at:reach]]
-    best: ShapePiece | None = None
+    there = [normalize_line(line, dialect) for line in lines[at:reach]]
+    best: ProgramShape | None = None
     for rows in _contours(shape, there, setting):
-        one = fill_shape(shape, values, setting, rows)
+        one = make_shape_instance(shape, values, setting, rows)
         found = _compare_with_text(one, there, at, setting)
         if best is None or found.edited_line < 0 or found.edited_line > best.edited_line >= 0:
             best = found
@@ -244,35 +250,35 @@ def _piece(
 
 
 def _compare_with_text(
-    filled_shape: FilledShape, there: list[str], at: int, settings: ProgramSettings
-) -> ShapePiece:
+    filled_shape: ShapeInstance, there: list[str], at: int, settings: ProgramSettings
+) -> ProgramShape:
     """Return a piece with these fields, after comparing the lines they produce with the text."""
     wanted = make_code_lines(filled_shape, settings)
     if wanted and there[: len(wanted)] == wanted:
-        return ShapePiece(at, len(wanted), filled_shape, settings)
+        return ProgramShape(at, len(wanted), filled_shape, settings)
     taken = _adopt_fields(filled_shape, there[: len(wanted)], settings, _MOST_CHANGES) if wanted else None
     if taken is not None:
-        words = tuple(w for w, v in taken.values.items() if filled_shape.values.get(w) != v)
-        return ShapePiece(at, len(wanted), taken, settings, words)
+        words = tuple(w for w, v in taken.field_values.items() if filled_shape.field_values.get(w) != v)
+        return ProgramShape(at, len(wanted), taken, settings, words)
     apart = next(
         (n for n, (a, b) in enumerate(zip(wanted, there, strict=False)) if a != b),
         min(len(wanted), len(there)) - 1,
     )
-    return ShapePiece(at, len(there), filled_shape, settings, edited_line=at + max(apart, 0))
+    return ProgramShape(at, len(there), filled_shape, settings, edited_line=at + max(apart, 0))
 
 
-def make_code_lines(shape: FilledShape, settings: ProgramSettings) -> list[str]:
+def make_code_lines(shape: ShapeInstance, settings: ProgramSettings) -> list[str]:
     """Return the code lines of a shape without comments, or [] if its fields are incomplete or invalid."""
     if shape.find_errors(settings) and _incomplete(shape):
         return []
     try:
-        return [strip_line(line, settings.dialect) for line in shape.make_lines(settings)]
+        return [normalize_line(line, settings.dialect) for line in shape.make_lines(settings)]
     except (ArithmeticError, ValueError, IndexError):
         return []  # a comment may contain any values
 
 
-def _incomplete(one: FilledShape) -> bool:
-    return any(one.values.get(each.word) is None for each in one.fields)
+def _incomplete(one: ShapeInstance) -> bool:
+    return any(one.field_values.get(each.name) is None for each in one.applicable_fields)
 
 
 def _contours(
@@ -339,8 +345,8 @@ def _bare_contours(there: list[str], settings: ProgramSettings) -> Iterator[tupl
 
 
 def _adopt_fields(
-    filled_shape: FilledShape, there: list[str], settings: ProgramSettings, left: int
-) -> FilledShape | None:
+    filled_shape: ShapeInstance, there: list[str], settings: ProgramSettings, left: int
+) -> ShapeInstance | None:
     """Return the shape with field values that produce the lines in the text, or None if impossible."""
     wanted = make_code_lines(filled_shape, settings)
     if wanted == there:
@@ -350,7 +356,7 @@ def _adopt_fields(
         return None
     before, after = change
     for word, value in _explaining(filled_shape, before, after):
-        other = replace(filled_shape, values={**filled_shape.values, word: value})
+        other = replace(filled_shape, field_values={**filled_shape.field_values, word: value})
         if not make_code_lines(other, settings) or _agreeing(
             make_code_lines(other, settings), there
         ) <= _agreeing(wanted, there):
@@ -389,12 +395,12 @@ def _first_change(wanted: list[str], there: list[str]) -> tuple[float, float] | 
     return None
 
 
-def _explaining(filled_shape: FilledShape, before: float, after: float) -> Iterator[tuple[str, float]]:
+def _explaining(filled_shape: ShapeInstance, before: float, after: float) -> Iterator[tuple[str, float]]:
     """Yield the fields whose values explain an edited number, each with its new value.
 
     The number may be the field's value itself, negated, doubled or halved.
     """
-    for word, value in filled_shape.values.items():
+    for word, value in filled_shape.field_values.items():
         if isinstance(value, str):
             continue
         for sign in (1.0, -1.0, 2.0, 0.5, -2.0, -0.5):
@@ -408,9 +414,9 @@ def _explaining(filled_shape: FilledShape, before: float, after: float) -> Itera
 def insert_shape(
     lines: Sequence[str],
     line_number: int,
-    shape: FilledShape,
+    shape: ShapeInstance,
     settings: ProgramSettings,
-    replaced_piece: ShapePiece | None = None,
+    replaced_piece: ProgramShape | None = None,
 ) -> tuple[list[str], int]:
     """Return the text with a shape inserted before line ``line_number``, and the number of the next line.
 
@@ -429,30 +435,30 @@ def insert_shape(
         text.append("M30")
     next_line_number = line_number + len(new)
     tail = shape.shape.make_program_end_lines(shape)
-    if tail and replaced_piece is None and tail[0] not in (strip_line(line) for line in text):
+    if tail and replaced_piece is None and tail[0] not in (normalize_line(line) for line in text):
         text += tail
         next_line_number = len(text) - 1
     return text, next_line_number
 
 
 def convert_unit(
-    shape: FilledShape, old_settings: ProgramSettings, new_settings: ProgramSettings
-) -> FilledShape:
+    shape: ShapeInstance, old_settings: ProgramSettings, new_settings: ProgramSettings
+) -> ShapeInstance:
     """Return a shape with lengths and feeds converted to the program's new unit."""
     if old_settings.metric == new_settings.metric:
         return shape
     scale = 25.4 if new_settings.metric else 1.0 / 25.4
-    values = dict(shape.values)
+    values = dict(shape.field_values)
     for each in shape.shape.fields:
-        value = values.get(each.word)
+        value = values.get(each.name)
         if isinstance(value, float) and each.kind in _SCALED:
             places = 4 if new_settings.metric and each.kind in LENGTH_KINDS else 6
-            values[each.word] = round(
+            values[each.name] = round(
                 value * (_FEET[new_settings.metric] if each.kind is FieldKind.SURFACE_SPEED else scale),
                 places,
             )
     rows = tuple(_scaled(row, scale) for row in shape.contour_points)
-    return replace(shape, values=values, contour_points=rows)
+    return replace(shape, field_values=values, contour_points=rows)
 
 
 def _scaled(row: ContourPoint, scale: float) -> ContourPoint:
@@ -461,8 +467,8 @@ def _scaled(row: ContourPoint, scale: float) -> ContourPoint:
     return ContourPoint(x, z, chamfer, radius, arc)
 
 
-def rewrite_pieces(
-    lines: Sequence[str], shop: ShopData, pieces: Sequence[ShapePiece]
+def rewrite_program_shapes(
+    lines: Sequence[str], shop: ShopData, pieces: Sequence[ProgramShape]
 ) -> tuple[list[str], int]:
     """Rewrite the pieces after the program head was changed.
 
@@ -472,14 +478,14 @@ def rewrite_pieces(
     shift = 0
     new = ProgramSettings(dialect=pieces[0].settings.dialect) if pieces else None
     for piece in pieces:
-        if piece.filled_shape.shape.name == "HEAD":
+        if piece.shape_instance.shape.name == "HEAD":
             continue
         if piece.edited_line >= 0:
             stay += 1
             continue
         first = piece.first_line + shift
-        setting = find_settings(text, first, shop, new)
-        again = convert_unit(piece.filled_shape, piece.settings, setting).make_lines(setting)
+        setting = find_active_settings(text, first, shop, new)
+        again = convert_unit(piece.shape_instance, piece.settings, setting).make_lines(setting)
         text[first : first + piece.line_count] = again
         shift += len(again) - piece.line_count
     return text, stay

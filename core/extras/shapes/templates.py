@@ -6,7 +6,12 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from core.extras.shapes.calculators import SPEED_CALCULATOR, THREAD_CALCULATOR
-from core.extras.shapes.common_fields import MAX_RPM, find_next_tool, make_feed_field, propose_bar_diameter
+from core.extras.shapes.common_fields import (
+    MAX_RPM,
+    find_next_tool_number,
+    make_feed_field,
+    propose_bar_diameter,
+)
 from core.extras.shapes.contour import ContourPoint
 from core.extras.shapes.cutting_data import (
     CUTTING_DATA,
@@ -14,8 +19,8 @@ from core.extras.shapes.cutting_data import (
     propose_finish_allowance,
     propose_roughing_depth,
 )
-from core.extras.shapes.editor_shape import FilledShape, Shape
-from core.extras.shapes.forms.bar_work import SINUMERIK_BAR_LOOP_SHAPE, check_chuck
+from core.extras.shapes.editor_shape import Shape, ShapeInstance
+from core.extras.shapes.forms.bar_work import SINUMERIK_BAR_LOOP_SHAPE, check_chuck_codes
 from core.extras.shapes.forms.turning import LABEL_FIELD
 from core.extras.shapes.lines.code_lines import (
     BarFeedLoop,
@@ -53,25 +58,25 @@ def _metric(values: FieldValues) -> bool:
 
 
 def _length(inch: float, metric: float) -> ValueProposal:
-    def proposed(values: FieldValues, _setting: ProgramSettings) -> FieldValue | None:
+    def propose_length(values: FieldValues, _setting: ProgramSettings) -> FieldValue | None:
         return metric if _metric(values) else inch
 
-    return proposed
+    return propose_length
 
 
 def _unit(_values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
     return MM if setting.metric else INCH
 
 
-def _cut(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter) -> None:
-    modes = "G71" if _metric(filled.values) else ""
+def _cut(filled: ShapeInstance, _setting: ProgramSettings, code: CodeWriter) -> None:
+    modes = "G71" if _metric(filled.field_values) else ""
     modes += "G72" if filled.get_text("WORDS") == DIAMETER else "G73"
     code.append_lines(f"G90G94F{format_short_number(filled.get_number('RAPID'))}{modes}")
     if filled.get_text("COOLANT") == _YES:
         code.append_lines("M08")
 
 
-def _sketch(_filled: FilledShape) -> Sketch:
+def _sketch(_filled: ShapeInstance) -> Sketch:
     body = make_part_outline((0, 0), (0, 10), (-24, 10), (-24, 0))
     return make_sketch(
         body,
@@ -101,8 +106,8 @@ HEAD_SHAPE = Shape(
 )
 
 
-def _sinumerik(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter) -> None:
-    unit = "G710" if _metric(filled.values) else "G700"
+def _sinumerik(filled: ShapeInstance, _setting: ProgramSettings, code: CodeWriter) -> None:
+    unit = "G710" if _metric(filled.field_values) else "G700"
     code.append_lines(
         f"G54 G18 G90 G95 {unit} {'DIAMON' if filled.get_text('WORDS') == DIAMETER else 'DIAMOF'}"
     )
@@ -113,7 +118,7 @@ def _sinumerik(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter)
 SINUMERIK_HEAD_SHAPE = replace(
     HEAD_SHAPE,
     write_lines=_sinumerik,
-    fields=tuple(each for each in HEAD_SHAPE.fields if each.word != "RAPID"),
+    fields=tuple(each for each in HEAD_SHAPE.fields if each.name != "RAPID"),
 )
 """Program head for SINUMERIK, without a rapid speed.
 
@@ -122,7 +127,7 @@ It sets the zero offset, the plane and the unit, including the unit of F.
 
 
 V60_DEPTH_FACTOR = 0.6134  # depth of a 60-degree thread in pitches, ISO 68-1
-_TOOL = ShapeField("T", "TOOL", FieldKind.TOOL, lambda _v, s: float(find_next_tool(s)), maximum=32)
+_TOOL = ShapeField("T", "TOOL", FieldKind.TOOL, lambda _v, s: float(find_next_tool_number(s)), maximum=32)
 _SPEED = ShapeField("RPM", "SPINDLE SPEED, RPM", FieldKind.RPM, 1000.0, maximum=MAX_RPM)
 _ACROSS = ShapeField(
     "FROM",
@@ -140,11 +145,11 @@ def _leave(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
     return propose_finish_allowance(setting, number(values, "ROUGH"))
 
 
-def _bar(_filled: FilledShape) -> Sketch:
+def _bar(_filled: ShapeInstance) -> Sketch:
     return make_sketch(make_part_outline((0, 0), (0, 6), (-22, 6), (-22, 0)))
 
 
-def _change(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _change(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     if setting.used:  # before the first tool, Z has another zero
         code.write_rapid(z=setting.clear)
     code.write_tool_start(
@@ -152,7 +157,7 @@ def _change(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> 
     )
 
 
-def _rough(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _rough(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     r, far = filled.get_number("FROM") / 2.0, 25.0 if setting.metric else 1.0
     code.write_rapid(r, setting.near)
     code.append_lines(f"G95F{format_short_number(filled.get_number('FEED'), 6)}")
@@ -164,12 +169,12 @@ def _rough(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> N
     )
 
 
-def _rough_sketch(_filled: FilledShape) -> Sketch:
+def _rough_sketch(_filled: ShapeInstance) -> Sketch:
     steps = [make_cut_outline((0, r), (-8, r)) for r in (5.5, 5.0, 4.5)]
     return make_sketch(make_part_outline((0, 0), (0, 4), (-8, 4), (-8, 6), (-22, 6), (-22, 0)), *steps)
 
 
-def _thread(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _thread(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     r, pitch = filled.get_number("FROM") / 2.0, filled.get_number("PITCH")
     deep = V60_DEPTH_FACTOR * pitch
     first = round_depth_up(deep / 8.0**0.5, is_metric=setting.metric)
@@ -184,12 +189,12 @@ def _thread(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> 
     code.write_retract()
 
 
-def _thread_sketch(_filled: FilledShape) -> Sketch:
+def _thread_sketch(_filled: ShapeInstance) -> Sketch:
     teeth = [(-k, 6.0 if k % 2 else 5.0) for k in range(12)]
     return make_sketch(make_part_outline((0, 0), *teeth, (-22, 6), (-22, 0)), make_cut_outline(*teeth))
 
 
-def _loop(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _loop(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     code.append_lines(f"LS{filled.get_number('COUNT'):.0f}", f"T{filled.get_number('T'):.0f}")
     code.write_rapid(0.0, setting.clear)
     code.write_rapid(z=-filled.get_number("LONG"))
@@ -199,11 +204,11 @@ def _loop(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> No
     code.append_lines(f"P{filled.get_number('SUB'):.0f}", "LF")
 
 
-def _loop_end(filled: FilledShape) -> tuple[str, ...]:
+def _loop_end(filled: ShapeInstance) -> tuple[str, ...]:
     return f"}}{filled.get_number('SUB'):.0f}", "M99"
 
 
-def _loop_sketch(_filled: FilledShape) -> Sketch:
+def _loop_sketch(_filled: ShapeInstance) -> Sketch:
     return make_sketch(
         make_part_outline((0, 0), (0, 6), (-30, 6), (-30, 0)),
         make_tool_outline((1, -3), (1, 3), (4, 3), (4, -3)),
@@ -280,14 +285,14 @@ BAR_FEED_TEMPLATE = Shape(
 _BAR_RATE = {False: 20.0, True: 500.0}  # by metric, feed per minute
 
 
-def _speed(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter) -> None:
+def _speed(filled: ShapeInstance, _setting: ProgramSettings, code: CodeWriter) -> None:
     code.append_lines(
         f"G95 S{format_sinumerik_number(filled.get_number('RPM'), 0)} M3 "
         f"F{format_sinumerik_number(filled.get_number('FEED'), 6)}"
     )
 
 
-def _make_speed_remarks(filled_shape: FilledShape, settings: ProgramSettings) -> tuple[str, ...]:
+def _make_speed_remarks(filled_shape: ShapeInstance, settings: ProgramSettings) -> tuple[str, ...]:
     """Return the notes of the speed calculator, with the feed per minute in the syntax of SINUMERIK."""
     _, *others = SPEED_CALCULATOR.make_notes(filled_shape, settings)
     return Message(
@@ -296,19 +301,22 @@ def _make_speed_remarks(filled_shape: FilledShape, settings: ProgramSettings) ->
     ), *others
 
 
-def _run_up(filled_shape: FilledShape, settings: ProgramSettings) -> FilledShape:
+def _run_up(filled_shape: ShapeInstance, settings: ProgramSettings) -> ShapeInstance:
     """Return the shape with a run-up of three pitches, in which the axis reaches its feed rate."""
     return replace(
         filled_shape,
-        values={**filled_shape.values, "RUNUP": 3.0 * filled_shape.get_number("PITCH") + settings.near},
+        field_values={
+            **filled_shape.field_values,
+            "RUNUP": 3.0 * filled_shape.get_number("PITCH") + settings.near,
+        },
     )
 
 
-def _passes(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _passes(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     write_cycle97(_run_up(filled, setting), code)
 
 
-def _make_pass_remarks(filled_shape: FilledShape, settings: ProgramSettings) -> tuple[str, ...]:
+def _make_pass_remarks(filled_shape: ShapeInstance, settings: ProgramSettings) -> tuple[str, ...]:
     """Return the notes of the thread calculator, without a note about the start position.
 
     CYCLE97 moves to its first pass automatically.
@@ -317,7 +325,7 @@ def _make_pass_remarks(filled_shape: FilledShape, settings: ProgramSettings) -> 
     return depth, passes
 
 
-def _sinumerik_rough(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _sinumerik_rough(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     across, long = filled.get_number("FROM"), 12.5 if setting.metric else 0.5
     code.write_rapid(across / 2.0, setting.near)
     rows = (ContourPoint(across / 2.0, 0.0), ContourPoint(z=-long), ContourPoint(across))
@@ -328,11 +336,11 @@ def _sinumerik_rough(filled: FilledShape, setting: ProgramSettings, code: CodeWr
     code.write_retract()
 
 
-def _sinumerik_thread(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _sinumerik_thread(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     crest = filled.get_number("FROM")
     root = crest - 2.0 * V60_DEPTH_FACTOR * filled.get_number("PITCH")
-    values = {**filled.values, "CREST": crest, "ROOT": root, "PASSES": 8.0, "INFEED": 29.0}
-    whole = _run_up(replace(filled, values=values), setting)
+    values = {**filled.field_values, "CREST": crest, "ROOT": root, "PASSES": 8.0, "INFEED": 29.0}
+    whole = _run_up(replace(filled, field_values=values), setting)
     code.write_tool_start(
         filled.get_number("T"), filled.get_number("RPM"), crest / 2.0, whole.get_number("RUNUP")
     )
@@ -340,14 +348,14 @@ def _sinumerik_thread(filled: FilledShape, setting: ProgramSettings, code: CodeW
     code.write_retract()
 
 
-def _bar_feed(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _bar_feed(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     many, long, stop, part = (filled.get_number(word) for word in ("COUNT", "LONG", "T", "SUB"))
     rate = _BAR_RATE[setting.metric]
     write_bar_feed_loop(code, BarFeedLoop(int(many), long, True, stop, 0.0, rate, int(part)))
 
 
-def _bar_feed_checks(_filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
-    return check_chuck(setting, "COUNT")
+def _bar_feed_checks(_filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
+    return check_chuck_codes(setting, "COUNT")
 
 
 SINUMERIK_SPEED_CALCULATOR = replace(SPEED_CALCULATOR, write_lines=_speed, make_notes=_make_speed_remarks)

@@ -30,7 +30,7 @@ from core.extras.sharing.version_record import (
     MAX_STATE_BYTES,
     PublishedMachineState,
     RecordError,
-    decode_state,
+    decode_machine_state,
     decode_version,
     encode_version,
     verify_text,
@@ -221,7 +221,7 @@ class SharedDatabase:
         found = []
         for home, state in connection.execute(_DESKS, (MAX_STATE_BYTES,)):
             try:
-                found.append(decode_state(home, bytes(state)))
+                found.append(decode_machine_state(home, bytes(state)))
             except RecordError:
                 strays.append(home)
         return tuple(found)

@@ -19,7 +19,7 @@ from core.extras.sharing.shared_location import (
     PublishedVersion,
     SharingErrorCause,
     make_folder_label,
-    make_system_error,
+    make_sharing_error,
 )
 from core.extras.sharing.shared_versions import SharedVersion
 from core.extras.sharing.version_record import (
@@ -29,7 +29,7 @@ from core.extras.sharing.version_record import (
     MAX_STATE_BYTES,
     PublishedMachineState,
     RecordError,
-    decode_state,
+    decode_machine_state,
     decode_version,
     encode_version,
     is_version_id,
@@ -161,7 +161,7 @@ class SharedFolder:
         for path in _files(self._folder / DESKS):
             home = path.name.removesuffix(_STATE)
             try:
-                found.append(decode_state(home, read_input_bytes(path, MAX_STATE_BYTES)))
+                found.append(decode_machine_state(home, read_input_bytes(path, MAX_STATE_BYTES)))
             except (RecordError, OSError):
                 strays.append(path.name)
         return tuple(found), strays
@@ -196,7 +196,7 @@ class SharedFolder:
         try:
             yield
         except OSError as error:
-            raise make_system_error(self.name, error) from error
+            raise make_sharing_error(self.name, error) from error
 
 
 def _files(folder: Path) -> list[Path]:

@@ -29,13 +29,13 @@ class Found:
     """Contents of a shared location.
 
     ``stored_ids`` are the ids of all versions, and ``unknown_versions`` are the versions that the caller
-    did not know. ``foreign_items`` are the names of other items, such as damaged or incomplete files.
+    did not know. ``foreign_item_names`` are the names of other items, such as damaged or incomplete files.
     """
 
     stored_ids: frozenset[str]
     unknown_versions: tuple[SharedVersion, ...] = ()
     machine_states: tuple[PublishedMachineState, ...] = ()
-    foreign_items: tuple[str, ...] = ()
+    foreign_item_names: tuple[str, ...] = ()
 
 
 class SharedLocation(Protocol):
@@ -151,7 +151,7 @@ class SharingError(CodedError):
     cause: SharingErrorCause
 
 
-def make_system_error(location: str, error: OSError) -> SharingError:
+def make_sharing_error(location: str, error: OSError) -> SharingError:
     """Return the SharingError for an error of the operating system."""
     why = error.strerror or str(error)
     if error.errno in _FULL:

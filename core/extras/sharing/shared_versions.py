@@ -65,7 +65,7 @@ class ProgramVersions:
         return tuple(version for version in self.newest_versions if version.id != self.local_version_id)
 
     @property
-    def state(self) -> str:
+    def sharing_state(self) -> str:
         """Return how the program on this machine relates to other machines.
 
         The value is ``same`` if this machine has the newest version, ``newer`` if another machine has a
@@ -156,14 +156,14 @@ def add_versions(connection: sqlite3.Connection, versions: Iterable[SharedVersio
     )
 
 
-def mark_published(connection: sqlite3.Connection, versions: Iterable[SharedVersion]) -> None:
+def mark_versions_published(connection: sqlite3.Connection, versions: Iterable[SharedVersion]) -> None:
     """Mark versions as stored in the shared location."""
     connection.executemany(
         "UPDATE shared_versions SET published = 1 WHERE id = ?", [(each.id,) for each in versions]
     )
 
 
-def delete_unpublished(connection: sqlite3.Connection, version: SharedVersion) -> None:
+def delete_unpublished_version(connection: sqlite3.Connection, version: SharedVersion) -> None:
     """Delete a version that has not been published."""
     connection.execute("DELETE FROM shared_versions WHERE id = ? AND published = 0", (version.id,))
 

@@ -38,7 +38,7 @@ class SharingTable:
 
 
 def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
-    values = file.values
+    values = file.file_values
     if not values.has_values("sharing.folder", "sharing.postgresql", "sharing.desk"):
         return
     named = [kind for kind in ("folder", "postgresql") if values.text(f"sharing.{kind}")]

@@ -111,7 +111,7 @@ class PublishedMachineState:
         )
 
 
-def decode_state(machine_id: str, data: bytes) -> PublishedMachineState:
+def decode_machine_state(machine_id: str, data: bytes) -> PublishedMachineState:
     """Return the state that a machine has published.
 
     Raises RecordError if the record or the machine id is invalid.

@@ -21,7 +21,7 @@ from core.extras.tool_tables.iso_code_format import (
 )
 from core.extras.tool_tables.iso_code_recognition import (
     ROUND_KINDS,
-    get_hand,
+    get_tool_hand,
     recognize_shape_fields,
     recognize_tool_kind,
 )
@@ -189,7 +189,7 @@ def _read_insert_and_holder(
     if values["kind"] in {"turning", "boring"}:
         notes = _choose_insert(shape, code, recognized.get("insert", ""), values)
     height, width = holder.get_number("H") * factor, holder.get_number("W") * factor
-    hand = get_hand(holder.get_text("HAND"))
+    hand = get_tool_hand(holder.get_text("HAND"))
     style, clamping = holder.get_text("THSC").strip().upper(), holder.get_text("MTP").strip().upper()
     is_bar = values["kind"] == "boring" or geometry.get_flag("tool_internalThread")
     sizes = HolderSizes(

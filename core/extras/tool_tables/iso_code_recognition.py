@@ -79,7 +79,7 @@ def _kind_of(insert: str, holder: str) -> str:
     return "turning" if insert or holder else ""
 
 
-def get_hand(letter: str) -> str:
+def get_tool_hand(letter: str) -> str:
     """Return the hand of the tool for the letter R, L or N, or an empty string for any other letter."""
     hands: Mapping[str, str] = _HANDS
     return hands.get(letter.strip().upper(), "")

@@ -101,16 +101,16 @@ def _lines(tools: Iterable[ToolEntry], factor: float) -> Iterator[str]:
         for letter, name in (("X", "x"), ("Z", "z")):
             if name in tool.offset_values:
                 words.append(f"{letter}{float(tool.offset_values[name]) / factor:+.6f}")
-        if diameter := get_diameter(tool):
+        if diameter := get_tool_diameter_mm(tool):
             words.append(f"D{diameter / factor:.6f}")
         if quadrant := int(tool.offset_values.get("quadrant", 0)):
             words.append(f"Q{ORIENTATION_BY_QUADRANT[quadrant]}")
-        if remark := make_remark(tool):
+        if remark := make_tool_remark(tool):
             words.append(f";{remark}")
         yield " ".join(words)
 
 
-def get_diameter(tool: ToolEntry) -> float:
+def get_tool_diameter_mm(tool: ToolEntry) -> float:
     """Return the diameter of a rotating tool, or twice the nose radius of another tool, in mm.
 
     The result is 0 if the diameter is not specified.
@@ -122,7 +122,7 @@ def get_diameter(tool: ToolEntry) -> float:
     return 2.0 * float(tool.offset_values.get("nose_radius", 0.0))
 
 
-def make_remark(tool: ToolEntry) -> str:
+def make_tool_remark(tool: ToolEntry) -> str:
     """Return the remark of a tool, with its kind and ISO codes added if they are missing."""
     words = [str(tool.offset_values.get("remark", ""))]
     for name in ("insert", "holder", "kind"):

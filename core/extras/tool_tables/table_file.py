@@ -13,8 +13,8 @@ from typing import NamedTuple
 from core.extras.tool_tables import csv_table, freecad_tools, fusion_export, fusion_library, linuxcnc_table
 from core.extras.tool_tables.tool_entry import (
     TABLE_FIELDS,
-    ReadingOptions,
     TableReader,
+    TableReadingOptions,
     ToolEntry,
     ToolTable,
     ToolTableError,
@@ -70,7 +70,7 @@ FORMATS: Mapping[str, TableFormat] = {
 """Readable table formats, by the value of the option --from."""
 
 
-def find_format(name: str) -> str:
+def find_table_format(name: str) -> str:
     """Return the table format that a file's suffix implies. Raises ToolTableError if none matches."""
     suffix = Path(name).suffix.lower()
     for word, each in FORMATS.items():
@@ -84,7 +84,7 @@ def find_format(name: str) -> str:
     raise ToolTableError(text, "unknown-format")
 
 
-def read_table(path: Path, format_name: str, options: ReadingOptions) -> ToolTable:
+def read_tool_table(path: Path, format_name: str, options: TableReadingOptions) -> ToolTable:
     """Return the tools of a file in format ``format_name``.
 
     Raises ToolTableError if the file is unreadable, is too large or is not UTF-8 text, if the table has

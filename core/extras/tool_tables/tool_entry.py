@@ -53,7 +53,7 @@ class ToolTableError(CodedError):
     """
 
 
-class ReadingOptions(NamedTuple):
+class TableReadingOptions(NamedTuple):
     """Options for reading a table, for values that the file itself does not specify.
 
     ``unit`` is a key of ``MM_PER_UNIT``, and ``x_meaning`` is "radius" or "diameter". ``columns`` contains
@@ -74,7 +74,7 @@ class ToolEntry:
     """One tool of a table, with its position in the file and notes about values that are not imported."""
 
     tool_number: int
-    position_text: str
+    file_position_text: str
     offset_values: Mapping[str, FieldValue]
     shape_values: Mapping[str, FieldValue]
     notes: tuple[str, ...] = ()
@@ -95,7 +95,7 @@ class TableReader:
     """
 
     file_name: str
-    options: ReadingOptions
+    options: TableReadingOptions
     folder: Path = Path()
     tools: dict[int, ToolEntry] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
@@ -141,7 +141,7 @@ class TableReader:
                 text = Message(
                     "T{number} is already in {earlier}; remove one of them",
                     number=whole,
-                    earlier=self.tools[whole].position_text,
+                    earlier=self.tools[whole].file_position_text,
                 )
                 self.add_mistake(place, "tool-twice", text)
                 return None

@@ -135,7 +135,7 @@ class ConsequentFaultFilter:
                 self._cycles = True
             case nodes.PlaneBlock() | nodes.TcpmSwitch():
                 self._silent |= _PLANE_CODES
-            case nodes.ProgramCall() | nodes.Selection():
+            case nodes.ProgramCall() | nodes.SelectionBlock():
                 self._silent |= _ALL_CODES
             case _:
                 pass
@@ -154,7 +154,7 @@ def _assigned_parameters(node: nodes.Node | None) -> set[tuple[str, int]]:
 
 def makes_flow_unknown(node: nodes.Node | None) -> bool:
     """Return whether the program flow is unknown after an error in this block."""
-    return isinstance(node, (nodes.ConditionalJump, nodes.LabelCall, nodes.ErrorMessage))
+    return isinstance(node, (nodes.ConditionalJump, nodes.LabelCall, nodes.ErrorMessageBlock))
 
 
 def _runs_a_cycle(node: nodes.Node | None) -> bool:
@@ -176,7 +176,7 @@ def remove_repeated_errors(lines: list[KlartextLine]) -> None:
         if line.error is None:
             cycle = "" if line.node is not None else cycle
             continue
-        part = _CYCLE_LINE_PATTERN.match(line.code.upper())
+        part = _CYCLE_LINE_PATTERN.match(line.block_text.upper())
         goes_on = part is not None and part.group(1) == cycle and part.group(2) != "0"
         cycle = part.group(1) if part is not None else ""
         if goes_on or (line.error.code in _MISSING_CODES and line.error.message in said):

@@ -33,7 +33,7 @@ from core.interpreter.shared.control_flow import EndlessLoopDetector
 from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.interpretation import MAX_LINE_COUNT_WITHOUT_BLOCK, LinePass
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.interpreter.shared.modal_state import ModalState
 from core.language.diagnostics import ProgramError
 from core.language.klartext import klartext_nodes as nodes
@@ -47,7 +47,7 @@ from core.message import Message
 class Interpreter(LinePass[nodes.KlartextLine]):
     """One pass through a Klartext program."""
 
-    def __init__(self, program: Program, setup: Setup, kinematics: Kinematics) -> None:
+    def __init__(self, program: Program, setup: InterpreterSetup, kinematics: Kinematics) -> None:
         super().__init__(DiagnosticLog(program.diagnostics))
         self._program = program
         self._state = State(setup, kinematics, self._log, is_inch=program.is_inch)
@@ -72,7 +72,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         return self._state
 
     @property
-    def modal(self) -> ModalState:
+    def modal_state(self) -> ModalState:
         """Return the modal state after the last generated block."""
         return self._state.modal
 
@@ -105,7 +105,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
             parts: InterpreterParts = kept.copy_parts(self._setup, self._log)
             self._state, self._path, self._cycles = parts.state, parts.path_runner, parts.active_cycle
             if not start.is_mdi_line:
-                self._flow, self._taken = parts.flow, parts.pending_line
+                self._flow, self._taken = parts.program_flow, parts.pending_line
         mid_program_startup.restore_state(self._state, start, is_inch=self._program.is_inch)
         self._approach = mid_program_startup.generate_mill_approach(self._state, start)
 
@@ -113,7 +113,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         return line.node is not None and not self._flow.is_in_other_file
 
     def _report_limit(self, line: nodes.KlartextLine) -> None:
-        self._stop_endless(line.number, "Reduce the repeat counts.")
+        self._stop_endless(line.line_number, "Reduce the repeat counts.")
 
     def generate_blocks(self, *, stops_at_first_error: bool = False) -> Iterator[Block]:
         """Generate the elementary blocks of the program. Call this method only once."""
@@ -150,7 +150,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         if line.error is not None:
             self._log.add_finding(self._flow.relocate_finding(line.error))
             self._stopped = True
-            self._consequences.record_unreadable_block(line.code)
+            self._consequences.record_unreadable_block(line.block_text)
             return
         try:
             yield from self._line(line)
@@ -164,7 +164,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
     def _line(self, line: nodes.KlartextLine) -> Iterator[Block]:
         state, node = self._state, line.node
         state.line_number, state.text = (
-            self._flow.get_displayed_line(line.number),
+            self._flow.get_displayed_line(line.line_number),
             self._flow.program.text(line),
         )
         match node:
@@ -177,9 +177,9 @@ class Interpreter(LinePass[nodes.KlartextLine]):
             case nodes.Pole():
                 self._path.set_pole(node)
             case nodes.Label() | nodes.LabelCall() | nodes.ConditionalJump():
-                execute_flow_block(state, self._flow, line.number, node)
+                execute_flow_block(state, self._flow, line.line_number, node)
                 if isinstance(node, nodes.ConditionalJump) and self._watch is not None:
-                    check_endless_loop(state, self._flow, self._watch, line.number, node)
+                    check_endless_loop(state, self._flow, self._watch, line.line_number, node)
             case _ if isinstance(node, CalculationNode):
                 execute_calculation(state, node)
             case (
@@ -192,7 +192,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
             ):
                 pass
             case _:
-                yield from self._path.flush_before(1, state.text.split(" ")[0])
+                yield from self._path.flush_blocks_before(1, state.text.split(" ")[0])
                 yield from self._coordinates(node)
 
     def _coordinates(self, node: nodes.Node) -> Iterator[Block]:
@@ -221,7 +221,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
                 | nodes.ContourDefinition()
             ):
                 yield from self._cycles.execute_definition(node)
-            case nodes.Selection():
+            case nodes.SelectionBlock():
                 self._select(node)
             case nodes.ProgramCall():
                 self._call_program(node.name or self._selected_program(node.column), node.column)
@@ -233,10 +233,10 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         axis.
         """
         if node.table_name:
-            self._select(nodes.Selection("TABLE", node.table_name, node.column))
+            self._select(nodes.SelectionBlock("TABLE", node.table_name, node.column))
         execute_datum_shift(self._state, node)
 
-    def _select(self, node: nodes.Selection) -> None:
+    def _select(self, node: nodes.SelectionBlock) -> None:
         """Execute SEL TABLE, SEL PATTERN or SEL PGM. Raises ProgramError for a missing table."""
         if node.selected_kind == "PGM":
             self._state.selected_program = node.name
@@ -294,7 +294,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         datum = m_functions.read_machine_datum(state, node.m_functions)
         yield from path.execute_move(node, machine_datum=datum, has_corner_after=self._corner_is_next())
         yield from self._behind(node.m_functions, comment)
-        moved = any(word.axis in "XY" for word in node.axes) or bool(node.words)
+        moved = any(word.axis in "XY" for word in node.axis_words) or bool(node.words)
         yield from self._with_cycle(node.m_functions, node.column, has_moved=moved)
 
     def _execute_codes_or_cycle(
@@ -308,11 +308,13 @@ class Interpreter(LinePass[nodes.KlartextLine]):
             lambda: m_functions.execute_before_motion(state, node.m_functions)
         )
         if isinstance(node, nodes.CycleCall):
-            yield from path.flush_before(node.column, "CYCL CALL")
+            yield from path.flush_blocks_before(node.column, "CYCL CALL")
             if node.is_pattern_call:
                 yield from self._cycles.call_pattern(node)
             else:
-                yield from self._cycles.call_at_position(node) if node.axes else self._run_cycle(node.column)
+                yield from (
+                    self._cycles.call_at_position(node) if node.axis_words else self._run_cycle(node.column)
+                )
         if isinstance(node, nodes.StopBlock):
             stop = ProgramStop(optional=False, message=comment)
             yield from path.execute_between_elements(lambda: iter((state.make_action_block(stop),)))
@@ -349,7 +351,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
             self._cycles.is_modal, wanted = False, True
         if not wanted:
             return
-        yield from self._path.flush_before(column, "A cycle")
+        yield from self._path.flush_blocks_before(column, "A cycle")
         yield from self._run_cycle(column)
 
     def _run_cycle(self, column: int) -> Iterator[Block]:
@@ -391,7 +393,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
                 )
             if not (line.is_skippable and state.setup.block_delete):
                 state.line_number, state.text = (
-                    self._flow.get_displayed_line(line.number),
+                    self._flow.get_displayed_line(line.line_number),
                     flow.program.text(line),
                 )
                 _collect_contour_line(state, runner, flow, line)
@@ -415,7 +417,7 @@ def _collect_contour_line(
         case nodes.Pole():
             runner.set_pole(line.node)
         case nodes.Label() | nodes.LabelCall() | nodes.ConditionalJump():
-            execute_flow_block(state, flow, line.number, line.node)
+            execute_flow_block(state, flow, line.line_number, line.node)
         case node if isinstance(node, CalculationNode):
             execute_calculation(state, node)
         case (

@@ -40,7 +40,7 @@ from core.language.klartext.klartext_nodes import (
     Node,
     SystemRead,
 )
-from core.language.klartext.named_files import TableRow, is_table, normalize_file_name, read_table_rows
+from core.language.klartext.named_files import TableRow, is_table_file, normalize_file_name, read_table_rows
 from core.language.line_reading import find_comment_start
 from core.language.source import ProgramSource
 from core.message import Message
@@ -76,9 +76,9 @@ class Program:
 
     def text(self, line: KlartextLine) -> str:
         """Return the block of a line as display text, which is formatted only once and then cached."""
-        text = self._texts.get(line.number)
+        text = self._texts.get(line.line_number)
         if text is None:
-            text = self._texts[line.number] = format_block(line)
+            text = self._texts[line.line_number] = format_block(line)
         return text
 
     def find_subprogram_end(self, label_index: int) -> int | None:
@@ -112,7 +112,7 @@ def read_program(source: ProgramSource) -> Program:
     program.blank_corners = _corners(program)
     for each in source.subprograms:
         name = normalize_file_name(each.name)
-        if is_table(name):
+        if is_table_file(name):
             program.tables_by_name[name] = read_table_rows(each)
         else:
             program.called_programs[name] = read_program(each)
@@ -182,14 +182,14 @@ def _corners(program: Program) -> BlankCorners | None:
         if isinstance(line.node, CylinderBlank):
             return _cylinder_corners(line.node, scale)
         if isinstance(line.node, BlankCorner) and all(
-            word.value.parameter_number is None for word in line.node.corner
+            word.value.parameter_number is None for word in line.node.axis_words
         ):
             low = dict(zip("XYZ", found.get(1, (0.0, 0.0, 0.0)), strict=True))
             at = {
                 word.axis: word.value.number * scale + (low[word.axis] if word.is_incremental else 0.0)
-                for word in line.node.corner
+                for word in line.node.axis_words
             }
-            found[line.node.part_number] = (at["X"], at["Y"], at["Z"])
+            found[line.node.corner_number] = (at["X"], at["Y"], at["Z"])
     if len(found) < 2 or any(low >= high for low, high in zip(found[1], found[2], strict=True)):
         return None
     return found[1], found[2]
@@ -220,7 +220,7 @@ def _frame(program: Program) -> Iterator[Diagnostic]:
     if first is None or not isinstance(first.node, BeginBlock):
         if first is None or first.error is None:
             hint = "Start the program with BEGIN PGM, the program name and the unit."
-            yield _wrong(first.number if first else 1, "BEGIN PGM is missing.", hint)
+            yield _wrong(first.line_number if first else 1, "BEGIN PGM is missing.", hint)
         return
     program.is_inch = first.node.is_inch
     ends = ((index, node) for index in with_blocks if isinstance(node := program.lines[index].node, EndBlock))
@@ -261,7 +261,7 @@ def _labels(program: Program) -> Iterator[Diagnostic]:
                 labels=program.labels[node.name] + 1,
             )
             yield make_klartext_error(
-                line.number, node.column, LABEL_REPEATED, text, "Use a different number."
+                line.line_number, node.column, LABEL_REPEATED, text, "Use a different number."
             ).diagnostic
 
 
@@ -277,7 +277,7 @@ def _calls(program: Program) -> Iterator[Diagnostic]:
                 Message("LBL {name} is not in the program.", name=name),
                 ("Correct the label number, or add the label."),
             )
-            yield make_klartext_error(line.number, node.column, LABEL_NOT_FOUND, text, hint).diagnostic
+            yield make_klartext_error(line.line_number, node.column, LABEL_NOT_FOUND, text, hint).diagnostic
         elif (
             isinstance(node, LabelCall)
             and node.repeat_count is None
@@ -285,7 +285,7 @@ def _calls(program: Program) -> Iterator[Diagnostic]:
         ):
             text = Message("The subprogram LBL {name} has no LBL 0.", name=name)
             yield make_syntax_error(
-                line.number, node.column, text, "End the subprogram with LBL 0."
+                line.line_number, node.column, text, "End the subprogram with LBL 0."
             ).diagnostic
 
 
@@ -294,7 +294,7 @@ MAX_CALL_DEPTH = 19
 
 @dataclass(slots=True)
 class _Level(FlowFrame[Program]):
-    is_section: bool = False  # a subprogram of the active program, which LBL 0 ends
+    is_subprogram: bool = False  # a subprogram of the active program, which LBL 0 ends
 
 
 class Flow(ControlFlow[_Level]):
@@ -313,7 +313,7 @@ class Flow(ControlFlow[_Level]):
     @property
     def _program_frame_index(self) -> int:
         """Return the index of the frame in which the active program started."""
-        return max(at for at, each in enumerate(self.frames) if not each.is_section)
+        return max(at for at, each in enumerate(self.frames) if not each.is_subprogram)
 
     def read_next_line(self) -> KlartextLine | None:
         """Return the next line, or None at the END PGM of the main program."""
@@ -337,7 +337,7 @@ class Flow(ControlFlow[_Level]):
             return None
         own = Flow(program)
         own.next_index = program.end_index
-        own.enter_subprogram(_Level(program, at + 1, program.end_index, is_section=True))
+        own.enter_subprogram(_Level(program, at + 1, program.end_index, is_subprogram=True))
         return own
 
     def find_program(self, name: str) -> Program | None:
@@ -380,7 +380,7 @@ class Flow(ControlFlow[_Level]):
             hint = "A subprogram must not call itself."
             raise make_klartext_error(line, node.column, EXCESSIVE_NESTING, text, hint)
         self.enter_subprogram(
-            replace(self.active_frame, next_index=target + 1, remaining_repeats={}, is_section=True)
+            replace(self.active_frame, next_index=target + 1, remaining_repeats={}, is_subprogram=True)
         )
 
     def execute_label(self, node: Label) -> None:
@@ -388,7 +388,7 @@ class Flow(ControlFlow[_Level]):
 
         LBL 0 ends the active subprogram. Other labels only mark a position.
         """
-        if node.name == 0 and self.active_frame.is_section:
+        if node.name == 0 and self.active_frame.is_subprogram:
             self.return_to_caller()
 
     def jump_to_label(self, node: ConditionalJump) -> None:
@@ -415,7 +415,7 @@ class Flow(ControlFlow[_Level]):
         called = self.find_program(name)
         if called is None:
             return None
-        if sum(not each.is_section for each in self.frames) > MAX_CALL_DEPTH:
+        if sum(not each.is_subprogram for each in self.frames) > MAX_CALL_DEPTH:
             text = Message(
                 "Program calls are nested more than {deepest_call} levels deep at {name}.",
                 deepest_call=MAX_CALL_DEPTH,

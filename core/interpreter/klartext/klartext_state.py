@@ -21,10 +21,15 @@ from core.geometry.working_plane import XY_ORDER, AxisMove, AxisOrder, CurvedMov
 from core.interpreter.shared.actions import Action, Dwell, ProgramStop
 from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.interpreter.shared.modal_state import ModalState
 from core.interpreter.shared.units import MM_PER_INCH
-from core.interpreter.shared.working_plane import BlankCorners, PlanePosition, PlaneSystem, RotaryAngles
+from core.interpreter.shared.working_plane import (
+    BlankCorners,
+    PlaneCoordinateSystem,
+    PlanePosition,
+    RotaryAngles,
+)
 from core.language.diagnostics import (
     PROGRAM_STOP_ASSUMPTION,
     Diagnostic,
@@ -79,7 +84,9 @@ class State:
     - ``line_number``, ``text``: number and displayed text of the active block.
     """
 
-    def __init__(self, setup: Setup, kinematics: Kinematics, log: DiagnosticLog, *, is_inch: bool) -> None:
+    def __init__(
+        self, setup: InterpreterSetup, kinematics: Kinematics, log: DiagnosticLog, *, is_inch: bool
+    ) -> None:
         self.line_number, self.text = 0, ""
         self.kinematics = kinematics
         self.axis_names = kinematics.axis_names
@@ -135,7 +142,7 @@ class State:
         self.reported_findings: set[object] = set()  # warnings that would otherwise be repeated
         self.modal = ModalState(absolute=True, metric=not is_inch, rapid_rate=setup.last_rapid)
         self._c = self.axis_names.index("C") if "C" in self.position_by_axis else -1
-        self._shared: PlaneSystem | None = None
+        self._shared: PlaneCoordinateSystem | None = None
 
     # --- position -----------------------------------------------------------------------------------------
 
@@ -288,7 +295,7 @@ class State:
             else error
         )
 
-    def log_once(
+    def log_finding_once(
         self, column: int, severity: Severity, code: str, text: str, hint: str = "", /, **values: object
     ) -> None:
         """Log a finding only the first time that it occurs."""
@@ -301,7 +308,7 @@ class State:
 
     def log_ignored_function(self, function: str, column: int) -> None:
         """Log a single note that a function has no effect on this control."""
-        self.log_once(
+        self.log_finding_once(
             column, Severity.NOTE, "unheeded", Message("{what} has no effect on this control.", what=function)
         )
 
@@ -363,10 +370,10 @@ class State:
             swivel=PlanePosition(before, end, slides, self.displayed_angles, self._system()),
         )  # fmt: skip
 
-    def _system(self) -> PlaneSystem:
+    def _system(self) -> PlaneCoordinateSystem:
         if self._shared is None:
             q120, q121, q122 = (self.q_values.get(q, 0.0) for q in TARGET_ANGLE_PARAMETERS)
-            self._shared = PlaneSystem(
+            self._shared = PlaneCoordinateSystem(
                 transform=self.plane_transform,
                 kinematics=self.kinematics,
                 frame=self.frame,

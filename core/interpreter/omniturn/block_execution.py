@@ -8,12 +8,12 @@ from core.interpreter.omniturn.codes.code_entry import ActionKind
 from core.interpreter.omniturn.codes.code_table import load_handler
 from core.interpreter.omniturn.cycles.canned_cycles import check_cycle_start, make_move_blocks
 from core.interpreter.omniturn.motion.arc_moves import make_arc_block
-from core.interpreter.omniturn.motion.c_axis import lock_spindle, move_c_axis, uses_c_speed
+from core.interpreter.omniturn.motion.c_axis import has_c_axis_speed, lock_spindle, move_c_axis
 from core.interpreter.omniturn.motion.corners import check_radius_word, read_corner
 from core.interpreter.omniturn.motion.feeds import (
     execute_coarse_feed,
     execute_feed_words,
-    warn_about_crash_feed,
+    warn_about_high_feed,
 )
 from core.interpreter.omniturn.motion.straight_moves import execute_dimension_modes, make_statement_move
 from core.interpreter.omniturn.omniturn_state import State
@@ -49,7 +49,7 @@ def execute(
     """
     if statement.is_simple_move:
         execute_feed_words(state, statement, is_first_line=is_first_line)
-        warn_about_crash_feed(state, statement, following_lines)
+        warn_about_high_feed(state, statement, following_lines)
         yield from _motion(state, statement)
         return
     if execute_coarse_feed(state, statement, following_lines):
@@ -59,7 +59,7 @@ def execute(
         state.set_modal(state.modal._replace(comment=statement.comment))
     execute_feed_words(state, statement, is_first_line=is_first_line)
     execute_spindle_modes(state, statement)
-    of_c = uses_c_speed(state, statement)
+    of_c = has_c_axis_speed(state, statement)
     if not of_c:
         execute_speed_word(state, statement)
     tool = statement.words.get("T")
@@ -71,7 +71,7 @@ def execute(
         yield from load_handler(statement.code_entry)(state, statement)
     if not of_c:
         yield from run_spindle(state, statement)
-    warn_about_crash_feed(state, statement, following_lines)
+    warn_about_high_feed(state, statement, following_lines)
     yield from _execute_before_motion(state, statement)
     yield from _motion(state, statement, contour)
     if statement.m_number is not None:

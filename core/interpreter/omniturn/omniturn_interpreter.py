@@ -12,7 +12,10 @@ from core.interpreter.omniturn.flow.loops_and_subroutines import Flow, get_input
 from core.interpreter.omniturn.flow.program_size import check_program_size
 from core.interpreter.omniturn.motion.corners import ContourBuffer
 from core.interpreter.omniturn.motion.feeds import needs_following_lines
-from core.interpreter.omniturn.motion.nose_compensation import execute_compensation_code, get_nose_code
+from core.interpreter.omniturn.motion.nose_compensation import (
+    execute_compensation_code,
+    get_compensation_code,
+)
 from core.interpreter.omniturn.motion.straight_moves import (
     make_plain_move_block,
     round_to_resolution,
@@ -28,7 +31,7 @@ from core.interpreter.omniturn.omniturn_statement import (
     make_statement,
 )
 from core.interpreter.omniturn.setup.m_codes import check_m_codes
-from core.interpreter.omniturn.setup.tools_and_offsets import warn_about_idle_shifts
+from core.interpreter.omniturn.setup.tools_and_offsets import warn_about_unused_shifts
 from core.interpreter.shared.actions import InputRead, ProgramEnd
 from core.interpreter.shared.checkpoint import Checkpoint
 from core.interpreter.shared.diagnostic_log import DiagnosticLog
@@ -39,7 +42,7 @@ from core.interpreter.shared.interpretation import (
     InterpreterPass,
     generate_lathe_approach,
 )
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.interpreter.shared.modal_state import ModalState
 from core.language.diagnostics import ProgramError, make_error_diagnostic
 from core.language.omniturn import lex_line
@@ -113,7 +116,7 @@ Shorter programs gain nothing.
 class Interpreter(InterpreterPass):
     """One pass through an OmniTurn program or through one MDI line."""
 
-    def __init__(self, program: Program, setup: Setup) -> None:
+    def __init__(self, program: Program, setup: InterpreterSetup) -> None:
         super().__init__(DiagnosticLog(program.diagnostics))
         self._program = program
         self._state = State(setup, self._log)
@@ -124,7 +127,7 @@ class Interpreter(InterpreterPass):
         self._first, self._refused = check_program_start(self._state, program)
         if setup.begin is not None:
             restore_state(self._state, setup.begin)
-            self._flow.resume_at(setup.begin.line_number, setup.begin.checkpoint.flow)
+            self._flow.restore_position(setup.begin.line_number, setup.begin.checkpoint.flow)
 
     @property
     def source_block_count(self) -> int:
@@ -132,7 +135,7 @@ class Interpreter(InterpreterPass):
         return self._program.block_count
 
     @property
-    def modal(self) -> ModalState:
+    def modal_state(self) -> ModalState:
         """Return the modal state after the last generated block."""
         return self._state.modal
 
@@ -180,7 +183,7 @@ class Interpreter(InterpreterPass):
 
     def _end(self) -> Iterator[Block]:
         yield from self._released(self._modifier.check_program_end())
-        warn_about_idle_shifts(self._state)
+        warn_about_unused_shifts(self._state)
 
     def _lines(self) -> Iterator[Block | StraightMoveSeries]:
         ready, flow, state, ahead = self._program.executable_lines, self._flow, self._state, self._ahead
@@ -236,7 +239,7 @@ class Interpreter(InterpreterPass):
             self._flow.execute_flow_line(statement)
         else:
             self._modifier.check_line(statement)
-            if get_nose_code(statement):
+            if get_compensation_code(statement):
                 yield from self._nose(statement)
             first = statement.line == self._first
             ahead = (
@@ -266,7 +269,10 @@ class Interpreter(InterpreterPass):
     def _nose(self, statement: Statement) -> Iterator[Block]:
         """Execute G41, G42 or G40, and yield the buffered blocks that can no longer change."""
         found = execute_compensation_code(
-            self._state, statement, get_nose_code(statement), is_in_subroutine=self._flow.is_in_subprogram
+            self._state,
+            statement,
+            get_compensation_code(statement),
+            is_in_subroutine=self._flow.is_in_subprogram,
         )
         if found is not None:
             yield from self._released(self._modifier.switch_compensation(found))
@@ -374,7 +380,7 @@ class StoppablePass(Interpreter):
         return self._flow.is_at_stop_line and not self._stopped
 
     @property
-    def setup(self) -> Setup:
+    def setup(self) -> InterpreterSetup:
         """Return the setup of the pass."""
         return self._state.setup
 

@@ -35,11 +35,11 @@ from core.language.diagnostics import Diagnostic, ProgramError, Severity, make_e
 from core.language.omniturn import LexedLine, lex_line
 from core.language.omniturn.other_controls import recognize_control
 from core.language.omniturn.plane_switching_lines import (
-    PlaneLine,
+    PlaneSwitchingLine,
     is_missing_tilde,
     is_program_end,
-    lex_plane_line,
-    parse_plane_entry,
+    lex_plane_switching_line,
+    parse_plane_switching_start,
 )
 from core.language.source import ProgramSource
 from core.message import Message
@@ -109,15 +109,15 @@ class StyleChecker:
         """Record deviations in the comments and tool numbers of one line."""
         tool = statement.words.get("T")
         if tool is not None and tool.text[1:].startswith("0") and len(tool.text) > 2:
-            self.record_deviation("tool-zero", line.number, tool.column)
+            self.record_deviation("tool-zero", line.line_number, tool.column)
         if line.comment is None:
             return
         if not statement.is_executable:
-            self.record_deviation("title-line", line.number, line.comment_column)
+            self.record_deviation("title-line", line.line_number, line.comment_column)
         if statement.flow_code == "}":
-            self.record_deviation("subroutine-comment", line.number, line.comment_column)
+            self.record_deviation("subroutine-comment", line.line_number, line.comment_column)
         if not _UNUSUAL_COMMENT_CHARACTERS.isdisjoint(line.comment):
-            self.record_deviation("comment-character", line.number, line.comment_column)
+            self.record_deviation("comment-character", line.line_number, line.comment_column)
 
 
 _MAX_FINDINGS = 100
@@ -183,7 +183,7 @@ class _Reader:
             return None
         if self._plane and is_program_end(text):
             self._plane_open(number)
-        entry = parse_plane_entry(text)
+        entry = parse_plane_switching_start(text)
         if entry is not None or self._plane:
             return self._in_plane(number, text, entry)
         line = lex_line(number, text)
@@ -218,18 +218,18 @@ class _Reader:
                 )
             )
 
-    def _in_plane(self, number: int, text: str, entry: PlaneLine | None) -> Statement:
+    def _in_plane(self, number: int, text: str, entry: PlaneSwitchingLine | None) -> Statement:
         """Parse one line of a plane switching section, including its first line and (END)."""
         statement = Statement(number, text.strip(), flow_code=PLANE_FLOW)
         try:
-            statement.plane_line = (
-                entry if entry is not None and not self._plane else lex_plane_line(number, text)
+            statement.plane_switching_line = (
+                entry if entry is not None and not self._plane else lex_plane_switching_line(number, text)
             )
         except ProgramError as problem:
             self.problems.append(problem.diagnostic)
             statement.flow_code = UNREADABLE_FLOW
-        if statement.plane_line is not None and statement.plane_line.name:
-            self._plane = 0 if statement.plane_line.name == "END" else number
+        if statement.plane_switching_line is not None and statement.plane_switching_line.name:
+            self._plane = 0 if statement.plane_switching_line.name == "END" else number
         self.statements.append(statement)
         return statement
 
@@ -329,7 +329,7 @@ def _check_after_end(ready: ExecutableLines, structure: ProgramStructure) -> lis
     Only the first such move is reported. Without such a move, the list is empty.
     """
     inside = False
-    starts, ends = set(structure.subroutines.values()), set(structure.subroutine_ends.values())
+    starts, ends = set(structure.subroutine_starts.values()), set(structure.subroutine_ends.values())
     for at in range(structure.main_end_index, len(ready)):
         inside = (inside or at in starts) and at not in ends
         if not inside and isinstance(ready[at], tuple):

@@ -12,7 +12,7 @@ from core.interpreter.shared.actions import Action, Dwell
 from core.interpreter.shared.checkpoint import Checkpoint, PassStart
 from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block, BlockKind, FloatArray
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.interpreter.shared.modal_state import ModalState
 from core.interpreter.shared.units import MM_PER_INCH
 
@@ -39,8 +39,8 @@ class CompensationSwitch(NamedTuple):
 
     g_code: int
     line: int
-    secondary_x: float
-    secondary_z: float
+    secondary_offset_x: float
+    secondary_offset_z: float
 
     @property
     def name(self) -> str:
@@ -56,7 +56,7 @@ class ContourState:
     """State of the corner that waits for its second move, and of the active nose compensation."""
 
     is_buffering: bool = False  # blocks are buffered, so each block must pass through the contour modifier
-    open_corner: Corner | None = None  # corner after the present move
+    pending_corner: Corner | None = None  # corner after the present move
     approach_line: int = 0  # line of a G41 or G42 that no approach has followed yet
     secondary_offset_line: int = 0  # last line with a D
 
@@ -107,7 +107,7 @@ class State:
         "z",
     )  # fmt: skip
 
-    def __init__(self, setup: Setup, log: DiagnosticLog) -> None:
+    def __init__(self, setup: InterpreterSetup, log: DiagnosticLog) -> None:
         self.setup = setup
         self.log = log
         self.blocks = 0
@@ -140,8 +140,8 @@ class State:
         self.mm_per_z_unit = 1.0 if modal.metric else MM_PER_INCH
         self.mm_per_x_unit = self.mm_per_z_unit / 2 if modal.diameter else self.mm_per_z_unit
         self.offset_x, self.offset_z = modal.offset_x, modal.offset_z
-        self.secondary_x, self.secondary_z = modal.secondary_x, modal.secondary_z
-        self.cut = not modal.rapid and (modal.feed is None or not self.is_first_feed(modal.feed))
+        self.secondary_x, self.secondary_z = modal.secondary_offset_x, modal.secondary_offset_z
+        self.cut = not modal.rapid and (modal.feed is None or not self.is_first_line_feed(modal.feed))
         self.kind = BlockKind.FEED if self.cut else BlockKind.RAPID
         self.feed = modal.rapid_rate if modal.rapid else (modal.feed or 0.0)
         self.per_rev = modal.per_rev and not modal.rapid
@@ -157,7 +157,7 @@ class State:
         # the next plain move needs no check, because a move with this state passed all checks
         self.fast = False
 
-    def is_first_feed(self, feed: float) -> bool:
+    def is_first_line_feed(self, feed: float) -> bool:
         """Return whether a feed is the F of the first line, which is the rapid rate without G00."""
         if self.modal.per_rev or self.first_feed is None:
             return False

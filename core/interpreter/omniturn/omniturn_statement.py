@@ -8,7 +8,7 @@ from core.interpreter.omniturn.codes.code_entry import ActionKind, CodeEntry, FM
 from core.interpreter.omniturn.codes.code_table import FLOW_CODES, G_CODES, M_CODES, PLAIN_LINE_ENTRY
 from core.language.diagnostics import ProgramError, make_program_error
 from core.language.omniturn import LexedLine, Word, other_controls
-from core.language.omniturn.plane_switching_lines import PlaneLine
+from core.language.omniturn.plane_switching_lines import PlaneSwitchingLine
 from core.message import Message, fill_template
 
 PlainMove = tuple[float | None, float | None, float | None, int, bool]
@@ -48,8 +48,8 @@ class Statement:
     has_block_delete: bool = False
     block_texts: dict[str, str] | None = None
     is_simple_move: bool = False  # only a move, its feed and G00…G03
-    plane_line: PlaneLine | None = None  # a line of plane switching
-    is_f_feed: bool = True  # no code on the line changes the meaning of F
+    plane_switching_line: PlaneSwitchingLine | None = None  # a line of plane switching
+    is_f_feed_rate: bool = True  # no code on the line changes the meaning of F
     is_s_speed_limit: bool = False  # S belongs to G76 or G77
     has_x_or_z_move: bool = False  # the line moves X or Z
     has_c_word: bool = False  # the line has a C word, which moves a locked spindle
@@ -144,7 +144,7 @@ def make_statement(line: LexedLine) -> Statement:
     if line.errors:
         return make_unreadable_statement(line)
     statement = Statement(
-        line.number, line.text, comment=line.comment, has_block_delete=line.has_block_delete
+        line.line_number, line.text, comment=line.comment, has_block_delete=line.has_block_delete
     )
     if line.comment is not None and line.comment.lstrip().startswith("~"):
         what = f"({line.comment.strip()})"
@@ -154,7 +154,7 @@ def make_statement(line: LexedLine) -> Statement:
             what=what,
         )
         raise make_program_error(
-            line.number,
+            line.line_number,
             line.comment_column,
             "plane-entry",
             message,
@@ -185,7 +185,7 @@ def make_unreadable_statement(line: LexedLine) -> Statement:
     if not any(word.letter == "G" and word.value in {4, 10, 92} for word in line.words):
         words = {word.letter: word for word in line.words if word.letter in {"X", "Z"}}
     statement = Statement(
-        line.number, line.text, words, flow_code=UNREADABLE_FLOW, has_block_delete=line.has_block_delete
+        line.line_number, line.text, words, flow_code=UNREADABLE_FLOW, has_block_delete=line.has_block_delete
     )
     statement.has_x_or_z_move = bool(words)
     statement.modal_codes = tuple(
@@ -220,10 +220,10 @@ def _sort(statement: Statement, line: LexedLine) -> None:
 def _check_groups(statement: Statement, line: LexedLine, modal: list[Word]) -> None:
     groups: dict[str, int] = {}
     for word, code in zip(modal, statement.modal_codes, strict=True):
-        if groups.setdefault(G_CODES[code].group, code) != code:
+        if groups.setdefault(G_CODES[code].mode_group, code) != code:
             text = "This line contains two codes of the same group ({group})."
             hint = "Keep only one of the conflicting words."
-            raise _refused(line, word, "modal-conflict", text, hint, group=G_CODES[code].group)
+            raise _refused(line, word, "modal-conflict", text, hint, group=G_CODES[code].mode_group)
 
 
 def _sort_g(statement: Statement, word: Word, modal: list[Word]) -> None:
@@ -248,7 +248,7 @@ def _sort_g(statement: Statement, word: Word, modal: list[Word]) -> None:
     else:
         statement.one_shot_code, statement.code_word, statement.code_entry = code, word, entry
     if entry.f_meaning is not _FEED:
-        statement.is_f_feed = False
+        statement.is_f_feed_rate = False
     if entry.s_meaning is _LIMIT:
         statement.is_s_speed_limit = True
 
@@ -366,5 +366,5 @@ def _refused(
     line: LexedLine, word: Word, code: str, text: str, hint: str, /, **values: object
 ) -> ProgramError:
     return make_program_error(
-        line.number, word.column, code, fill_template(text, values), fill_template(hint, values)
+        line.line_number, word.column, code, fill_template(text, values), fill_template(hint, values)
     )

@@ -25,7 +25,7 @@ IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
 FEED, THREAD, STILL, FACE, SIDE, PER_REV, REVERSE = 1, 2, 4, 8, 16, 32, 64
-"""Bits of ``move_kind``.
+"""Bits of ``move_kinds``.
 
 They mean feed move, thread, stationary C axis, face milling, side milling, feed per revolution, and spindle
 direction M04. A rapid has no bit set.
@@ -43,7 +43,7 @@ class CutRecord:
     """All moves of a program as rows (m,), and the known limits of the material.
 
     - ``block_number``: number of the elementary block.
-    - ``bar_section``: how often the collet was opened; earlier cuts are on another section of the bar.
+    - ``bar_sections``: how often the collet was opened; earlier cuts are on another section of the bar.
     - ``max_feed_radius``: largest radius of a feed move, or 0 if no feed move exists.
     - ``retract_radius``: radius at which tools retract at rapid, or inf if it is unknown, because
       the largest cut may be a bore.
@@ -52,15 +52,15 @@ class CutRecord:
     - ``max_machine_z``: maximum machine Z of all moves.
     """
 
-    block_number: IntArray
-    line_number: IntArray
-    x0: FloatArray
-    z0: FloatArray
-    x: FloatArray
-    z: FloatArray
-    move_kind: IntArray
-    tool_number: IntArray
-    bar_section: IntArray
+    block_numbers: IntArray
+    line_numbers: IntArray
+    start_x: FloatArray
+    start_z: FloatArray
+    end_x: FloatArray
+    end_z: FloatArray
+    move_kinds: IntArray
+    tool_numbers: IntArray
+    bar_sections: IntArray
     tool_offsets: dict[int, tuple[float, float]]  # by tool: machine position minus tip position, mm
     max_feed_radius: float
     max_cut_start_z: float  # the maximum Z at which a cut begins
@@ -72,19 +72,24 @@ class CutRecord:
     block_count: int
 
     def __len__(self) -> int:
-        return len(self.block_number)
+        return len(self.block_numbers)
 
     def find_last_row(self, block_number: int) -> int:
         """Return the last row of this block or of an earlier block, or -1 if no axis has moved."""
-        return int(np.searchsorted(self.block_number, block_number, side="right")) - 1
+        return int(np.searchsorted(self.block_numbers, block_number, side="right")) - 1
 
     def find_first_row(self, row: int) -> int:
         """Return the first row of the block to which a row belongs."""
-        return int(np.searchsorted(self.block_number, self.block_number[row], side="left"))
+        return int(np.searchsorted(self.block_numbers, self.block_numbers[row], side="left"))
 
     def get_end_points(self, row: int) -> tuple[float, float, float, float]:
         """Return the start and end points of a row as (x0, z0, x, z)."""
-        return float(self.x0[row]), float(self.z0[row]), float(self.x[row]), float(self.z[row])
+        return (
+            float(self.start_x[row]),
+            float(self.start_z[row]),
+            float(self.end_x[row]),
+            float(self.end_z[row]),
+        )
 
     def compute_front_z(self, tool: int) -> float:
         """Return the tip Z from which this tool is in front of all material, in mm."""

@@ -13,7 +13,7 @@ from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.restart.restart_point import ActiveCall, LineVisit, LoopPass
 from core.interpreter.shared.actions import ProgramEnd
 from core.interpreter.shared.checkpoint import FlowPosition
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.message import Message
 
 MAX_VISIT_COUNT = 20_000
@@ -62,7 +62,7 @@ class LineVisits:
             number=number,
         )
 
-    def find_anchor(self, number: int) -> tuple[int, int]:
+    def find_main_program_visit(self, number: int) -> tuple[int, int]:
         """Return the main program line in which a visit occurs, and the visit number of that line.
 
         The main program line is outside of all loops.
@@ -85,7 +85,7 @@ class LineVisits:
 
 
 def find_line_visits(
-    program: Program, setup: Setup, line: int, report_progress: Callable[[float], None]
+    program: Program, setup: InterpreterSetup, line: int, report_progress: Callable[[float], None]
 ) -> LineVisits:
     """Return all visits of a line in a complete run with the input states of ``setup``."""
     found = LineVisits(program, [], [])

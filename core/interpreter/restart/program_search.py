@@ -16,14 +16,14 @@ from math import inf, isclose
 from core.interpreter.dialects import SharedProgram
 from core.interpreter.restart.cut_record import CutRecord, record_all_cuts
 from core.interpreter.restart.path_distances import PATH_TOLERANCE_MM
-from core.interpreter.restart.restart_point import Interruption, LineVisit, RestartPoint, RestartRefusal
-from core.interpreter.restart.state_rebuild import make_lathe_restart, make_skipped_cuts_message
+from core.interpreter.restart.restart_point import Interruption, LineVisit, RestartPoint, RestartRejection
+from core.interpreter.restart.state_rebuild import make_lathe_restart_point, make_skipped_cuts_message
 from core.interpreter.restart.tool_retract import Retract, ToolSituation
 from core.interpreter.shared.actions import ProgramEnd
 from core.interpreter.shared.checkpoint import Checkpoint
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.interpretation import InterpreterPass
-from core.interpreter.shared.job_setup import Setup, read_no_input
+from core.interpreter.shared.job_setup import InterpreterSetup, read_no_input
 from core.message import Message
 
 ProgressCallback = Callable[[float], None]
@@ -48,13 +48,15 @@ class _RunVisits:
     end_line: int = 0  # line of the program end
 
 
-class BlockSearch:
+class RestartLineSearch:
     """Search for restart lines in one program with a fixed setup.
 
     ``report_progress`` is called with the number of blocks and may raise an exception to cancel the search.
     """
 
-    def __init__(self, program: SharedProgram, setup: Setup, report_progress: ProgressCallback) -> None:
+    def __init__(
+        self, program: SharedProgram, setup: InterpreterSetup, report_progress: ProgressCallback
+    ) -> None:
         self._reading = program
         self._setup = replace(setup, begin=None, inputs=read_no_input)
         self.report_progress = report_progress
@@ -65,9 +67,9 @@ class BlockSearch:
         """Return the record of all cuts of a lathe program; the record is calculated on first use."""
         return record_all_cuts(self._pass().generate_series(), self.report_progress)
 
-    def find_restart(
+    def find_restart_point(
         self, line: int, visit: int = 0, interruption: Interruption | None = None
-    ) -> RestartPoint | RestartRefusal:
+    ) -> RestartPoint | RestartRejection:
         """Return the restart point of a line at its ``visit``-th execution, or the reason for refusal.
 
         A ``visit`` of 0 selects the interrupted pass, or the first pass if the program was not interrupted.
@@ -76,7 +78,7 @@ class BlockSearch:
         found = self._search(line, visit, interruption)
         if isinstance(found, RestartPoint):
             return found
-        return RestartRefusal(
+        return RestartRejection(
             line, found, self._nearest(line, -1, interruption), self._nearest(line, 1, interruption)
         )
 
@@ -97,12 +99,12 @@ class BlockSearch:
     def _run(self) -> _RunVisits:
         run_visits, run, made = _RunVisits(), self._pass(), 0
 
-        def see(line: int) -> bool:
+        def record_visit(line: int) -> bool:
             run_visits.visits.setdefault(line, []).append(made)
             run_visits.blocking_reasons.setdefault(line, run.blocking_reason)
             return False
 
-        run.stop_condition = see
+        run.stop_condition = record_visit
         for block in self._watched(run.generate_blocks(stops_at_first_error=True)):
             made = block.n
             if isinstance(block.action, ProgramEnd):
@@ -115,12 +117,12 @@ class BlockSearch:
         """Return the state of a pass at the ``number``-th execution of a line."""
         run, stand, left = self._pass(offset), _PassState(), number
 
-        def stop(at: int) -> bool:
+        def is_stop_reached(at: int) -> bool:
             nonlocal left
             left -= at == line
             return not left
 
-        run.stop_condition = stop
+        run.stop_condition = is_stop_reached
         for block in self._watched(run.generate_blocks(stops_at_first_error=True)):
             stand.process_block(block, uncut=interruption is not None and _is_uncut(block, interruption))
         stand.has_failed = run.has_errors or not run.has_stopped_before_line
@@ -225,7 +227,7 @@ class BlockSearch:
                 )
             own_c = at[2] is not None and not self._setup.limits.is_spindle_c_axis
             turned = point._replace(at=_axis_positions(point)) if own_c else point
-            return make_lathe_restart(line, turned, self.cut_record, visit, broken)
+            return make_lathe_restart_point(line, turned, self.cut_record, visit, broken)
         skipped = here.skipped_lines or (0, 0)
         first, last = min(skipped), max(skipped)  # a loop can end on an earlier line
         if here.skipped_lines and not here.is_above_skipped_cuts(point):

@@ -37,9 +37,9 @@ from core.interpreter.shared.actions import (
 )
 from core.interpreter.shared.checkpoint import (
     ApproachStep,
-    AxesLeg,
     CAxisMove,
     FunctionStep,
+    MultiAxisLeg,
     PassStart,
     StraightLeg,
 )
@@ -58,7 +58,7 @@ _MAX_LATER_ROWS = 400  # number of rows after the saved block in which the tool 
 
 
 @dataclass(frozen=True, slots=True)
-class PresentState:
+class CurrentMachineState:
     """The current state of the machine.
 
     The state consists of the axis positions in mm and degrees, the modal state and the interruption.
@@ -73,22 +73,22 @@ class PresentState:
 class OperatorChoices:
     """Choices of the operator for the approach.
 
-    ``outside_speed_mm_s`` and ``inside_speed_mm_s`` are the speeds outside and inside the part.
+    ``approach_speed_outside_mm_s`` and ``inside_speed_mm_s`` are the speeds outside and inside the part.
     """
 
     uses_coolant: bool = True
-    outside_speed_mm_s: float = 100 * _INCH / 60
+    approach_speed_outside_mm_s: float = 100 * _INCH / 60
     inside_speed_mm_s: float = 20 * _INCH / 60
 
 
-def plan_retract_from_part(cut_record: CutRecord, present: PresentState) -> tuple[Retract, int]:
+def plan_retract_from_part(cut_record: CutRecord, present: CurrentMachineState) -> tuple[Retract, int]:
     """Return the retract that moves the tool in use out of the part, and the number of this tool."""
     broken = present.interruption
     if broken is None or broken.tool_number not in cut_record.tool_offsets:
         return _unknown(cut_record, present), present.modal.tool
     tool = broken.tool_number
     x, z = _tip(cut_record, present.axis_positions, tool)
-    place = _find_stale_position(cut_record, broken, x, z) if broken.is_stale else None
+    place = _find_stale_position(cut_record, broken, x, z) if broken.was_power_lost else None
     if place is not None:
         return _block_turned_mill(
             plan_retract(cut_record, place, max(broken.last_complete_block, place.block_number)), present
@@ -108,7 +108,7 @@ def plan_retract_from_part(cut_record: CutRecord, present: PresentState) -> tupl
         )
         return (
             found
-            if found.situation is not ToolSituation.UNKNOWN
+            if found.tool_situation is not ToolSituation.UNKNOWN
             else _remaining_retract(cut_record, broken, x, z)
         ), tool
     if cut_record.is_outside_material(x, z, tool):
@@ -126,7 +126,7 @@ def _tip(cut: CutRecord, at: tuple[float, ...], tool: int) -> tuple[float, float
     return at[0] - off_x, at[1] - off_z
 
 
-def _unknown(cut_record: CutRecord, present: PresentState) -> Retract:
+def _unknown(cut_record: CutRecord, present: CurrentMachineState) -> Retract:
     """Return the retract if the point of interruption is not known.
 
     The tool counts as clear only if every tool of the program would be outside the material here.
@@ -144,10 +144,10 @@ def _find_stale_position(
     """Return the tool position on the first row from the saved row on that passes (x, z), or None."""
     row = max(0, cut_record.find_last_row(interruption.block_number))
     for each in range(row, min(row + _MAX_LATER_ROWS, len(cut_record))):
-        if int(cut_record.tool_number[each]) != interruption.tool_number:
+        if int(cut_record.tool_numbers[each]) != interruption.tool_number:
             break
         if compute_distance_from_row(cut_record, each, x, z) <= PATH_TOLERANCE_MM:
-            return ToolPosition(int(cut_record.block_number[each]), interruption.tool_number, x, z)
+            return ToolPosition(int(cut_record.block_numbers[each]), interruption.tool_number, x, z)
     return None
 
 
@@ -155,7 +155,7 @@ def _remaining_retract(cut_record: CutRecord, interruption: Interruption, x: flo
     """Return the rest of a retract if an earlier restart was stopped in its approach or retract."""
     row = cut_record.find_last_row(interruption.block_number)
     place = None if row < 0 else find_nearest_point(cut_record, row, x, z)
-    if place is None or int(cut_record.tool_number[row]) != interruption.tool_number:
+    if place is None or int(cut_record.tool_numbers[row]) != interruption.tool_number:
         return Retract(ToolSituation.UNKNOWN)
     was = plan_retract(
         cut_record,
@@ -165,11 +165,11 @@ def _remaining_retract(cut_record: CutRecord, interruption: Interruption, x: flo
     return _shorten_retract(was, place, x, z)
 
 
-def _block_turned_mill(retract: Retract, present: PresentState) -> Retract:
+def _block_turned_mill(retract: Retract, present: CurrentMachineState) -> Retract:
     """Return the retract, without a path if C has rotated while a milling tool was in its cut."""
     broken = present.interruption
     if (
-        retract.situation is not ToolSituation.MILLING
+        retract.tool_situation is not ToolSituation.MILLING
         or broken is None
         or len(present.axis_positions) < 3
         or len(broken.machine_position) < 3
@@ -179,7 +179,7 @@ def _block_turned_mill(retract: Retract, present: PresentState) -> Retract:
     return (
         retract
         if min(turned, _TURN - turned) <= _MAX_C_TURN_DEG
-        else replace(retract, situation=ToolSituation.PART_TURNED, legs=())
+        else replace(retract, tool_situation=ToolSituation.PART_TURNED, legs=())
     )
 
 
@@ -193,8 +193,8 @@ def _shorten_retract(retract: Retract, start: tuple[float, float], x: float, z: 
     return Retract(ToolSituation.UNKNOWN, direction=retract.direction)
 
 
-def make_lathe_start(
-    restart_point: RestartPoint, present: PresentState, choices: OperatorChoices
+def make_lathe_pass_start(
+    restart_point: RestartPoint, present: CurrentMachineState, choices: OperatorChoices
 ) -> PassStart:
     """Return the start of a pass at a line of a lathe, with C at the nearest equivalent angle."""
     point, modal = restart_point.checkpoint, restart_point.checkpoint.modal
@@ -204,11 +204,13 @@ def make_lathe_start(
         )
     modal = modal._replace(coolant=modal.coolant and choices.uses_coolant)
     steps, skips = plan_lathe_approach(restart_point, present, choices), any(restart_point.skipped_lines)
-    return PassStart(point._replace(modal=modal), restart_point.line_number, approach=steps, skips_cuts=skips)
+    return PassStart(
+        point._replace(modal=modal), restart_point.line_number, approach_steps=steps, skips_cuts=skips
+    )
 
 
 def plan_lathe_approach(
-    restart_point: RestartPoint, present: PresentState, choices: OperatorChoices
+    restart_point: RestartPoint, present: CurrentMachineState, choices: OperatorChoices
 ) -> tuple[ApproachStep, ...]:
     """Return all approach steps from the current position at rest to the first block of the line."""
     out = (
@@ -227,7 +229,7 @@ def plan_lathe_approach(
 
 
 def plan_exit_moves(
-    cut_record: CutRecord, present: PresentState, choices: OperatorChoices
+    cut_record: CutRecord, present: CurrentMachineState, choices: OperatorChoices
 ) -> tuple[StraightLeg, ...]:
     """Return the moves that bring the tool out of the part, with Z clear of the part.
 
@@ -263,7 +265,7 @@ def _free(cut_record: CutRecord, tool: int, start: tuple[float, float], end: tup
 
 
 def list_starting_functions(
-    restart_point: RestartPoint, present: PresentState, choices: OperatorChoices
+    restart_point: RestartPoint, present: CurrentMachineState, choices: OperatorChoices
 ) -> tuple[ApproachStep, ...]:
     """Return the machine functions that the restart will turn on, for confirmation by the operator."""
     return tuple(step for step in _starts(restart_point, present, choices) if isinstance(step, FunctionStep))
@@ -279,7 +281,9 @@ def list_stopping_functions(target: ModalState, present: ModalState) -> Iterator
         yield FunctionStep(OutputSwitch(name, False), Message("{name} OFF", name=name.upper()))
 
 
-def _starts(found: RestartPoint, now: PresentState, choices: OperatorChoices) -> Iterator[ApproachStep]:
+def _starts(
+    found: RestartPoint, now: CurrentMachineState, choices: OperatorChoices
+) -> Iterator[ApproachStep]:
     point, wanted = found.checkpoint, found.checkpoint.modal
     if wanted.c_locked:
         yield FunctionStep(SpindleLock(orient=False), "M89")
@@ -358,7 +362,7 @@ def _leg(
     if not (along_x or along_z):
         return []
     text = ("X" if along_x else "") + ("Z" if along_z else "")
-    feed = choices.outside_speed_mm_s if rapid else choices.inside_speed_mm_s
+    feed = choices.approach_speed_outside_mm_s if rapid else choices.inside_speed_mm_s
     return [StraightLeg(to_x if along_x else None, to_z if along_z else None, feed, rapid, text)]
 
 
@@ -383,14 +387,14 @@ class _MovePlan:
     kinematics: Kinematics
     axis_positions: dict[str, float]
 
-    def move_to(self, target: dict[str, float], feed: float | None) -> Iterator[AxesLeg]:
+    def move_to(self, target: dict[str, float], feed: float | None) -> Iterator[MultiAxisLeg]:
         """Yield a move of the axes that are not at the target yet."""
         moving = {
             name: value for name, value in target.items() if abs(value - self.axis_positions[name]) > _SAME
         }
         self.axis_positions |= moving
         if moving:
-            yield AxesLeg(tuple(moving.items()), feed, " ".join(moving))
+            yield MultiAxisLeg(tuple(moving.items()), feed, " ".join(moving))
 
     @property
     def linear_position(self) -> Vector:
@@ -400,7 +404,7 @@ class _MovePlan:
     def tool_axis(self) -> Vector:
         return self.kinematics.compute_tool_direction(self.axis_positions)
 
-    def available_travel(self, start: Vector) -> float:
+    def compute_available_travel(self, start: Vector) -> float:
         """Return the possible travel from ``start`` along the tool axis away from the part, in mm.
 
         The travel is inf if no axis has a limit.
@@ -416,8 +420,11 @@ class _MovePlan:
         return dict(zip(_LINEAR_AXES, add_vectors(start, scale_vector(self.tool_axis, length)), strict=True))
 
 
-def make_mill_start(
-    restart_point: RestartPoint, present: PresentState, choices: OperatorChoices, kinematics: Kinematics
+def make_mill_pass_start(
+    restart_point: RestartPoint,
+    present: CurrentMachineState,
+    choices: OperatorChoices,
+    kinematics: Kinematics,
 ) -> PassStart:
     """Return the start of a pass at the restart line on a mill."""
     point, modal = restart_point.checkpoint, restart_point.checkpoint.modal
@@ -426,7 +433,7 @@ def make_mill_start(
     return PassStart(
         point._replace(modal=modal),
         restart_point.line_number,
-        approach=steps,
+        approach_steps=steps,
         skips_cuts=any(restart_point.skipped_lines),
     )
 
@@ -444,7 +451,7 @@ def explain_missing_path(kinematics: Kinematics) -> str:
 
 
 def find_start_position(
-    restart_point: RestartPoint, present: PresentState, kinematics: Kinematics
+    restart_point: RestartPoint, present: CurrentMachineState, kinematics: Kinematics
 ) -> dict[str, float]:
     """Return the start position of the line by axis; an axis that the program has not moved does not move."""
     places = zip(kinematics.axis_names, restart_point.axis_positions, present.axis_positions, strict=True)
@@ -452,7 +459,7 @@ def find_start_position(
 
 
 def _steps(
-    found: RestartPoint, now: PresentState, choices: OperatorChoices, machine: Kinematics
+    found: RestartPoint, now: CurrentMachineState, choices: OperatorChoices, machine: Kinematics
 ) -> Iterator[ApproachStep]:
     wanted, goal = found.checkpoint.modal, find_start_position(found, now, machine)
     move_plan = _MovePlan(machine, dict(zip(machine.axis_names, now.axis_positions, strict=True)))
@@ -469,7 +476,7 @@ def _steps(
             ProgramStop(optional=False, message=Message("TOOL {tool}", tool=wanted.tool)), "STOP"
         )
     place: Vector = goal["X"], goal["Y"], goal["Z"]
-    room = max(move_plan.available_travel(place), 0.0)
+    room = max(move_plan.compute_available_travel(place), 0.0)
     over = move_plan.offset_position(place, room)
     yield from move_plan.move_to({"X": over["X"], "Y": over["Y"]}, None)
     yield from list_starting_functions(found, now, choices)
@@ -478,10 +485,10 @@ def _steps(
     yield from move_plan.move_to(move_plan.offset_position(place, 0.0), choices.inside_speed_mm_s)
 
 
-def _retract_moves(plan: _MovePlan, choices: OperatorChoices) -> Iterator[AxesLeg]:
+def _retract_moves(plan: _MovePlan, choices: OperatorChoices) -> Iterator[MultiAxisLeg]:
     """Yield the retract along the tool axis, slow at first, and then the move of Z to its upper limit."""
     start = plan.linear_position
-    room = max(plan.available_travel(start), 0.0)
+    room = max(plan.compute_available_travel(start), 0.0)
     slowly = min(_SLOW_RETRACT_MM, room)
     yield from plan.move_to(plan.offset_position(start, slowly), choices.inside_speed_mm_s)
     yield from plan.move_to(plan.offset_position(start, room), None)

@@ -18,22 +18,22 @@ _NOSE_ON, _NOSE_OFF = frozenset({41, 42}), 40
 class LineRange(NamedTuple):
     """The lines ``first`` to ``last_line`` of a program, counted from 1.
 
-    If a program cannot be restarted from these lines, ``refusal_reason`` is the template of the message. Its
-    placeholders are ``line``, the restart line, and ``begin``, the line on which the contour, corner or
+    If a program cannot be restarted from these lines, ``rejection_template`` is the template of the message.
+    Its placeholders are ``line``, the restart line, and ``begin``, the line on which the contour, corner or
     other section begins.
     """
 
     first: int
     last_line: int
-    refusal_reason: str = ""
+    rejection_template: str = ""
     start_line: int = 0
 
-    def make_message(self, line: int) -> Message:
+    def make_rejection_message(self, line: int) -> Message:
         """Return the reason why a program cannot be restarted from this line.
 
         The line must be within the range.
         """
-        return Message(self.refusal_reason, line=line, begin=self.start_line)
+        return Message(self.rejection_template, line=line, begin=self.start_line)
 
 
 class RestartSuitability:
@@ -48,7 +48,7 @@ class RestartSuitability:
         self._apart = sorted((*self.unsuitable_ranges, *self.repeated_ranges), key=order)
         self._calls = _calls(program)
 
-    def explain_unsuitable(self, line: int) -> str:
+    def explain_unsuitable_line(self, line: int) -> str:
         """Return the reason why a restart from this line is not possible.
 
         The result is an empty string if the text of the program allows a restart.
@@ -61,17 +61,17 @@ class RestartSuitability:
             )
         for lines in self.unsuitable_ranges:
             if lines.first <= line <= lines.last_line:
-                return lines.make_message(line)
+                return lines.make_rejection_message(line)
         return "" if self._steps[line - 1] is not None else Message("Line {line} is empty.", line=line)
 
-    def is_repeated(self, line: int) -> bool:
+    def is_repeated_line(self, line: int) -> bool:
         """Return whether a line is in a loop or subroutine.
 
         Such a line may be executed several times or never.
         """
         return any(each.first <= line <= each.last_line for each in self.repeated_ranges)
 
-    def find_nearest(self, line: int, direction: int) -> int:
+    def find_nearest_line(self, line: int, direction: int) -> int:
         """Return the nearest suitable line in one direction, or 0 if that direction has no suitable line.
 
         ``direction`` is 1 to search forward and -1 to search backward. Loops and subroutines are skipped.
@@ -141,7 +141,7 @@ def _repeated(program: Program) -> Iterator[LineRange]:
 def _subroutines(program: Program) -> Iterator[tuple[int, int, int]]:
     """Yield the first line, the last line and the number of each subroutine."""
     structure = program.structure
-    for number, start in structure.subroutines.items():
+    for number, start in structure.subroutine_starts.items():
         yield start + 1, structure.subroutine_ends.get(number, len(program.executable_lines) - 1) + 1, number
 
 
@@ -180,7 +180,7 @@ def _plane(step: Statement, number: int, begun: int) -> tuple[int, int]:
 
     Also returns the start line of the transformation that ends here. Each line is 0 if there is none.
     """
-    name = step.plane_line.name if step.plane_line is not None else ""
+    name = step.plane_switching_line.name if step.plane_switching_line is not None else ""
     if name == "END":
         return 0, begun
     return (number if name and not begun else begun), 0

@@ -37,15 +37,15 @@ class LineVisit(NamedTuple):
 class Interruption(NamedTuple):
     """The point at which a program was interrupted: elementary block, tool, and machine position in mm.
 
-    All blocks up to ``last_started_block`` were started. ``is_stale`` means that the control lost power.
-    The tool may then have moved for up to a second after this point.
+    All blocks up to ``last_started_block`` were started. ``was_power_lost`` means that the control lost
+    power. The tool may then have moved for up to a second after this point.
     """
 
     block_number: int
     tool_number: int
     machine_position: tuple[float, ...]
     last_started_block: int
-    is_stale: bool = False
+    was_power_lost: bool = False
 
     @property
     def last_complete_block(self) -> int:
@@ -79,7 +79,7 @@ class RestartPoint:
 
 
 @dataclass(frozen=True, slots=True)
-class RestartRefusal:
+class RestartRejection:
     """The reason why a restart at a line is not possible, with the nearest suitable lines.
 
     A suitable line is 0 if none exists in that direction.

@@ -47,20 +47,20 @@ _MAX_ROWS_BACK = 24  # maximum rows back from which the retract of the program i
 class _Segment(NamedTuple):
     start_x: float
     start_z: float
-    x: float
-    z: float
+    end_x: float
+    end_z: float
     move_kind: int
     record_row: int
 
     @property
     def length(self) -> float:
-        return hypot(self.x - self.start_x, self.z - self.start_z)
+        return hypot(self.end_x - self.start_x, self.end_z - self.start_z)
 
 
 def plan_retract(cut_record: CutRecord, position: ToolPosition, last_complete_block: int) -> Retract:
     """Return the retract from this position, if the blocks to ``last_complete_block`` were cut."""
     row = cut_record.find_last_row(position.block_number)
-    if row >= 0 and int(cut_record.tool_number[row]) == position.tool_number:
+    if row >= 0 and int(cut_record.tool_numbers[row]) == position.tool_number:
         row, on = _nearest_row(cut_record, row, position)
         if on:
             return _Search(cut_record, position, row, last_complete_block).find_retract()
@@ -97,10 +97,10 @@ class _Search:
             last_complete_block,
         )
         self.x, self.z = position.x, position.z
-        self.move_kind = int(cut_record.move_kind[row])
-        left = hypot(float(cut_record.x[row]) - self.x, float(cut_record.z[row]) - self.z)
+        self.move_kind = int(cut_record.move_kinds[row])
+        left = hypot(float(cut_record.end_x[row]) - self.x, float(cut_record.end_z[row]) - self.z)
         # the tool is within the row and not at its end
-        self.is_inside_row = left > _END and position.block_number <= int(cut_record.block_number[row])
+        self.is_inside_row = left > _END and position.block_number <= int(cut_record.block_numbers[row])
 
     def find_retract(self) -> Retract:  # noqa: PLR0911 - one result for each position of the tool in the part
         how = self.move_kind
@@ -132,15 +132,15 @@ class _Search:
         """Yield the rest of this row and the following moves of this tool on this bar section."""
         cut, row = self.cut_record, self.row
         if self.is_inside_row:
-            yield _Segment(self.x, self.z, float(cut.x[row]), float(cut.z[row]), self.move_kind, row)
-        tool, bar = int(cut.tool_number[row]), int(cut.bar_section[row])
+            yield _Segment(self.x, self.z, float(cut.end_x[row]), float(cut.end_z[row]), self.move_kind, row)
+        tool, bar = int(cut.tool_numbers[row]), int(cut.bar_sections[row])
         for each in range(row + 1, min(row + 1 + _AHEAD, len(cut))):
-            if int(cut.tool_number[each]) != tool or int(cut.bar_section[each]) != bar:
+            if int(cut.tool_numbers[each]) != tool or int(cut.bar_sections[each]) != bar:
                 return
             yield self._segment(each)
 
     def _segment(self, row: int) -> _Segment:
-        return _Segment(*self.cut_record.get_end_points(row), int(self.cut_record.move_kind[row]), row)
+        return _Segment(*self.cut_record.get_end_points(row), int(self.cut_record.move_kinds[row]), row)
 
     def _next_rapids(self) -> Retract | None:
         """Return the next rapids of the program as a retract.
@@ -151,7 +151,7 @@ class _Search:
         for segment in self._following_segments():
             if segment.move_kind & FEED or len(legs) >= _LEGS:
                 return None
-            legs.append(RetractLeg(segment.x, segment.z))
+            legs.append(RetractLeg(segment.end_x, segment.end_z))
             if self._has_left_part(legs[-1]) or self._is_approach_rapid(segment.record_row):
                 return self._made(legs)
         return None
@@ -172,8 +172,8 @@ class _Search:
             first = self.row
         rows = self._same_tool_rows(first)
         cut = self.cut_record
-        past = (cut.z[rows] > level) & (cut.z0[rows] <= level)
-        passes = np.flatnonzero(((cut.move_kind[rows] & FEED) == 0) & past)
+        past = (cut.end_z[rows] > level) & (cut.start_z[rows] <= level)
+        passes = np.flatnonzero(((cut.move_kinds[rows] & FEED) == 0) & past)
         if not len(passes):
             return None
         crossing = first + int(passes[0])
@@ -193,7 +193,7 @@ class _Search:
 
         Returns None if the rest of the row is itself an obstacle.
         """
-        x, z = float(self.cut_record.x[self.row]), float(self.cut_record.z[self.row])
+        x, z = float(self.cut_record.end_x[self.row]), float(self.cut_record.end_z[self.row])
         sideways = 0.0 if self.move_kind & THREAD else abs(x) - abs(self.x)
         here = z > self.z - _SHOULDER_CLEARANCE_MM and abs(sideways) > _PARALLEL_TOLERANCE_MM
         return None if here or z > level else sideways
@@ -202,8 +202,8 @@ class _Search:
         """Return the rows from ``first`` on with this tool and bar section, up to a maximum count."""
         cut = self.cut_record
         far = slice(first, first + _MAX_SEARCH_ROWS)
-        other = (cut.tool_number[far] != cut.tool_number[self.row]) | (
-            cut.bar_section[far] != cut.bar_section[self.row]
+        other = (cut.tool_numbers[far] != cut.tool_numbers[self.row]) | (
+            cut.bar_sections[far] != cut.bar_sections[self.row]
         )
         ends = np.flatnonzero(other)
         return slice(first, first + (int(ends[0]) if len(ends) else len(other)))
@@ -211,25 +211,25 @@ class _Search:
     def _is_obstructed(self, rows: slice, level: float) -> bool:
         """Return whether a cut in these rows reaches this Z or moves along X at this Z."""
         cut = self.cut_record
-        feeds = (cut.move_kind[rows] & FEED) != 0
-        upper = np.maximum(cut.z[rows], cut.z0[rows])
+        feeds = (cut.move_kinds[rows] & FEED) != 0
+        upper = np.maximum(cut.end_z[rows], cut.start_z[rows])
         here = (upper > self.z - _SHOULDER_CLEARANCE_MM) & (
             np.abs(self._outward_travels(rows)) > _PARALLEL_TOLERANCE_MM
         )
-        held = (cut.move_kind[rows] & (STILL | FACE | SIDE)) != 0
+        held = (cut.move_kinds[rows] & (STILL | FACE | SIDE)) != 0
         return bool((feeds & ((upper > level) | here | held)).any())
 
     def _outward_travels(self, rows: slice) -> FloatArray:
         """Return the outward travel of each cut in these rows in mm, with 0 for threads and rapids."""
         cut = self.cut_record
-        out = np.abs(cut.x[rows]) - np.abs(cut.x0[rows])
-        return np.where((cut.move_kind[rows] & (FEED | THREAD)) == FEED, out, 0.0)
+        out = np.abs(cut.end_x[rows]) - np.abs(cut.start_x[rows])
+        return np.where((cut.move_kinds[rows] & (FEED | THREAD)) == FEED, out, 0.0)
 
     def _out_with(
         self, segment: _Segment, steps: Iterator[_Segment], *, grew: bool, shrank: bool
     ) -> Retract | None:
-        share = (max(self.z, segment.start_z) - segment.start_z) / (segment.z - segment.start_z)
-        to_x = segment.start_x + share * (segment.x - segment.start_x)
+        share = (max(self.z, segment.start_z) - segment.start_z) / (segment.end_z - segment.start_z)
+        to_x = segment.start_x + share * (segment.end_x - segment.start_x)
         out = abs(to_x) - abs(self.x)
         if (to_x < -SAME_POINT_MM) != (self.x < -SAME_POINT_MM) and max(
             abs(to_x), abs(self.x)
@@ -244,12 +244,12 @@ class _Search:
             and not self._is_cleared(abs(to_x))
         ):
             return None
-        legs = [RetractLeg(to_x, self.z), RetractLeg(segment.x, segment.z)]
+        legs = [RetractLeg(to_x, self.z), RetractLeg(segment.end_x, segment.end_z)]
         while not self._has_left_part(legs[-1]):
             after = next(steps, None)
             if after is None or after.move_kind & FEED or len(legs) >= _LEGS:
                 return None
-            legs.append(RetractLeg(after.x, after.z))
+            legs.append(RetractLeg(after.end_x, after.end_z))
         return self._made(legs)
 
     def _has_left_part(self, leg: RetractLeg) -> bool:
@@ -265,18 +265,18 @@ class _Search:
         Adjacent passes must be closer than the tool width, or a pass must have retracted through the gap.
         """
         cut, z, side = self.cut_record, self.z, -1.0 if self.x < 0.0 else 1.0
-        low, high = np.minimum(cut.z0, cut.z), np.maximum(cut.z0, cut.z)
+        low, high = np.minimum(cut.start_z, cut.end_z), np.maximum(cut.start_z, cut.end_z)
         past = (
-            (cut.tool_number == self.position.tool_number)
-            & (cut.bar_section == cut.bar_section[self.row])
-            & (cut.block_number <= self.last_complete_block)
+            (cut.tool_numbers == self.position.tool_number)
+            & (cut.bar_sections == cut.bar_sections[self.row])
+            & (cut.block_numbers <= self.last_complete_block)
         )
         past &= (np.arange(len(cut)) < self.row) & (low <= z + SAME_POINT_MM) & (high >= z - SAME_POINT_MM)
         rows = np.flatnonzero(
-            past & (high - low > _PARALLEL_TOLERANCE_MM) & ((cut.move_kind & (STILL | THREAD)) == 0)
+            past & (high - low > _PARALLEL_TOLERANCE_MM) & ((cut.move_kinds & (STILL | THREAD)) == 0)
         )
-        share = (z - cut.z0[rows]) / (cut.z[rows] - cut.z0[rows])
-        radii = side * (cut.x0[rows] + share * (cut.x[rows] - cut.x0[rows]))
+        share = (z - cut.start_z[rows]) / (cut.end_z[rows] - cut.start_z[rows])
+        radii = side * (cut.start_x[rows] + share * (cut.end_x[rows] - cut.start_x[rows]))
         reached = abs(self.x)
         for radius, row in sorted(zip(radii.tolist(), rows.tolist(), strict=True)):
             if radius <= reached + SAME_POINT_MM:
@@ -300,14 +300,14 @@ class _Search:
         before = row - 1
         if (
             before < 0
-            or cut.move_kind[row] & FEED
-            or not cut.move_kind[before] & FEED
-            or cut.z[row] < cut.z0[row]
+            or cut.move_kinds[row] & FEED
+            or not cut.move_kinds[before] & FEED
+            or cut.end_z[row] < cut.start_z[row]
         ):
             return inf
         return (
-            side * float(cut.x0[before])
-            if abs(cut.z[before] - cut.z0[before]) <= _PARALLEL_TOLERANCE_MM
+            side * float(cut.start_x[before])
+            if abs(cut.end_z[before] - cut.start_z[before]) <= _PARALLEL_TOLERANCE_MM
             else inf
         )
 
@@ -322,7 +322,7 @@ class _Search:
         points = [RetractLeg(self.x, self.z)]
         for segment in self._earlier_segments():
             if not self.is_inside_row and len(points) == 1:
-                points[0] = RetractLeg(segment.x, segment.z)
+                points[0] = RetractLeg(segment.end_x, segment.end_z)
             ahead = self._step_back(segment, points[-1]) if len(points) <= _MAX_ROWS_BACK else None
             if ahead is not None:
                 return self._made([*remove_detours([*points, ahead[0]])[1:], *ahead[1]])
@@ -337,21 +337,21 @@ class _Search:
     def _earlier_segments(self) -> Iterator[_Segment]:
         """Yield the earlier path segments of this tool on this bar section, in reverse order."""
         cut, row = self.cut_record, self.row
-        tool, bar = int(cut.tool_number[row]), int(cut.bar_section[row])
+        tool, bar = int(cut.tool_numbers[row]), int(cut.bar_sections[row])
         before: _Segment | None = None
         for each in range(row, max(-1, row - _BACK), -1):
             segment = self._segment(each)
             other = (
-                int(cut.tool_number[each]) != tool
-                or int(cut.bar_section[each]) != bar
-                or int(cut.block_number[each]) > self.last_complete_block
+                int(cut.tool_numbers[each]) != tool
+                or int(cut.bar_sections[each]) != bar
+                or int(cut.block_numbers[each]) > self.last_complete_block
             )
             unknown = isnan(segment.start_x) or isnan(segment.start_z)
             if other or unknown or segment.move_kind & (THREAD | STILL | FACE | SIDE):
                 return
             if (
                 before is not None
-                and hypot(segment.x - before.start_x, segment.z - before.start_z) > PATH_TOLERANCE_MM
+                and hypot(segment.end_x - before.start_x, segment.end_z - before.start_z) > PATH_TOLERANCE_MM
             ):
                 return
             yield segment
@@ -374,7 +374,7 @@ class _Search:
         share = min(_BACKOFF_MM, length / 2) / length
         leg = RetractLeg(at.x + share * (segment.start_x - at.x), at.z + share * (segment.start_z - at.z))
         place = ToolPosition(
-            int(self.cut_record.block_number[segment.record_row]), self.position.tool_number, leg.x, leg.z
+            int(self.cut_record.block_numbers[segment.record_row]), self.position.tool_number, leg.x, leg.z
         )
         found = _Search(
             self.cut_record, place, segment.record_row, self.last_complete_block
@@ -384,20 +384,20 @@ class _Search:
     def _is_approach_rapid(self, row: int) -> bool:
         """Return whether the row is the rapid that moves the tool from outside to the part after its T."""
         cut = self.cut_record
-        if row < 0 or cut.move_kind[row] & FEED or isnan(cut.x[row]) or isnan(cut.z[row]):
+        if row < 0 or cut.move_kinds[row] & FEED or isnan(cut.end_x[row]) or isnan(cut.end_z[row]):
             return False
         before = row - 1
-        first = before < 0 or bool(cut.tool_number[before] != cut.tool_number[row])
-        unknown = not first and (isnan(cut.x[before]) or isnan(cut.z[before]))
-        first = first or (unknown and not cut.move_kind[before] & FEED)
-        return first and cut.is_clear_after_rapid(float(cut.x[row]), float(cut.z[row]))
+        first = before < 0 or bool(cut.tool_numbers[before] != cut.tool_numbers[row])
+        unknown = not first and (isnan(cut.end_x[before]) or isnan(cut.end_z[before]))
+        first = first or (unknown and not cut.move_kinds[before] & FEED)
+        return first and cut.is_clear_after_rapid(float(cut.end_x[row]), float(cut.end_z[row]))
 
     def _direction_only(self) -> Retract:
         """Return a retract without moves, with the direction of the next rapid or of the entry."""
         cut, row = self.cut_record, self.row
         rapids = (segment for segment in self._following_segments() if not segment.move_kind & FEED)
-        ways = [(segment.x - segment.start_x, segment.z - segment.start_z) for segment in rapids]
-        ways.append((float(cut.x0[row]) - self.x, float(cut.z0[row]) - self.z))
+        ways = [(segment.end_x - segment.start_x, segment.end_z - segment.start_z) for segment in rapids]
+        ways.append((float(cut.start_x[row]) - self.x, float(cut.start_z[row]) - self.z))
         away = next(((_sign(dx), _sign(dz)) for dx, dz in ways if _sign(dx) or _sign(dz)), (0, 0))
         return Retract(ToolSituation.UNKNOWN, direction=away if away[1] >= 0 else (0, 0))
 
@@ -422,17 +422,17 @@ class _Search:
         return any(
             segment.move_kind & FEED
             and segment.move_kind & PER_REV
-            and abs(segment.x) <= _CENTERLINE_TOLERANCE_MM
+            and abs(segment.end_x) <= _CENTERLINE_TOLERANCE_MM
             and segment.move_kind & REVERSE != turns
-            and int(cut.tool_number[segment.record_row]) == self.position.tool_number
+            and int(cut.tool_numbers[segment.record_row]) == self.position.tool_number
             for segment in near
         )
 
     def _thread_exit_direction(self) -> tuple[int, int]:
         """Return the direction away from the thread: the direction of the next rapid along X."""
         for segment in self._following_segments():
-            if abs(segment.x - self.x) > _PARALLEL_TOLERANCE_MM and not segment.move_kind & FEED:
-                return _sign(segment.x - self.x), 0
+            if abs(segment.end_x - self.x) > _PARALLEL_TOLERANCE_MM and not segment.move_kind & FEED:
+                return _sign(segment.end_x - self.x), 0
         return 0, 0
 
     def _mill_retract(self, axis: int) -> Retract:
@@ -452,15 +452,15 @@ class _Search:
     def _before_the_face(self) -> float:
         face, own = (
             self.cut_record.compute_front_z(self.position.tool_number),
-            self.cut_record.tool_number == self.position.tool_number,
+            self.cut_record.tool_numbers == self.position.tool_number,
         )
-        return face if face < inf else float(np.nanmax(self.cut_record.z[own]))
+        return face if face < inf else float(np.nanmax(self.cut_record.end_z[own]))
 
     def _mill_axis(self) -> int:
         """Return FACE or SIDE, the surface being milled, from the cuts, the next rapid or the entry."""
         cut, row = self.cut_record, self.row
         near = slice(max(0, row - _BACK), row + _AHEAD)
-        own = cut.move_kind[near][cut.tool_number[near] == self.position.tool_number]
+        own = cut.move_kinds[near][cut.tool_numbers[near] == self.position.tool_number]
         for axis in (FACE, SIDE):
             if (own & axis).any():
                 return axis
@@ -470,7 +470,7 @@ class _Search:
             if not each.move_kind & FEED and each.length > _PARALLEL_TOLERANCE_MM
         )
         segment = next(off, self._segment(row))
-        return SIDE if abs(segment.x - segment.start_x) > abs(segment.z - segment.start_z) else FACE
+        return SIDE if abs(segment.end_x - segment.start_x) > abs(segment.end_z - segment.start_z) else FACE
 
     def _made(self, legs: list[RetractLeg]) -> Retract:
         kept: list[RetractLeg] = []

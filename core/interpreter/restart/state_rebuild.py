@@ -19,12 +19,12 @@ from core.interpreter.restart.cut_record import FACE, SIDE, CutRecord, record_al
 from core.interpreter.restart.loop_passes import LineVisits, find_line_visits
 from core.interpreter.restart.path_distances import PATH_TOLERANCE_MM
 from core.interpreter.restart.restart_lines import RestartSuitability
-from core.interpreter.restart.restart_point import Interruption, LineVisit, RestartPoint, RestartRefusal
+from core.interpreter.restart.restart_point import Interruption, LineVisit, RestartPoint, RestartRejection
 from core.interpreter.restart.restart_retract import plan_retract
 from core.interpreter.restart.tool_retract import Retract, ToolPosition, ToolSituation
 from core.interpreter.shared.actions import InputRead, ProgramEnd
 from core.interpreter.shared.checkpoint import Checkpoint, PassStart
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.language.source import ProgramSource
 from core.message import Message
 
@@ -41,14 +41,16 @@ _NEAR = 64  # number of lines after each of which the passes are compared
 _UP, _DOWN = 3, 100  # number of lines that are tried upward and downward
 
 
-class OmniturnSearch:
+class OmniturnRestartSearch:
     """Search for restart lines in one OmniTurn program with a fixed setup.
 
     The search for a later line continues from an earlier line. ``report_progress`` is called with the
     number of blocks and may raise an exception to cancel the search.
     """
 
-    def __init__(self, source: ProgramSource, setup: Setup, report_progress: ProgressCallback) -> None:
+    def __init__(
+        self, source: ProgramSource, setup: InterpreterSetup, report_progress: ProgressCallback
+    ) -> None:
         self._setup = replace(setup, begin=None, inputs=lambda _terminal: False)
         self.report_progress = report_progress
         self._program: Program = read_program(source, setup.strict)
@@ -68,9 +70,9 @@ class OmniturnSearch:
             )
         return self._cut
 
-    def find_restart(
+    def find_restart_point(
         self, line: int, visit: int = 0, interruption: Interruption | None = None
-    ) -> RestartPoint | RestartRefusal:
+    ) -> RestartPoint | RestartRejection:
         """Return the restart point of a line, or the refusal of the restart with its reason.
 
         ``visit`` selects the execution of the line, from 1. With 0, it is the interrupted execution, or the
@@ -80,20 +82,20 @@ class OmniturnSearch:
         found = self._search(line, visit, interruption)
         if isinstance(found, RestartPoint):
             return found
-        return RestartRefusal(
+        return RestartRejection(
             line, found, self._find_nearest(line, -1, interruption), self._find_nearest(line, 1, interruption)
         )
 
     def _search(self, line: int, visit: int, broken: Interruption | None) -> RestartPoint | str:
-        why = self.line_suitability.explain_unsuitable(line)
+        why = self.line_suitability.explain_unsuitable_line(line)
         if why:
             return why
-        if not self.line_suitability.is_repeated(line):
+        if not self.line_suitability.is_repeated_line(line):
             return self._pass_to_line(line) or self._found(line, self._walk, LineVisit(), broken)
         visits = self._visits_of(line)
         number = visit or visits.find_visit_number(broken.block_number if broken is not None else 0)
         why = visits.explain_missing_visit(line, number)
-        anchor, nth = visits.find_anchor(number) if not why else (0, 0)
+        anchor, nth = visits.find_main_program_visit(number) if not why else (0, 0)
         why = why or self._pass_to_line(anchor, position_known=False)
         if why:
             return why.replace(
@@ -165,7 +167,7 @@ class OmniturnSearch:
     def _found(
         self, line: int, walk: StoppablePass, visit: LineVisit, broken: Interruption | None
     ) -> RestartPoint | str:
-        return make_lathe_restart(line, walk.checkpoint, self.cut_record, visit, broken)
+        return make_lathe_restart_point(line, walk.checkpoint, self.cut_record, visit, broken)
 
     def _find_nearest(self, line: int, direction: int, interruption: Interruption | None) -> int:
         """Return the nearest suitable line, confirmed by a pass up to it, or 0 if no line is found.
@@ -173,7 +175,7 @@ class OmniturnSearch:
         Only a few lines are tried backward, because each of these lines needs another pass.
         """
         for _ in range(_DOWN if direction > 0 else _UP):
-            line = self.line_suitability.find_nearest(line, direction)
+            line = self.line_suitability.find_nearest_line(line, direction)
             if not line or isinstance(self._search(line, 0, interruption), RestartPoint):
                 return line
         return 0
@@ -314,7 +316,7 @@ class OmniturnSearch:
         return next((why for wrong, why in reasons if wrong), "")
 
 
-def make_lathe_restart(
+def make_lathe_restart_point(
     line: int,
     checkpoint: Checkpoint,
     cut_record: CutRecord,
@@ -324,7 +326,7 @@ def make_lathe_restart(
     """Return the restart point with the retract from its start, or a message if no safe path exists."""
     done = _complete_blocks(cut_record, interruption) if interruption is not None else checkpoint.blocks
     back = _plan_retract(cut_record, checkpoint)
-    if back.situation is ToolSituation.CLEAR or (back.is_known and checkpoint.blocks <= done):
+    if back.tool_situation is ToolSituation.CLEAR or (back.is_known and checkpoint.blocks <= done):
         return RestartPoint(
             line,
             checkpoint,
@@ -335,7 +337,7 @@ def make_lathe_restart(
         )
     if checkpoint.blocks > done:
         return make_skipped_cuts_message(line, *_skipped_lines(cut_record, done, checkpoint.blocks))
-    how = _RETRACT_TEXTS.get(back.situation, "")
+    how = _RETRACT_TEXTS.get(back.tool_situation, "")
     return Message(
         "At the start of line {line}, the tool is inside the part, and a safe path to that "
         "point does not exist. {method}",
@@ -371,17 +373,18 @@ def _complete_blocks(cut_record: CutRecord, interruption: Interruption) -> int:
         interruption.last_complete_block != interruption.block_number
         or row < 0
         or off is None
-        or int(cut_record.block_number[row]) != interruption.block_number
+        or int(cut_record.block_numbers[row]) != interruption.block_number
     ):
         return interruption.last_complete_block
     x, z = interruption.machine_position[0] - off[0], interruption.machine_position[1] - off[1]
-    feeds = bool(int(cut_record.move_kind[row]) & 1)
-    at_end = hypot(x - float(cut_record.x[row]), z - float(cut_record.z[row])) <= PATH_TOLERANCE_MM
+    feeds = bool(int(cut_record.move_kinds[row]) & 1)
+    at_end = hypot(x - float(cut_record.end_x[row]), z - float(cut_record.end_z[row])) <= PATH_TOLERANCE_MM
     begin = cut_record.get_end_points(cut_record.find_first_row(row))
     closed = (
-        hypot(begin[0] - float(cut_record.x[row]), begin[1] - float(cut_record.z[row])) <= PATH_TOLERANCE_MM
+        hypot(begin[0] - float(cut_record.end_x[row]), begin[1] - float(cut_record.end_z[row]))
+        <= PATH_TOLERANCE_MM
     )
-    milled = bool(int(cut_record.move_kind[row]) & (SIDE | FACE))
+    milled = bool(int(cut_record.move_kinds[row]) & (SIDE | FACE))
     return (
         interruption.block_number - 1
         if feeds and ((closed and milled) or not at_end)
@@ -403,7 +406,7 @@ def _plan_retract(cut_record: CutRecord, point: Checkpoint) -> Retract:
     row = cut_record.find_last_row(point.blocks)
     if row < 0:
         return Retract(ToolSituation.CLEAR)
-    tool = int(cut_record.tool_number[row])
+    tool = int(cut_record.tool_numbers[row])
     off_x, off_z = cut_record.tool_offsets[tool]
     x, z = point.machine
     return plan_retract(cut_record, ToolPosition(point.blocks, tool, x - off_x, z - off_z), point.blocks)
@@ -415,13 +418,13 @@ def _skipped_lines(cut_record: CutRecord, last_complete_block: int, blocks: int)
     The lower line is first. Both lines are 0 if no cut was skipped.
     """
     rows = (
-        (cut_record.block_number > last_complete_block)
-        & (cut_record.block_number <= blocks)
-        & ((cut_record.move_kind & 1) != 0)
+        (cut_record.block_numbers > last_complete_block)
+        & (cut_record.block_numbers <= blocks)
+        & ((cut_record.move_kinds & 1) != 0)
     )
     if not rows.any():
         return 0, 0
-    ends = int(cut_record.line_number[rows][0]), int(cut_record.line_number[rows][-1])
+    ends = int(cut_record.line_numbers[rows][0]), int(cut_record.line_numbers[rows][-1])
     return min(ends), max(ends)  # a loop can end on an earlier line
 
 
@@ -429,7 +432,7 @@ def _input_lines(program: Program, lines: RestartSuitability) -> list[int]:
     """Return the lines of the main program outside of loops that read an input, in ascending order."""
     steps = enumerate(program.executable_lines, start=1)
     asking = [n for n, step in steps if isinstance(step, Statement) and step.flow_code in {"M95", "M97"}]
-    return [number for number in asking if not lines.explain_unsuitable(number)]
+    return [number for number in asking if not lines.explain_unsuitable_line(number)]
 
 
 def _same_state(one: StoppablePass, other: StoppablePass) -> bool:

@@ -38,14 +38,14 @@ class Retract:
     ``legs`` is empty, and is (0, 0) if it is unknown.
     """
 
-    situation: ToolSituation
+    tool_situation: ToolSituation
     legs: tuple[RetractLeg, ...] = ()
     direction: tuple[int, int] = (0, 0)
 
     @property
     def is_known(self) -> bool:
         """Return whether the tool is clear or its path out of the part is known."""
-        return self.situation is ToolSituation.CLEAR or bool(self.legs)
+        return self.tool_situation is ToolSituation.CLEAR or bool(self.legs)
 
 
 class ToolPosition(NamedTuple):

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Final
 
-from core.plain_value import PlainValue
+from core.plain_value import ValueObject
 
 
-class SpindleRun(PlainValue):
+class SpindleRun(ValueObject):
     """Action of M03, M04 or S that runs the spindle at ``rpm``, which is negative for M04.
 
     With ``surface_speed`` in mm/s, the spindle speed follows the radius of the cut.
@@ -20,7 +20,7 @@ class SpindleRun(PlainValue):
         self.surface_speed: Final = surface_speed_mm_s
 
 
-class SpindleStop(PlainValue):
+class SpindleStop(ValueObject):
     """Action that stops the spindle (M05).
 
     With ``waits_for_standstill``, the next block waits until the spindle is at rest.
@@ -32,7 +32,7 @@ class SpindleStop(PlainValue):
         self.waits_for_standstill: Final = waits_for_standstill
 
 
-class SpindleLock(PlainValue):
+class SpindleLock(ValueObject):
     """Action that stops the spindle and locks it as the C axis (M19, M89, G89).
 
     With ``orient`` (M19), C then rotates to 0.
@@ -44,7 +44,7 @@ class SpindleLock(PlainValue):
         self.orient: Final = orient
 
 
-class SpindlePositioning(PlainValue):
+class SpindlePositioning(ValueObject):
     """Action that stops the spindle at an angle and holds it in position (M19 of Klartext, SPOS).
 
     ``angle`` is in degrees from the spindle index. ``sense`` is the direction of rotation: 1 as for M3, -1
@@ -58,7 +58,7 @@ class SpindlePositioning(PlainValue):
         self.sense: Final = sense
 
 
-class CoolantSwitch(PlainValue):
+class CoolantSwitch(ValueObject):
     """Action that turns the coolant on (M08) or off (M09)."""
 
     __slots__ = __match_args__ = ("on",)
@@ -67,7 +67,7 @@ class CoolantSwitch(PlainValue):
         self.on: Final = on
 
 
-class ColletSwitch(PlainValue):
+class ColletSwitch(ValueObject):
     """Action that clamps (M12) or unclamps (M13) the collet."""
 
     __slots__ = __match_args__ = ("closed",)
@@ -76,7 +76,7 @@ class ColletSwitch(PlainValue):
         self.closed: Final = closed
 
 
-class OutputSwitch(PlainValue):
+class OutputSwitch(ValueObject):
     """Action that switches the output that the machine file assigns to an M function, such as M25 or M26."""
 
     __slots__ = __match_args__ = ("name", "on")
@@ -86,7 +86,7 @@ class OutputSwitch(PlainValue):
         self.on: Final = on
 
 
-class ToolChange(PlainValue):
+class ToolChange(ValueObject):
     """Action that activates another tool offset (T) without axis motion."""
 
     __slots__ = __match_args__ = ("tool",)
@@ -95,7 +95,7 @@ class ToolChange(PlainValue):
         self.tool: Final = tool
 
 
-class WorkShift(PlainValue):
+class WorkShift(ValueObject):
     """Action of G10 that adds to the work shift, in mm with X as a radius, from the next T on."""
 
     __slots__ = __match_args__ = ("x", "z")
@@ -105,7 +105,7 @@ class WorkShift(PlainValue):
         self.z: Final = z
 
 
-class Preset(PlainValue):
+class Preset(ValueObject):
     """Action of G92 that gives the current position new program coordinates, in mm (X as a radius)."""
 
     __slots__ = __match_args__ = ("x", "z")
@@ -115,7 +115,7 @@ class Preset(PlainValue):
         self.z: Final = z
 
 
-class ProgramStop(PlainValue):
+class ProgramStop(ValueObject):
     """Action that waits for Cycle Start (M00, or M01 if ``optional``) and shows ``message`` in large type."""
 
     __slots__ = __match_args__ = ("optional", "message")
@@ -125,7 +125,7 @@ class ProgramStop(PlainValue):
         self.message: Final = message
 
 
-class ProgramEnd(PlainValue):
+class ProgramEnd(ValueObject):
     """Action that ends the program.
 
     M30 resets the M functions (``reset``), and M02 does not change them.
@@ -137,13 +137,13 @@ class ProgramEnd(PlainValue):
         self.reset: Final = reset
 
 
-class CycleRepeatCancel(PlainValue):
+class CycleRepeatCancel(ValueObject):
     """Action that cancels Cycle Repeat (M31)."""
 
     __slots__ = ()
 
 
-class InputWait(PlainValue):
+class InputWait(ValueObject):
     """Action that waits until a terminal is closed (``closed`` is True) or open (M91 to M94)."""
 
     __slots__ = __match_args__ = ("terminal", "closed")
@@ -153,7 +153,7 @@ class InputWait(PlainValue):
         self.closed: Final = closed
 
 
-class InputRead(PlainValue):
+class InputRead(ValueObject):
     """Action that stops all motion before the interpreter reads an input (M95, M97)."""
 
     __slots__ = __match_args__ = ("terminal",)
@@ -162,7 +162,7 @@ class InputRead(PlainValue):
         self.terminal: Final = terminal
 
 
-class Dwell(PlainValue):
+class Dwell(ValueObject):
     """Action that waits for a number of seconds with the axes at rest (G04)."""
 
     __slots__ = __match_args__ = ("seconds",)

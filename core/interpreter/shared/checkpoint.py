@@ -20,7 +20,7 @@ _process = os.urandom(8).hex()
 _numbers = count(1)
 
 
-class StateLine(NamedTuple):
+class ModalStateLine(NamedTuple):
     """One line of the modal state as displayed; ``key`` identifies its group of functions."""
 
     key: str
@@ -45,7 +45,7 @@ class SavedPass(Generic[PartsType]):
     """
 
     def __init__(
-        self, parts: PartsType, shared: tuple[object, ...], state_lines: tuple[StateLine, ...] = ()
+        self, parts: PartsType, shared: tuple[object, ...], state_lines: tuple[ModalStateLine, ...] = ()
     ) -> None:
         self._shared = tuple(_make_stand_in(each) for each in shared)
         self._parts = deepcopy(parts, {id(old): new for old, new in zip(shared, self._shared, strict=True)})
@@ -75,7 +75,7 @@ def _make_stand_in(shared: object) -> object:
     return shared.make_stand_in() if isinstance(shared, ReplacedWhenSaved) else shared
 
 
-class FlowLevel(NamedTuple):
+class CallLevel(NamedTuple):
     """The main program or one active subroutine, with lines as indices from 0.
 
     ``return_index`` is the line at which execution continues after a subroutine that this level has called.
@@ -88,7 +88,7 @@ class FlowLevel(NamedTuple):
     remaining_repeats: tuple[tuple[int, int], ...] = ()
 
 
-FlowPosition = tuple[FlowLevel, ...]
+FlowPosition = tuple[CallLevel, ...]
 """Flow levels from the main program to the active call.
 
 An empty tuple means the main program outside any loop.
@@ -135,7 +135,7 @@ class StraightLeg(NamedTuple):
     text: str
 
 
-class AxesLeg(NamedTuple):
+class MultiAxisLeg(NamedTuple):
     """A straight move of some axes of a mill to machine positions, in mm and degrees.
 
     ``feed`` is in mm/s or degrees/s, or None for a rapid.
@@ -161,14 +161,14 @@ class FunctionStep(NamedTuple):
     text: str
 
 
-ApproachStep = StraightLeg | AxesLeg | CAxisMove | FunctionStep
+ApproachStep = StraightLeg | MultiAxisLeg | CAxisMove | FunctionStep
 """Step of the approach from the current axis positions to the restart point."""
 
 
 class PassStart(NamedTuple):
     """The start of a pass.
 
-    ``is_mdi_line`` means that the text is one MDI line instead of a program. The moves of ``approach``
+    ``is_mdi_line`` means that the text is one MDI line instead of a program. The moves of ``approach_steps``
     precede the line and must end at the position of the checkpoint. With ``skips_cuts``, the part is not
     counted, because earlier cuts are incomplete.
     """
@@ -176,7 +176,7 @@ class PassStart(NamedTuple):
     checkpoint: Checkpoint
     line_number: int = 1
     is_mdi_line: bool = False
-    approach: tuple[ApproachStep, ...] = ()
+    approach_steps: tuple[ApproachStep, ...] = ()
     skips_cuts: bool = False
 
     @property

@@ -68,14 +68,14 @@ class RoughingPlanner:
         self._rapid, self._lift = rapid, lift
         self._at = 0.0, 0.0
         self._done: list[tuple[float, list[ZSpan]]] = []
-        self._free = area.find_spans(0.0)
+        self._free = area.find_clear_spans(0.0)
 
     def add_pass(self, depth: float) -> None:
         """Add one pass through all spans at a depth in mm.
 
         The depth must exceed the depths of all earlier passes.
         """
-        spans = self._area.find_spans(depth)
+        spans = self._area.find_clear_spans(depth)
         before = self._done[-1][0] if self._done else 0.0
         for start, end in spans:
             self._move_above(start)
@@ -194,7 +194,7 @@ class RoughingPlanner:
         depth, lengths = max(start[0], end[0]) - _TOUCHING, (start[1], end[1])
         if line.length <= 2 * _TOUCHING:
             return False
-        if _covering(self._area.find_spans(depth), max(min(lengths), 0.0), max(lengths)):
+        if _covering(self._area.find_clear_spans(depth), max(min(lengths), 0.0), max(lengths)):
             return False
         inner = Line(line.get_point(_TOUCHING), line.get_point(line.length - _TOUCHING))
         return any(find_intersections(inner, element) for element in self._area.contour)

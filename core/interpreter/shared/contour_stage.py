@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Generic, TypeVar
 
-from core.geometry.chamfer_and_rounding import CornerError, CornerTooLargeError, NoCornerError
+from core.geometry.chamfer_and_rounding import CornerError, CornerTooLargeError, SameDirectionError
 from core.geometry.contour_offset import OFFSET_TOLERANCE_MM, GougeError, OffsetBuilder, OffsetPiece
 from core.geometry.lines_and_arcs import (
     SAME_POINT_TOLERANCE_MM,
@@ -166,7 +166,7 @@ class CornerStage(ABC, Generic[CornerType, MarkerType]):
             return None
         try:
             return self._elements(held.corner, make_element(held.block), last)
-        except NoCornerError:
+        except SameDirectionError:
             self._report_straight(held, after)
             return None
         except CornerTooLargeError as problem:
@@ -225,7 +225,7 @@ class CornerStage(ABC, Generic[CornerType, MarkerType]):
 _END_CLEARANCE_RATIO = 0.5
 
 
-def is_gouging(path: Element, contour: Iterable[Element], nose_radius_mm: float) -> bool:
+def is_gouging_contour(path: Element, contour: Iterable[Element], nose_radius_mm: float) -> bool:
     """Return whether the tool nose comes too close to the contour and would gouge it.
 
     The nose has the radius ``nose_radius_mm``. The elements of the contour start with the nearest element.

@@ -79,7 +79,7 @@ class DiagnosticLog:
         return len(self.error_findings) >= MAX_FINDINGS_PER_KIND
 
     @property
-    def is_muted(self) -> bool:
+    def is_warning_limit_reached(self) -> bool:
         """Return whether the log has reached its limit of warnings and notes."""
         return self._others >= MAX_FINDINGS_PER_KIND or self._counted >= MAX_REPEAT_COUNT
 
@@ -97,7 +97,7 @@ class DiagnosticLog:
             if self.is_full:
                 return
             self.error_findings.append(finding)
-        elif self.is_muted:
+        elif self.is_warning_limit_reached:
             return
         elif finding.code in REPEATABLE_CODES:
             self._known.add(key)
@@ -120,7 +120,7 @@ class DiagnosticLog:
                 self.findings[at], occurrence_count=self.findings[at].occurrence_count + 1
             )
 
-    def count_repeat(self, finding: Diagnostic) -> None:
+    def count_repeated_finding(self, finding: Diagnostic) -> None:
         """Increase the count of the earlier finding with the same code, and replace its text.
 
         The finding remains at its first location.

@@ -125,7 +125,7 @@ class Block:
             (low_x, low_z, _), (high_x, high_z, _) = (
                 side.tolist() for side in self.plane.find_travel_range()
             )
-            x, z = self.modal.secondary_x, self.modal.secondary_z
+            x, z = self.modal.secondary_offset_x, self.modal.secondary_offset_z
             return low_x + x, high_x + x, low_z + z, high_z + z
         if self.kind is BlockKind.ARC:
             return compute_arc_extent(self.x0, self.z0, self.x, self.z, self.cx, self.cz, self.clockwise)
@@ -295,7 +295,7 @@ class SectionEndDetector:
         self._pass = 0  # phase of the active thread pass: 1 in its threads, 2 in its pull-out
 
     @property
-    def is_in_thread(self) -> bool:
+    def is_in_thread_pass(self) -> bool:
         """Return whether the previous block belongs to a thread pass, which the next block may end."""
         return self._pass > 0
 

@@ -91,13 +91,13 @@ class InterpreterPass(ABC):
 
     @property
     @abstractmethod
-    def modal(self) -> ModalState:
+    def modal_state(self) -> ModalState:
         """Return the modal state after the last generated block."""
 
     @property
     def checkpoint(self) -> Checkpoint:
         """Return a checkpoint for the next line, which in this base class contains only the modal state."""
-        return Checkpoint(self.modal)
+        return Checkpoint(self.modal_state)
 
     @property
     def blocking_reason(self) -> str:
@@ -147,7 +147,7 @@ class RejectedPass(InterpreterPass):
     """Pass through a program that this machine cannot run, with one finding and no blocks."""
 
     source_block_count = 0
-    modal = ModalState()
+    modal_state = ModalState()
 
     def __init__(self, message: str, hint: str) -> None:
         super().__init__(DiagnosticLog([make_error_diagnostic(0, 0, "machine-kind", message, hint)]))
@@ -162,7 +162,7 @@ class NumberedLine(Protocol):
     """A line of a program with its ``number``, counted from 1."""
 
     @property
-    def number(self) -> int:
+    def line_number(self) -> int:
         """Return the number of the line in the program, counted from 1."""
         ...
 
@@ -198,7 +198,11 @@ class LinePass(InterpreterPass, Generic[LineType]):
             line, self._taken = self._taken or read_next(), None
             if line is None:
                 return
-            if self.stop_condition is not None and self._can_stop(line) and self.stop_condition(line.number):
+            if (
+                self.stop_condition is not None
+                and self._can_stop(line)
+                and self.stop_condition(line.line_number)
+            ):
                 self._taken, self.has_stopped_before_line = line, True
                 return
             self._left -= 1
@@ -222,7 +226,9 @@ def generate_lathe_approach(
     point, offsets = pass_start.checkpoint, (modal.offset_x, modal.offset_z, modal.offset_c)
     at = [value - offset for value, offset in zip(start, offsets, strict=False)]
     turning = 0.0
-    for number, step in enumerate(pass_start.approach, start=point.blocks - len(pass_start.approach) + 1):
+    for number, step in enumerate(
+        pass_start.approach_steps, start=point.blocks - len(pass_start.approach_steps) + 1
+    ):
         x0, z0, c0 = at
         kind, feed, action = BlockKind.ACTION, 0.0, None
         match step:

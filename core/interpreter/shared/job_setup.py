@@ -72,14 +72,14 @@ class ControlLimits:
     z_acceleration_mm_s2: float = 120 * 25.4  # mm/s² of Z; determines the run-up of a thread
     can_unclamp_while_turning: bool = True
     can_start_with_collet_open: bool = False
-    m_outputs: Mapping[int, tuple[str, bool]] = field(default_factory=dict)  # M code → output, state
+    m_code_outputs: Mapping[int, tuple[str, bool]] = field(default_factory=dict)  # M code → output, state
     disabled_m_codes: frozenset[int] = (
         frozenset()
     )  # M codes that the machine file defines but does not enable
     ignored_m_codes: frozenset[int] = frozenset()  # M codes that the machine file ignores
     is_c_enabled: bool = True  # the spindle can be used as the C axis
     has_c_feedback: bool = False  # the drive reports that C is in position
-    c_max_rpm: float = 200.0
+    max_c_rpm: float = 200.0
     c_acceleration_deg_s2: float = 3600.0  # degrees/s²
     c_resolution_deg: float = 0.02  # degrees
     is_c_modulo: bool = True  # SINUMERIK shows C from 0 to below 360, otherwise from -360 to +360
@@ -103,7 +103,7 @@ def read_no_input(_terminal: str) -> bool:
 
 
 @dataclass(frozen=True, slots=True)
-class Setup:
+class InterpreterSetup:
     """Conditions of one pass through a program.
 
     ``start`` is the machine position of all axes (x, z, c on a lathe) before the first block. ``metric``
@@ -114,7 +114,7 @@ class Setup:
 
     tools: Mapping[int, ToolOffset] = field(
         default_factory=dict
-    )  # by T; edges by ``tool_edges.make_row_number``
+    )  # by T; edges by ``tool_edges.make_edge_row_number``
     secondary: Mapping[int, SecondaryOffset] = field(default_factory=dict)
     zero: Mapping[int, ZeroOffset] = field(default_factory=dict)  # 54 to 59; missing offsets are 0
     r: Mapping[int, float] = field(default_factory=dict)  # R parameters of SINUMERIK, as set by the operator
@@ -133,6 +133,6 @@ class Setup:
     preset: int = 0  # number of the active preset
     begin: PassStart | None = None
 
-    def make_stand_in(self) -> Setup:
+    def make_stand_in(self) -> InterpreterSetup:
         """Return the setup without live inputs and without the state at which the pass starts."""
         return replace(self, inputs=read_no_input, begin=None)

@@ -54,31 +54,31 @@ _WORDS = {
 class MachineRequirement(NamedTuple):
     """A machine function that a program requires, and the first line that requires it."""
 
-    function: str
-    line: int
+    required_function: str
+    first_line: int
 
     @property
-    def builder_m_code(self) -> int:
+    def missing_m_code(self) -> int:
         """Return the number of the machine builder's M function that this machine lacks.
 
         Returns 0 if the requirement is not an M function.
         """
-        number = self.function.removeprefix(BUILDER_M_PREFIX)
-        return int(number) if self.function != number and number.isdigit() else 0
+        number = self.required_function.removeprefix(BUILDER_M_PREFIX)
+        return int(number) if self.required_function != number and number.isdigit() else 0
 
     @property
     def description(self) -> str:
         """Return the description of the requirement for the operator."""
-        if self.builder_m_code:
+        if self.missing_m_code:
             return Message(
                 "{what}; {builders_m}",
-                what=self.function,
-                builders_m=format_binding_lines(self.builder_m_code),
+                what=self.required_function,
+                builders_m=format_m_code_instruction(self.missing_m_code),
             )
-        return _WORDS.get(self.function, self.function)
+        return _WORDS.get(self.required_function, self.required_function)
 
 
-def format_binding_lines(code: int) -> Message:
+def format_m_code_instruction(code: int) -> Message:
     """Return the machine file lines that assign a function to a machine builder's M code."""
     return Message(
         'write {code} = {{ output = "NAME", on = true }} under [m_codes] in the machine '
@@ -104,7 +104,7 @@ def remove_repeated_requirements(
     """Return each requirement once, with the first line that needs it."""
     first: dict[str, MachineRequirement] = {}
     for need in requirements:
-        first.setdefault(need.function, need)
+        first.setdefault(need.required_function, need)
     return tuple(first.values())
 
 

@@ -60,12 +60,12 @@ class ModalState(NamedTuple):
     shift_z: float = 0.0
     pending_shift_x: float = 0.0  # sum of G10, active from the next T
     pending_shift_z: float = 0.0
-    tool_x: float = 0.0  # offset of the active tool, machine mm
-    tool_z: float = 0.0
+    tool_offset_x: float = 0.0  # offset of the active tool, machine mm
+    tool_offset_z: float = 0.0
     preset_x: float = 0.0  # G92
     preset_z: float = 0.0
-    secondary_x: float = 0.0  # offset D in force, mm
-    secondary_z: float = 0.0
+    secondary_offset_x: float = 0.0  # offset D in force, mm
+    secondary_offset_z: float = 0.0
     comment: str = ""
     c_locked: bool = False  # M19 or M89: C is an axis, and a C word turns it
     # oriented angle of the spindle from its index, degrees; None if the spindle is not oriented
@@ -77,10 +77,10 @@ class ModalState(NamedTuple):
     settable: int = 0  # SINUMERIK: 54 to 59, 0 under G500
     zero_offset_x: float = 0.0  # settable offset, mm; the offset of C is in offset_c
     zero_offset_z: float = 0.0
-    zero_x: float = 0.0  # SINUMERIK: TRANS and ATRANS, mm
-    zero_z: float = 0.0
+    frame_shift_x: float = 0.0  # SINUMERIK: TRANS and ATRANS, mm
+    frame_shift_z: float = 0.0
     is_c_linear: bool = False  # the third axis is in mm
-    is_c_modulo: bool = False  # C is shown from 0 to below 360 in this program
+    is_c_axis_modulo: bool = False  # C is shown from 0 to below 360 in this program
     mill: VirtualMill | None = None  # between (~PLXC) or (~PLZC) and (END)
 
     def format_length(self, length_mm: float) -> str:
@@ -109,19 +109,19 @@ class ModalState(NamedTuple):
     @property
     def offset_x(self) -> float:
         """Return machine X minus program X as a radius, in mm."""
-        return self.drawing_zero_x + self.shift_x + self.preset_x + self.zero_x
+        return self.drawing_zero_x + self.shift_x + self.preset_x + self.frame_shift_x
 
     @property
     def offset_z(self) -> float:
         """Return machine Z minus program Z in mm."""
-        return self.drawing_zero_z + self.shift_z + self.preset_z + self.zero_z
+        return self.drawing_zero_z + self.shift_z + self.preset_z + self.frame_shift_z
 
     @property
     def drawing_zero_x(self) -> float:
         """Return machine X of the drawing's zero point in mm: tool offset plus settable offset."""
-        return self.zero_offset_x if self.edge == 0 else self.tool_x + self.zero_offset_x
+        return self.zero_offset_x if self.edge == 0 else self.tool_offset_x + self.zero_offset_x
 
     @property
     def drawing_zero_z(self) -> float:
         """Return machine Z of the drawing's zero point in mm: tool offset plus settable offset."""
-        return self.zero_offset_z if self.edge == 0 else self.tool_z + self.zero_offset_z
+        return self.zero_offset_z if self.edge == 0 else self.tool_offset_z + self.zero_offset_z

@@ -15,7 +15,7 @@ RotaryAngles = tuple[float | None, float | None, float | None]
 
 
 @dataclass(frozen=True, slots=True)
-class PlaneSystem:
+class PlaneCoordinateSystem:
     """The coordinate system of a working plane with a tool, in mm and degrees.
 
     Blocks share a plane system until the plane or the tool changes.
@@ -43,12 +43,12 @@ class PlaneSystem:
         """Return whether this is the workpiece system, without a tilted plane or a datum shift."""
         return not self.is_tilted and self.datum == (0.0, 0.0, 0.0)
 
-    def make_workpiece_system(self) -> PlaneSystem:
+    def make_workpiece_system(self) -> PlaneCoordinateSystem:
         """Return the workpiece system with the same tool, for use after a program was canceled."""
         place = self.kinematics.make_transform(
             self.kinematics.zero_angles, self.kinematics.workpiece_rotation, tool_length=self.tool_length_mm
         )
-        return PlaneSystem(
+        return PlaneCoordinateSystem(
             place, self.kinematics, tool_length_mm=self.tool_length_mm, blank_corners=self.blank_corners
         )
 
@@ -66,7 +66,7 @@ class PlanePosition:
     end: Vector
     machine_position: Vector
     rotary_angles: RotaryAngles
-    system: PlaneSystem
+    system: PlaneCoordinateSystem
 
     def convert_to_workpiece_system(self) -> PlanePosition:
         """Return the same position converted to the workpiece system."""

@@ -20,23 +20,23 @@ from core.interpreter.shared.interpretation import (
     LinePass,
     generate_lathe_approach,
 )
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.interpreter.shared.modal_state import ModalState
 from core.interpreter.sinumerik.consequent_faults import MissingAxes, depends_on_state
-from core.interpreter.sinumerik.cycles.cycle_calls import generate_cycle_blocks, note_ineffective_cycle
+from core.interpreter.sinumerik.cycles.cycle_calls import generate_cycle_blocks, log_ineffective_cycle
 from core.interpreter.sinumerik.cycles.drilling_cycles import (
     HOLE_PATTERNS,
     generate_pattern_moves,
     make_missing_cycle_error,
 )
-from core.interpreter.sinumerik.cycles.tapping_cycles import make_tap_block
+from core.interpreter.sinumerik.cycles.tapping_cycles import make_tapping_block
 from core.interpreter.sinumerik.flow.block_search import (
-    InterpreterParts,
+    InterpreterComponents,
     check_single_block,
     make_checkpoint,
     restore_state,
 )
-from core.interpreter.sinumerik.flow.subprogram_flow import Flow, is_main_program_end
+from core.interpreter.sinumerik.flow.subprogram_flow import SinumerikProgramFlow, is_main_program_end
 from core.interpreter.sinumerik.flow.variable_assignments import set_parameters
 from core.interpreter.sinumerik.motion.chamfers_and_roundings import Corner, SinumerikCornerStage, make_corner
 from core.interpreter.sinumerik.motion.fixed_points import make_fixed_point_move, make_home_move
@@ -49,16 +49,16 @@ from core.interpreter.sinumerik.motion.transformations import switch_transformat
 from core.interpreter.sinumerik.motion.transformed_plane import ActiveTransformation
 from core.interpreter.sinumerik.setup.m_functions import (
     check_m_functions,
-    execute_after_motion,
-    execute_before_motion,
+    turn_outputs_off,
+    turn_outputs_on,
 )
 from core.interpreter.sinumerik.setup.modes_and_offsets import (
     check_y_word,
-    execute_frame,
-    execute_frame_block,
-    execute_modes,
-    note_ineffective_words,
+    execute_frame_words,
+    execute_pole_and_limits,
+    log_ineffective_words,
     reset_offsets,
+    set_modal_functions,
 )
 from core.interpreter.sinumerik.setup.spindle_and_dwell import (
     execute_spindle_words,
@@ -68,7 +68,12 @@ from core.interpreter.sinumerik.setup.spindle_and_dwell import (
     switch_live_tool,
 )
 from core.interpreter.sinumerik.setup.tools_and_edges import execute_tool_words
-from core.interpreter.sinumerik.sinumerik_state import ARC_MOTIONS, TAP_MOTIONS, THREAD_MOTIONS, State
+from core.interpreter.sinumerik.sinumerik_state import (
+    ARC_MOTIONS,
+    TAP_MOTIONS,
+    THREAD_MOTIONS,
+    SinumerikState,
+)
 from core.interpreter.sinumerik.sinumerik_statement import Statement, make_statement
 from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.sinumerik.control_differences import find_missing_function
@@ -94,13 +99,13 @@ _LINES_AFTER_ERROR = 20_000
 class Interpreter(LinePass[LexedBlock]):
     """One pass through a SINUMERIK program and its subprograms."""
 
-    def __init__(self, source: ProgramSource, setup: Setup) -> None:
+    def __init__(self, source: ProgramSource, setup: InterpreterSetup) -> None:
         super().__init__(DiagnosticLog())
         self._source = source
-        self._state = State(setup, self._log)
+        self._state = SinumerikState(setup, self._log)
         self._corners = SinumerikCornerStage(self._state, self._log)
         self._compensation = CompensationStage(self._state, self._log)
-        self._flow = Flow(source, self._state)
+        self._flow = SinumerikProgramFlow(source, self._state)
         self._setup = setup
         self._missing_axes = MissingAxes()
         if setup.begin is not None:
@@ -115,7 +120,7 @@ class Interpreter(LinePass[LexedBlock]):
         )
 
     @property
-    def modal(self) -> ModalState:
+    def modal_state(self) -> ModalState:
         """Return the modal state after the last generated block."""
         return self._state.modal
 
@@ -136,8 +141,8 @@ class Interpreter(LinePass[LexedBlock]):
     @property
     def checkpoint(self) -> Checkpoint:
         """Return a checkpoint with the state at the start of the next block."""
-        parts = InterpreterParts(self._state, self._corners, self._flow, self._taken)
-        return make_checkpoint(parts, (self._setup, self._log, *self._flow.routines), self._made)
+        parts = InterpreterComponents(self._state, self._corners, self._flow, self._taken)
+        return make_checkpoint(parts, (self._setup, self._log, *self._flow.known_routines), self._made)
 
     @property
     def _active_transformation(self) -> ActiveTransformation | None:
@@ -165,11 +170,11 @@ class Interpreter(LinePass[LexedBlock]):
         """Restore the state that the first block of this pass inherits."""
         kept = pass_start.checkpoint.kept
         if kept is not None:
-            parts: InterpreterParts = kept.copy_parts(self._setup, self._log)
-            self._state, self._corners = parts.state, parts.corners
+            parts: InterpreterComponents = kept.copy_parts(self._setup, self._log)
+            self._state, self._corners = parts.state, parts.corner_stage
             self._compensation = CompensationStage(self._state, self._log)
             if not pass_start.is_mdi_line:
-                self._flow, self._taken = parts.flow, parts.pending_line
+                self._flow, self._taken = parts.program_flow, parts.pending_line
         restore_state(self._state, pass_start)
         if self._active_transformation is not None:
             self._active_transformation.update_position()
@@ -181,7 +186,7 @@ class Interpreter(LinePass[LexedBlock]):
                 self._flow.end_program()
         state = self._state
         self._approach = generate_lathe_approach(
-            pass_start, state.modal, state.setup.start, state.compute_rpm_at
+            pass_start, state.modal, state.setup.start, state.compute_rpm_at_radius
         )
 
     def _can_stop(self, line: LexedBlock) -> bool:
@@ -251,7 +256,7 @@ class Interpreter(LinePass[LexedBlock]):
             self._state.modal_call_line = line if line.called_name else None
             return
         if line.called_name in IGNORED_CYCLES and not self._flow.has_routine(line.called_name):
-            note_ineffective_cycle(self._state, line)
+            log_ineffective_cycle(self._state, line)
             return
         if line.called_name not in CYCLE_PARAMETERS or self._flow.has_routine(line.called_name):
             self._flow.call_subprogram(line, is_modal=modal)
@@ -259,9 +264,11 @@ class Interpreter(LinePass[LexedBlock]):
         if line.called_name in HOLE_PATTERNS:
             yield from self._pattern(line)
             return
-        place = self._flow.get_displayed_line(line.number)
+        place = self._flow.get_displayed_line(line.line_number)
         for block in generate_cycle_blocks(self._state, line, self._flow):
-            yield from self._apply_stages(block if place == line.number else replace(block, line=place), None)
+            yield from self._apply_stages(
+                block if place == line.line_number else replace(block, line=place), None
+            )
 
     def _pattern(self, line: LexedBlock) -> Iterator[Block]:
         """Yield the blocks of HOLES1 or HOLES2, which execute the MCALL cycle at each position.
@@ -275,7 +282,7 @@ class Interpreter(LinePass[LexedBlock]):
             or self._flow.has_routine(called.called_name)
         ):
             raise make_missing_cycle_error(line)
-        place = self._flow.get_displayed_line(line.number)
+        place = self._flow.get_displayed_line(line.line_number)
         for over in generate_pattern_moves(state, line):
             yield from self._apply_stages(replace(over, line=place), None)
             yield from self._call(called, modal=True)
@@ -300,7 +307,7 @@ class Interpreter(LinePass[LexedBlock]):
 
     def _blocks_with_corners(self, statement: Statement) -> Iterator[Block]:
         """Yield the blocks of a statement with corners and compensation, as far as they are final."""
-        number = statement.line.number
+        number = statement.lexed_block.line_number
         place = self._flow.get_displayed_line(number)
         if TRANSFORMATION_GROUP in statement.g_words:
             yield from self._flush()
@@ -338,16 +345,16 @@ class Interpreter(LinePass[LexedBlock]):
         check_y_word(state, statement)
         if statement.frame_word is not None:
             if self._active_transformation is not None:
-                self._active_transformation.execute_frame(statement)
+                self._active_transformation.execute_frame_words(statement)
             else:
-                execute_frame(state, statement)
+                execute_frame_words(state, statement)
             return
         separate_live_tool_words(state, statement)
         check_m_functions(state, statement, self._lacking)
         if statement.g_words:
-            execute_modes(state, statement)
+            set_modal_functions(state, statement)
         if statement.g_words or not INEFFECTIVE_WORDS.keys().isdisjoint(statement.words):
-            note_ineffective_words(state, statement)
+            log_ineffective_words(state, statement)
         execute_feed_words(state, statement)
         if DWELL_GROUP in statement.g_words:
             yield make_dwell_block(state, statement)
@@ -358,10 +365,10 @@ class Interpreter(LinePass[LexedBlock]):
         if has_spindle_words(statement):
             yield from execute_spindle_words(state, statement)
         if statement.m_words:
-            yield from execute_before_motion(state, statement)
+            yield from turn_outputs_on(state, statement)
         yield from self._motion(statement)
         if statement.m_words:
-            yield from execute_after_motion(state, statement)
+            yield from turn_outputs_off(state, statement)
             yield from self._stops(statement)
 
     def _motion(self, statement: Statement) -> Iterator[Block]:
@@ -377,7 +384,7 @@ class Interpreter(LinePass[LexedBlock]):
     def _lathe_motion(self, statement: Statement) -> Iterator[Block]:
         """Yield the move of a statement with the axes of the lathe, without a transformation."""
         state = self._state
-        if execute_frame_block(state, statement):
+        if execute_pole_and_limits(state, statement):
             return
         if statement.get_g_code(NON_MODAL_GROUP) == 74:
             yield make_home_move(state, statement)
@@ -399,7 +406,7 @@ class Interpreter(LinePass[LexedBlock]):
         else:
             return
         if state.exact or BLOCK_EXACT_STOP_GROUP in statement.g_words:
-            yield state.action(statement.line.number, "G60" if state.exact else "G9", Dwell(0.0))
+            yield state.action(statement.lexed_block.line_number, "G60" if state.exact else "G9", Dwell(0.0))
 
     def _move(self, statement: Statement) -> Iterator[Block]:
         state = self._state
@@ -408,7 +415,7 @@ class Interpreter(LinePass[LexedBlock]):
             return
         state.threads = ()
         if state.motion in TAP_MOTIONS:
-            yield make_tap_block(state, statement)
+            yield make_tapping_block(state, statement)
         else:
             yield (
                 make_arc_block(state, statement)
@@ -418,15 +425,15 @@ class Interpreter(LinePass[LexedBlock]):
 
     def _stops(self, statement: Statement) -> Iterator[Block]:
         """Yield the blocks of M0, M1 and the program end."""
-        state, line = self._state, statement.line
+        state, line = self._state, statement.lexed_block
         for code in (0, 1):
             if code in statement.m_words:
-                yield state.action(line.number, f"M{code}", ProgramStop(optional=code == 1))
+                yield state.action(line.line_number, f"M{code}", ProgramStop(optional=code == 1))
         if statement.ends_program and not self._flow.is_in_subprogram:
             reset_offsets(state)
-            state.set_modal(state.modal._replace(spindle=0, oriented=None))
+            state.set_modal_state(state.modal._replace(spindle=0, oriented=None))
             code = next(code for code in (2, 17, 30) if code in statement.m_words)
-            yield state.action(line.number, f"M{code}", ProgramEnd(reset=True))
+            yield state.action(line.line_number, f"M{code}", ProgramEnd(reset=True))
 
     def _last_blocks(self) -> Iterator[Block]:
         """Yield the buffered blocks after the last line."""

@@ -11,7 +11,7 @@ from core.interpreter.shared.control_flow import MAIN_FILE
 from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.formula_values import compute_formula
-from core.interpreter.shared.job_setup import Setup, ToolOffset, ZeroOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset, ZeroOffset
 from core.interpreter.shared.modal_state import ModalState
 from core.interpreter.shared.units import MM_PER_INCH
 from core.interpreter.sinumerik.flow.variables import (
@@ -46,7 +46,7 @@ class ActivePlane(Protocol):
         ...
 
     @property
-    def has_z_depth(self) -> bool:
+    def is_depth_along_z(self) -> bool:
         """Return whether the depth is along Z, so that drilling cycles are allowed."""
         ...
 
@@ -60,11 +60,11 @@ class ActivePlane(Protocol):
         """Return the tool position perpendicular to the plane in the program frame, in mm."""
         ...
 
-    def move_to_depth(self, statement: Statement, depth: float, feed: float | None, text: str) -> Block:
+    def make_depth_move(self, statement: Statement, depth: float, feed: float | None, text: str) -> Block:
         """Return a move to a depth in the program frame, in mm, which is a rapid if ``feed`` is None."""
         ...
 
-    def move_above(self, statement: Statement, x: float, y: float, text: str) -> Block:
+    def make_rapid_to_hole(self, statement: Statement, x: float, y: float, text: str) -> Block:
         """Return a rapid to a point of the plane in mm."""
         ...
 
@@ -92,7 +92,7 @@ class MotionKind(IntEnum):
     TANGENTIAL_ARC = 1001  # CT
 
 
-def format_motion(motion: int) -> str:
+def format_motion_word(motion: int) -> str:
     """Return a kind of motion as a program word, such as G1 or CIP."""
     return {MotionKind.ARC_BY_POINT: "CIP", MotionKind.TANGENTIAL_ARC: "CT"}.get(
         MotionKind(motion), f"G{int(motion)}"
@@ -109,7 +109,7 @@ THREAD_MOTIONS = frozenset(
 TAP_MOTIONS = frozenset({MotionKind.TAP, MotionKind.TAP_RETRACT})
 
 
-class State:
+class SinumerikState:
     """The machine position and the modal functions of a pass.
 
     Positions are in mm and degrees, with X as a radius and continuous C. Blocks store ``modal``. ``motion``
@@ -117,7 +117,7 @@ class State:
     frame of TRANS, ROT, SCALE and MIRROR. ``edge`` is the offset of the active T and D.
     """
 
-    def __init__(self, setup: Setup, log: DiagnosticLog) -> None:
+    def __init__(self, setup: InterpreterSetup, log: DiagnosticLog) -> None:
         self.setup = setup
         self.log = log
         self.call_site = MAIN_FILE  # of the block that is being executed
@@ -160,10 +160,15 @@ class State:
         wraps = setup.limits.is_c_enabled and setup.limits.is_c_modulo
         slide = setup.limits.is_c_enabled and setup.limits.is_c_linear
         self.modal = ModalState(
-            absolute=True, metric=True, diameter=True, rapid_rate=0.0, is_c_modulo=wraps, is_c_linear=slide
+            absolute=True,
+            metric=True,
+            diameter=True,
+            rapid_rate=0.0,
+            is_c_axis_modulo=wraps,
+            is_c_linear=slide,
         )
 
-    def set_modal(self, modal: ModalState) -> None:
+    def set_modal_state(self, modal: ModalState) -> None:
         """Set the modal state unless it equals the current state.
 
         Consecutive blocks with equal states therefore share one object.
@@ -174,10 +179,10 @@ class State:
     def derive_offsets(self) -> None:
         """Update the offsets in the modal state from cutting edge, settable offset and programmed frame."""
         one, other, edge = self.settable, self.programmed_frame, self.edge
-        self.set_modal(
+        self.set_modal_state(
             self.modal._replace(
-                tool_x=edge.x, tool_z=edge.z, zero_offset_x=one.x, zero_offset_z=one.z,
-                zero_x=other.shift_x, zero_z=other.shift_z, offset_c=one.c + other.shift_c,
+                tool_offset_x=edge.x, tool_offset_z=edge.z, zero_offset_x=one.x, zero_offset_z=one.z,
+                frame_shift_x=other.shift_x, frame_shift_z=other.shift_z, offset_c=one.c + other.shift_c,
             )
         )  # fmt: skip
 
@@ -223,7 +228,7 @@ class State:
         ``make_error`` creates the error from a code, a text and a hint.
         """
 
-        def parameter(asked: Parameter) -> float:
+        def get_parameter_value(asked: Parameter) -> float:
             if asked.letters.startswith("$"):
                 axis = get_position_axis(asked.letters)
                 read = (
@@ -236,7 +241,9 @@ class State:
                     return read
             try:
                 return self.variables.get_value(
-                    asked, lambda index: compute_formula(index, parameter, no_value), make_error
+                    asked,
+                    lambda index: compute_formula(index, get_parameter_value, make_no_value_error),
+                    make_error,
                 )
             except ProgramError as problem:
                 if problem.diagnostic.code != UNSET_PARAMETER_CODE:
@@ -244,7 +251,7 @@ class State:
                 self._warn_unset(problem.diagnostic)
                 return 0.0
 
-        def no_value(_column: int, why: str) -> ProgramError:
+        def make_no_value_error(_column: int, why: str) -> ProgramError:
             error = make_error("arithmetic", Message("{what}.", what=why), "Correct the formula.")
             return (
                 ProgramError(add_assumptions(error.diagnostic, PROGRAM_STOP_ASSUMPTION))
@@ -252,7 +259,7 @@ class State:
                 else error
             )
 
-        return compute_formula(formula, parameter, no_value)
+        return compute_formula(formula, get_parameter_value, make_no_value_error)
 
     def log_finding(self, finding: Diagnostic) -> None:
         """Log a finding of the block that is being executed, at its location in the main file.
@@ -269,7 +276,7 @@ class State:
             self.logged_functions.add(finding.hint)
             self.log_finding(replace(finding, severity=Severity.WARNING))
 
-    def compute_rpm_at(self, x: float) -> float:
+    def compute_rpm_at_radius(self, x: float) -> float:
         """Return the commanded signed speed in rpm with the tip at radius ``x``.
 
         The radius is in the program frame, in mm. The speed is 0 if the spindle is stopped.
@@ -295,13 +302,15 @@ class State:
         if axis == self.setup.limits.third_axis_name and self.setup.limits.is_c_enabled:
             c = self.c - modal.offset_c
             return wrap_angle(c) if self.setup.limits.is_c_modulo else c
-        x, z = self.programmed_frame.invert_distance(self.x - modal.offset_x, self.z - modal.offset_z)
+        x, z = self.programmed_frame.convert_to_program_distance(
+            self.x - modal.offset_x, self.z - modal.offset_z
+        )
         return {"X": x * (2.0 if modal.diameter else 1.0), "Z": z}.get(axis)
 
     @property
     def rpm(self) -> float:
         """Return the commanded signed spindle speed at the current position, in rpm."""
-        return self.compute_rpm_at(self.x - self.modal.offset_x)
+        return self.compute_rpm_at_radius(self.x - self.modal.offset_x)
 
     @property
     def css(self) -> float | None:
@@ -334,7 +343,7 @@ class State:
         )
 
 
-def check_positive(statement: Statement, word: Word, value: float, description: str) -> float:
+def require_positive_number(statement: Statement, word: Word, value: float, description: str) -> float:
     """Return the number if it is above 0. Raises ProgramError if it is 0 or negative."""
     if value > 0.0:
         return value

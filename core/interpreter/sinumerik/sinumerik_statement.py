@@ -12,7 +12,7 @@ from core.language.sinumerik.sinumerik_alarms import (
     GROUP_CONFLICT,
     UNKNOWN_G_FUNCTION,
     WORD_REPEATED,
-    make_alarm,
+    make_alarm_diagnostic,
 )
 from core.language.sinumerik.sinumerik_words import LexedBlock, Word
 from core.language.sinumerik.word_values import is_variable
@@ -32,7 +32,7 @@ class Statement:
     - ``named_functions`` contains the functions without a G number by name.
     """
 
-    line: LexedBlock
+    lexed_block: LexedBlock
     g_words: dict[str, Word] = field(default_factory=dict)
     m_words: dict[int, Word] = field(default_factory=dict)
     words: dict[str, Word] = field(default_factory=dict)
@@ -87,11 +87,13 @@ class Statement:
         placeholders of ``text`` and ``hint``.
         """
         text, hint = fill_template(text, values), fill_template(hint, values)
-        line, column = self.line, word.column if word else 1
+        line, column = self.lexed_block, word.column if word else 1
         axis = _axis_name(word) if word and word.name in known.AXIS_NAMES else ""
-        return ProgramError(make_alarm(line.number, column, code, line.block_name, text, hint, axis=axis))
+        return ProgramError(
+            make_alarm_diagnostic(line.line_number, column, code, line.block_name, text, hint, axis=axis)
+        )
 
-    def check_condition(
+    def require_condition(
         self, condition: object, word: Word | None, code: int | str, text: str, hint: str, /, **values: object
     ) -> None:
         """Raise the error of ``make_error`` unless ``condition`` is true."""
@@ -171,7 +173,7 @@ def _sort_g(statement: Statement, word: Word, group: str | None) -> None:
                 Message("{word}: {problem}.", word=word.text, problem=why),
                 "Remove this text from the program.",
             )
-        if habit := find_iso_word(statement.line.text.upper()):
+        if habit := find_iso_word(statement.lexed_block.text.upper()):
             raise statement.make_error(word, "other-control", habit.explanation, habit.remedy)
         raise statement.make_error(
             word,
@@ -223,7 +225,7 @@ def _check_separate_block(statement: Statement) -> None:
             or statement.assignments
             or len(statement.g_words) > 1
         )
-        if habit := find_iso_word(statement.line.text.upper()):
+        if habit := find_iso_word(statement.lexed_block.text.upper()):
             raise statement.make_error(dwell, "other-control", habit.explanation, habit.remedy)
         if others or len(statement.words) != 1:
             text = "G4 must be in a separate block with F (seconds) or S (revolutions)."

@@ -17,7 +17,7 @@ def format_block(line: nodes.KlartextLine) -> str:
 
     Returns an empty string if the line does not contain a block.
     """
-    return "" if line.node is None else _block(line.node) or line.code
+    return "" if line.node is None else _block(line.node) or line.block_text
 
 
 def _block(node: nodes.Node) -> str:
@@ -45,7 +45,7 @@ def _short(node: nodes.Node) -> str:
             made = _joined(Message("{name} PGM", name=name), node.name, unit)
         case nodes.BlankCorner():
             made = _joined(
-                Message("BLK FORM 0.{part}", part=node.part_number), node.tool_axis, _axes(node.corner)
+                Message("BLK FORM 0.{part}", part=node.corner_number), node.tool_axis, _axes(node.axis_words)
             )
         case nodes.Label():
             made = Message("LBL {part}", part=format_name(node.name))
@@ -64,16 +64,16 @@ def _short(node: nodes.Node) -> str:
 def _path(node: nodes.PathFunction) -> str:
     turn = f"DR{node.rotation_direction}" if node.rotation_direction else ""
     compensation = f"R{node.compensation}" if node.compensation else ""
-    words = (node.function_name, _axes(node.axes), _axes(node.words), turn, compensation)
+    words = (node.function_name, _axes(node.axis_words), _axes(node.words), turn, compensation)
     return _joined(*words, _feed(node.feed), _codes(node.m_functions))
 
 
 def _tool_call(node: nodes.ToolCall) -> str:
     words = (
         ("S", node.speed),
-        (f"F{node.feed_base}", node.feed),
-        ("DL", node.length),
-        ("DR", node.radius),
+        (f"F{node.feed_unit_letter}", node.feed),
+        ("DL", node.delta_length),
+        ("DR", node.delta_radius),
         ("DR2:", node.corner_radius),
     )
     tool = _value(node.tool, plus=False) if isinstance(node.tool, klartext_words.Value) else ""
@@ -87,12 +87,18 @@ def _tool_call(node: nodes.ToolCall) -> str:
 
 def _datum(node: nodes.DatumShift) -> str:
     if node.cycle_number is not None:
-        return _joined(Message("CYCL DEF 7.{cycle}", cycle=node.cycle_number), node.text, _axes(node.axes))
-    return "TRANS DATUM RESET" if node.is_reset else _joined("TRANS DATUM AXIS", _axes(node.axes))
+        return _joined(
+            Message("CYCL DEF 7.{cycle}", cycle=node.cycle_number), node.text, _axes(node.axis_words)
+        )
+    return "TRANS DATUM RESET" if node.is_reset else _joined("TRANS DATUM AXIS", _axes(node.axis_words))
 
 
 def _positioning(made: nodes.RotaryPositioning) -> str:
-    distance = "" if made.distance is None else f"DIST{_value(made.distance, plus=False)}"
+    distance = (
+        ""
+        if made.rotation_center_distance is None
+        else f"DIST{_value(made.rotation_center_distance, plus=False)}"
+    )
     return _joined(
         made.mode, distance, _retract(made.retract), _feed(made.feed), made.solution, made.rotation_mode
     )
@@ -110,7 +116,9 @@ def _feed(feed: klartext_words.FeedWord | None) -> str:
     if feed is None:
         return ""
     return (
-        _FEEDS[feed.feed_kind] if feed.value is None else f"F{feed.feed_base}{_value(feed.value, plus=False)}"
+        _FEEDS[feed.feed_kind]
+        if feed.value is None
+        else f"F{feed.feed_unit_letter}{_value(feed.value, plus=False)}"
     )
 
 

@@ -158,7 +158,7 @@ _SCL = re.compile(r"SCL(?![A-Z])")
 def _transform(cursor: LineCursor, number: int, column: int) -> CoordinateTransform:
     """Read a line of cycle 8, 10 or 11, such as ``8.1 X Y`` or ``10.1 ROT+35``."""
     if number == _MIRROR:
-        return CoordinateTransform("MIRROR", axes=read_mirrored_axes(cursor), column=column)
+        return CoordinateTransform("MIRROR", mirrored_axes=read_mirrored_axes(cursor), column=column)
     if number == _ROTATION:
         return read_rotation(cursor, column)
     return read_scale(cursor, column)

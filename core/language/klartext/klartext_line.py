@@ -120,7 +120,12 @@ def parse_line(number: int, text: str) -> KlartextLine:
         return KlartextLine(number, None, number_of_block, skip, comment, problem.diagnostic, shown)
     # A path function is formatted again from its words. Any other block is shown as it was written.
     return KlartextLine(
-        number, node, number_of_block, skip, comment, code="" if isinstance(node, PathFunction) else shown
+        number,
+        node,
+        number_of_block,
+        skip,
+        comment,
+        block_text="" if isinstance(node, PathFunction) else shown,
     )
 
 

@@ -34,8 +34,8 @@ class BlankCorner:
     maximum corner.
     """
 
-    part_number: int
-    corner: tuple[AxisWord, ...]
+    corner_number: int
+    axis_words: tuple[AxisWord, ...]
     tool_axis: str = ""
 
 
@@ -60,11 +60,11 @@ class ToolCall:
     tool_axis: str = ""
     speed: Value | None = None
     feed: Value | None = None
-    length: Value | None = None  # DL
-    radius: Value | None = None  # DR
+    delta_length: Value | None = None  # DL
+    delta_radius: Value | None = None  # DR
     corner_radius: Value | None = None  # DR2
     column: int = 0  # of the tool
-    feed_base: str = ""  # U or Z of FU and FZ
+    feed_unit_letter: str = ""  # U or Z of FU and FZ
     cutting_speed: Value | None = None  # S(VC = 120), m/min
 
 
@@ -76,7 +76,7 @@ class PathFunction:
     (polar radius and angle), R, CCA and LEN.
     """
 
-    axes: tuple[AxisWord, ...] = ()
+    axis_words: tuple[AxisWord, ...] = ()
     compensation: str = ""  # 0, L or R of R0, RL, RR; empty: as before
     feed: FeedWord | None = None
     m_functions: tuple[MFunction, ...] = ()
@@ -87,14 +87,14 @@ class PathFunction:
 
     def find_word(self, name: str) -> AxisWord | None:
         """Return the axis word or other word with this name, or None if the block lacks the word."""
-        return next((word for word in (*self.axes, *self.words) if word.axis == name), None)
+        return next((word for word in (*self.axis_words, *self.words) if word.axis == name), None)
 
 
 @dataclass(frozen=True, slots=True)
 class Pole:
     """The block ``CC X+50 Y+50``; without axis words, the pole is the current position."""
 
-    axes: tuple[AxisWord, ...] = ()
+    axis_words: tuple[AxisWord, ...] = ()
     column: int = 1
 
 
@@ -122,7 +122,7 @@ class MFunctionBlock:
 class DatumShift:
     """The block ``TRANS DATUM AXIS …`` or ``TRANS DATUM RESET`` (without axes), or a block of cycle 7."""
 
-    axes: tuple[AxisWord, ...] = ()
+    axis_words: tuple[AxisWord, ...] = ()
     is_reset: bool = False
     cycle_number: int | None = None  # n of CYCL DEF 7.n
     text: str = ""  # of CYCL DEF 7.0
@@ -174,12 +174,12 @@ class ConditionalJump:
 class SystemRead:
     """The block ``FN 18: SYSREAD Q5 = ID50 NR1 IDX5``, which reads a system value.
 
-    ``group``, ``number`` and ``index`` identify the value.
+    ``group_number``, ``number`` and ``index`` identify the value.
     """
 
     parameter_number: int
-    group: Formula
-    number: Formula
+    group_number: Formula
+    data_number: Formula
     index: Formula | None = None
     column: int = 0
     parameter_kind: str = "Q"
@@ -189,15 +189,15 @@ class SystemRead:
 class SystemWrite:
     """The block ``FN 17: SYSWRITE ID50 NR4 IDX5 = +0``, which sets a system value."""
 
-    group: Formula
-    number: Formula
+    group_number: Formula
+    data_number: Formula
     index: Formula | None
     new_value: Formula
     column: int = 0
 
 
 @dataclass(frozen=True, slots=True)
-class ErrorMessage:
+class ErrorMessageBlock:
     """The block ``FN 14: ERROR = 1000``, which reports an error and stops the program."""
 
     error_number: int
@@ -225,7 +225,7 @@ class CycleDefinition:
     """The definition of a cycle numbered 200 or higher, such as ``CYCL DEF 200 DRILLING Q200=+2 …``."""
 
     cycle_number: int
-    values: tuple[CycleParameter, ...] = ()
+    parameters: tuple[CycleParameter, ...] = ()
     column: int = 0
 
 
@@ -236,7 +236,7 @@ class GlobalDefinition:
     The block sets the values for ``Q200=PREDEF`` in later cycles.
     """
 
-    values: tuple[CycleParameter, ...]
+    parameters: tuple[CycleParameter, ...]
     column: int = 0
 
 
@@ -261,7 +261,7 @@ class CycleLine:
 class CycleCall:
     """A cycle call such as ``CYCL CALL M3`` or ``CYCL CALL POS X+10 Y+10 Z+0 F500``."""
 
-    axes: tuple[AxisWord, ...] = ()
+    axis_words: tuple[AxisWord, ...] = ()
     feed: FeedWord | None = None
     m_functions: tuple[MFunction, ...] = ()
     column: int = 0
@@ -308,7 +308,7 @@ class ContourDefinition:
 
 
 @dataclass(frozen=True, slots=True)
-class Selection:
+class SelectionBlock:
     """A block such as ``SEL TABLE "N.D"`` or ``SEL PGM "A.H"``.
 
     ``selected_kind`` is the word that follows SEL.
@@ -350,7 +350,7 @@ class CoordinateTransform:
 
     transformation_kind: str  # MIRROR, ROTATION or SCALE
     value: Value | None = None
-    axes: str = ""  # of MIRROR
+    mirrored_axes: str = ""  # of MIRROR
     is_incremental: bool = False
     column: int = 0
 
@@ -385,7 +385,7 @@ class RotaryPositioning:
     """
 
     mode: str = ""  # MOVE, TURN or STAY
-    distance: Value | None = None  # DIST
+    rotation_center_distance: Value | None = None  # DIST
     retract: RetractWord | None = None  # MB
     feed: FeedWord | None = None
     solution: str = ""  # SYM+ SYM- SEQ+ SEQ-
@@ -421,12 +421,12 @@ Node = (
     | Label
     | LabelCall
     | ProgramCall
-    | Selection
+    | SelectionBlock
     | Assignment
     | ConditionalJump
     | SystemRead
     | SystemWrite
-    | ErrorMessage
+    | ErrorMessageBlock
     | IgnoredBlock
     | CycleDefinition
     | GlobalDefinition
@@ -447,10 +447,10 @@ class KlartextLine(NamedTuple):
     ``node`` is None if the line has nothing to execute or if ``error`` contains a syntax error.
     """
 
-    number: int
+    line_number: int
     node: Node | None = None
     block_number: int | None = None  # block number, as written
     is_skippable: bool = False
     comment: str | None = None
     error: Diagnostic | None = None
-    code: str = ""  # the block as written, without number, skip sign and comment
+    block_text: str = ""  # the block as written, without number, skip sign and comment

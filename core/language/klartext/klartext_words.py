@@ -43,7 +43,7 @@ class FeedWord(NamedTuple):
     feed_kind: str  # "value", "max" or "auto"
     value: Value | None = None
     column: int = 0
-    feed_base: str = ""  # U or Z; empty: a minute, under M136 a revolution
+    feed_unit_letter: str = ""  # U or Z; empty: a minute, under M136 a revolution
 
 
 class RetractWord(NamedTuple):

@@ -290,7 +290,7 @@ def read_axis_words(
             return tuple(found)
         sign, axis = match.groups()
         if any(word.axis == axis for word in found):
-            raise make_repeated_error(cursor, column, f"{sign}{axis}")
+            raise make_repeated_word_error(cursor, column, f"{sign}{axis}")
         found.append(AxisWord(axis, cursor.read_value(f"{sign}{axis}"), sign == "I", column))
 
 
@@ -305,17 +305,19 @@ def read_words_by_name(cursor: LineCursor, pattern: re.Pattern[str]) -> dict[str
         if match is None:
             return found
         name = match[1]
-        check_not_repeated(cursor, column, name in found, name)
+        check_word_not_repeated(cursor, column, name in found, name)
         found[name] = AxisWord(name, cursor.read_value(name), column=column)
 
 
-def check_not_repeated(cursor: LineCursor, column: int, previous_words: object, description: str) -> None:
+def check_word_not_repeated(
+    cursor: LineCursor, column: int, previous_words: object, description: str
+) -> None:
     """Raise ProgramError if the block already contains the word."""
     if previous_words:
-        raise make_repeated_error(cursor, column, description)
+        raise make_repeated_word_error(cursor, column, description)
 
 
-def make_repeated_error(cursor: LineCursor, column: int, description: str) -> ProgramError:
+def make_repeated_word_error(cursor: LineCursor, column: int, description: str) -> ProgramError:
     """Return the error for a word that is programmed twice."""
     text = Message("{word} is programmed twice in the block.", word=description)
     return make_syntax_error(cursor.line_number, column, text, "Remove one of the two.")

@@ -18,7 +18,7 @@ _INCH = re.compile(r"BEGIN\s.*\bINCH\b", re.IGNORECASE)
 TableRow = dict[str, float]
 
 
-def is_table(name: str) -> bool:
+def is_table_file(name: str) -> bool:
     """Return whether a file name is the name of a table."""
     return name.upper().endswith(TABLE_EXTENSIONS)
 

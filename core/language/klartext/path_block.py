@@ -11,8 +11,8 @@ from core.language.klartext.klartext_nodes import CornerBlock, MFunctionBlock, P
 from core.language.klartext.klartext_words import AxisWord, FeedWord, MFunction
 from core.language.klartext.line_cursor import (
     LineCursor,
-    check_not_repeated,
-    make_repeated_error,
+    check_word_not_repeated,
+    make_repeated_word_error,
     read_axis_words,
     read_feed,
     read_retract,
@@ -90,18 +90,18 @@ def read_path_function(cursor: LineCursor, form: str, column: int) -> PathFuncti
             kind = radius.group(1) or radius.group(2) or ""
             _check_paraxial(cursor, at, kind, axes)
             if compensation:
-                raise make_repeated_error(cursor, at, f"R{kind}")
+                raise make_repeated_word_error(cursor, at, f"R{kind}")
             compensation = kind
         elif direction := cursor.match_pattern(ROTATION_PATTERN):
-            check_not_repeated(cursor, at, turn, "DR")
+            check_word_not_repeated(cursor, at, turn, "DR")
             turn = direction.group(1)
         elif word := _word(cursor, form):
-            check_not_repeated(cursor, word.column, word.axis in words, word.axis)
+            check_word_not_repeated(cursor, word.column, word.axis in words, word.axis)
             words[word.axis] = word
         elif cursor.match_pattern(_NOT_PROGRAMMED):
             continue
         elif read := read_feed(cursor):
-            check_not_repeated(cursor, read.column, speed, "F")
+            check_word_not_repeated(cursor, read.column, speed, "F")
             speed = read
         elif code := read_m_function(cursor):
             codes.append(code)
@@ -119,10 +119,10 @@ def read_paraxial_move(cursor: LineCursor, column: int) -> PathFunction:
     Raises ProgramError for a syntax error.
     """
     made = read_path_function(cursor, "L", column)
-    if len(made.axes) > 1:
+    if len(made.axis_words) > 1:
         text = "A block without L can move only one axis."
         raise make_syntax_error(
-            cursor.line_number, made.axes[1].column, text, "Write L at the start of the block."
+            cursor.line_number, made.axis_words[1].column, text, "Write L at the start of the block."
         )
     return made
 
@@ -234,7 +234,7 @@ def _factor(cursor: LineCursor) -> FeedWord | None:
     Without a factor, M103 is canceled.
     """
     found = read_feed(cursor)
-    if found is not None and (found.feed_kind != "value" or found.feed_base):
+    if found is not None and (found.feed_kind != "value" or found.feed_unit_letter):
         text = "M103 accepts its factor only as F with a number."
         raise make_syntax_error(
             cursor.line_number, found.column, text, "Write M103 F20 for a fifth of the feed."
@@ -244,7 +244,7 @@ def _factor(cursor: LineCursor) -> FeedWord | None:
 
 def _plain_feed(cursor: LineCursor) -> FeedWord | None:
     found = read_feed(cursor)
-    if found is not None and (found.feed_kind == "auto" or found.feed_base):
+    if found is not None and (found.feed_kind == "auto" or found.feed_unit_letter):
         raise make_syntax_error(
             cursor.line_number,
             found.column,
@@ -259,7 +259,7 @@ def _joined(
 ) -> tuple[AxisWord, ...]:
     for word in words:
         if any(word.axis == known.axis for known in axes):
-            raise make_repeated_error(cursor, word.column, word.axis)
+            raise make_repeated_word_error(cursor, word.column, word.axis)
     return axes + words
 
 

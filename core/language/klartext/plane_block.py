@@ -11,7 +11,7 @@ from core.language.klartext.klartext_nodes import PlaneBlock, RotaryPositioning
 from core.language.klartext.klartext_words import AxisWord
 from core.language.klartext.line_cursor import (
     LineCursor,
-    check_not_repeated,
+    check_word_not_repeated,
     read_axis_words,
     read_feed,
     read_retract,
@@ -114,28 +114,28 @@ def _with_word(cursor: LineCursor, form: str, positioning: RotaryPositioning) ->
     """Read the next word at the cursor, and return the positioning with this word added."""
     column = cursor.column
     if form != "RESET" and (side := cursor.match_pattern(_SIDE)):
-        check_not_repeated(cursor, column, positioning.solution, "SYM or SEQ")
+        check_word_not_repeated(cursor, column, positioning.solution, "SYM or SEQ")
         return dataclasses.replace(positioning, solution="".join(side.groups()))
     if form != "RESET" and (rotation := cursor.match_pattern(_ROTATION)):
-        check_not_repeated(cursor, column, positioning.rotation_mode, "COORD ROT or TABLE ROT")
+        check_word_not_repeated(cursor, column, positioning.rotation_mode, "COORD ROT or TABLE ROT")
         return dataclasses.replace(positioning, rotation_mode=Message("{word} ROT", word=rotation.group(1)))
     if cursor.read_keyword("DIST", "ABST", "SETUP"):  # ABST is the German word.
         if positioning.mode != "MOVE":
             text = Message("DIST is allowed only with MOVE, not with {word}.", word=positioning.mode)
             raise make_syntax_error(cursor.line_number, column, text, "Remove this text from the program.")
-        check_not_repeated(cursor, column, positioning.distance, "DIST")
-        return dataclasses.replace(positioning, distance=cursor.read_number("DIST"))
+        check_word_not_repeated(cursor, column, positioning.rotation_center_distance, "DIST")
+        return dataclasses.replace(positioning, rotation_center_distance=cursor.read_number("DIST"))
     return _with_motion(cursor, positioning, column)
 
 
 def _with_motion(cursor: LineCursor, made: RotaryPositioning, column: int) -> RotaryPositioning:
     if retract := read_retract(cursor):
         _demand_motion(cursor, made, column, "MB")
-        check_not_repeated(cursor, column, made.retract, "MB")
+        check_word_not_repeated(cursor, column, made.retract, "MB")
         return dataclasses.replace(made, retract=retract)
     if speed := read_feed(cursor):
         _demand_motion(cursor, made, column, "F")
-        check_not_repeated(cursor, column, made.feed, "F")
+        check_word_not_repeated(cursor, column, made.feed, "F")
         return dataclasses.replace(made, feed=speed)
     if second := cursor.read_keyword(*_POSITIONING_MODES):
         text = Message(

@@ -23,7 +23,7 @@ from core.language.klartext.klartext_faults import (
 from core.language.klartext.klartext_nodes import (
     Assignment,
     ConditionalJump,
-    ErrorMessage,
+    ErrorMessageBlock,
     IgnoredBlock,
     Node,
     SystemRead,
@@ -262,10 +262,10 @@ def _wait(cursor: LineCursor, column: int) -> IgnoredBlock:
     return IgnoredBlock("FN 20 WAIT FOR SYNC", column)
 
 
-def _error(cursor: LineCursor, column: int) -> ErrorMessage:
+def _error(cursor: LineCursor, column: int) -> ErrorMessageBlock:
     if not cursor.read_keyword("ERROR") or not cursor.match_pattern(_EQUALS):
         raise cursor.make_expected_error("FN 14 needs ERROR =")
-    return ErrorMessage(cursor.read_whole_number("ERROR", 9999), column)
+    return ErrorMessageBlock(cursor.read_whole_number("ERROR", 9999), column)
 
 
 def _system(cursor: LineCursor, column: int) -> SystemRead:

@@ -26,7 +26,7 @@ from core.language.klartext.klartext_nodes import (
     Label,
     LabelCall,
     ProgramCall,
-    Selection,
+    SelectionBlock,
     TcpmSwitch,
     ToolCall,
     ToolDefinition,
@@ -34,7 +34,7 @@ from core.language.klartext.klartext_nodes import (
 from core.language.klartext.klartext_words import AxisWord, Value
 from core.language.klartext.line_cursor import (
     LineCursor,
-    check_not_repeated,
+    check_word_not_repeated,
     read_axis_words,
     read_words_by_name,
 )
@@ -169,7 +169,7 @@ def read_tool_call(cursor: LineCursor) -> ToolCall:
                 "Unexpected word in TOOL CALL", "Use only a tool, its axis, S, F, DL, DR and DR2."
             )
         name, per = match.group(1), match.group(2) or per
-        check_not_repeated(cursor, at, name in words, name)
+        check_word_not_repeated(cursor, at, name in words, name)
         words[name] = cursor.read_value(name)
     deltas = words.get("DL"), words.get("DR"), words.get("DR2")
     return ToolCall(tool, axis, words.get("S"), words.get("F"), *deltas, column, per, words.get("VC"))
@@ -215,7 +215,7 @@ def read_transformation(cursor: LineCursor, column: int) -> DatumShift | Coordin
         return _datum(cursor, column)
     if cursor.read_keyword("MIRROR"):
         axes = "" if cursor.read_keyword("RESET") else _mirrored(cursor)
-        return CoordinateTransform("MIRROR", axes=axes, column=column)
+        return CoordinateTransform("MIRROR", mirrored_axes=axes, column=column)
     for word, read in (("ROTATION", read_rotation), ("SCALE", read_scale)):
         if cursor.read_keyword(word):
             return (
@@ -237,7 +237,7 @@ def _datum(cursor: LineCursor, column: int) -> DatumShift:
         made = DatumShift(is_reset=True)
     elif cursor.read_keyword("AXIS"):
         made = DatumShift(read_axis_words(cursor, "XYZABC"))
-        if not made.axes:
+        if not made.axis_words:
             raise cursor.make_expected_error("TRANS DATUM AXIS needs X, Y or Z")
     elif cursor.read_keyword("TABLE"):
         table = cursor.read_quoted_text() or ""
@@ -298,16 +298,16 @@ def read_selected_call(cursor: LineCursor, column: int) -> ProgramCall:
     return ProgramCall("", column)
 
 
-def make_selection_reader(kind: str) -> Callable[[LineCursor, int], Selection]:
+def make_selection_reader(kind: str) -> Callable[[LineCursor, int], SelectionBlock]:
     """Return the function that reads the file name after ``SEL TABLE``, ``SEL PATTERN`` or ``SEL PGM``."""
 
-    def read(cursor: LineCursor, column: int) -> Selection:
+    def read_selection(cursor: LineCursor, column: int) -> SelectionBlock:
         name = cursor.read_file_name()
         if not name:
             raise cursor.make_expected_error(Message("SEL {kind} needs a file name", kind=kind))
-        return Selection(kind, name, column)
+        return SelectionBlock(kind, name, column)
 
-    return read
+    return read_selection
 
 
 _PROBE = re.compile(r"[0-9]+(?:\.[0-9]+)?")

@@ -16,7 +16,7 @@ from core.language.omniturn import other_controls
 from core.message import Message
 
 
-class IntendedCode(NamedTuple):
+class ForeignCode(NamedTuple):
     """A mistake in a line, with the index of its first character, diagnostic code, message and remedy."""
 
     start_index: int
@@ -150,19 +150,19 @@ def _compiled() -> tuple[tuple[re.Pattern[str], str, Callable[[re.Match[str]], s
     return tuple((re.compile(form), message, hint) for form, message, hint in _PATTERNS)
 
 
-def find_intended_code(code: str) -> IntendedCode | None:
+def find_foreign_code(code: str) -> ForeignCode | None:
     """Return the code of another control that a line contains, with a message, or None if it has none."""
     for form, message, hint in _compiled():
         match = form.search(code)
         if match is not None:
-            return IntendedCode(_start(code, match), "other-control", message, hint(match))
+            return ForeignCode(_start(code, match), "other-control", message, hint(match))
     for found in re.finditer(_CODE, code):
         habit = other_controls.explain_foreign_word(found[0])
         if habit is not None:
             message = Message(
                 "{word} is not a valid code on this control. {habit}", word=found[0], habit=habit[0]
             )
-            return IntendedCode(found.start(), "g-unknown", message, habit[1])
+            return ForeignCode(found.start(), "g-unknown", message, habit[1])
     return None
 
 

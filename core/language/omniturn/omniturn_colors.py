@@ -9,7 +9,11 @@ from core.language.diagnostics import ProgramError
 from core.language.line_reading import skip_characters
 from core.language.omniturn.omniturn_lexer import lex_line
 from core.language.omniturn.omniturn_words import LexedLine, Word
-from core.language.omniturn.plane_switching_lines import is_program_end, lex_plane_line, parse_plane_entry
+from core.language.omniturn.plane_switching_lines import (
+    is_program_end,
+    lex_plane_switching_line,
+    parse_plane_switching_start,
+)
 from core.language.syntax_colors import PLAIN_STATE, ColoredSpan, SyntaxKind
 
 PLANE_STATE = 1
@@ -28,14 +32,14 @@ def color_line(text: str, state_before: int) -> tuple[list[ColoredSpan], int]:
     ``state_before`` is the state that was returned for the previous line.
     """
     inside = state_before == PLANE_STATE and not is_program_end(text)
-    if not inside and parse_plane_entry(text) is not None:
+    if not inside and parse_plane_switching_start(text) is not None:
         return [ColoredSpan(0, len(text), SyntaxKind.CODE)], PLANE_STATE
     return _in_plane(text) if inside else (_plain(text), PLAIN_STATE)
 
 
 def _in_plane(text: str) -> tuple[list[ColoredSpan], int]:
     try:
-        line = lex_plane_line(1, text)
+        line = lex_plane_switching_line(1, text)
     except ProgramError as fault:
         return [ColoredSpan(max(0, fault.diagnostic.column - 1), 1, SyntaxKind.ERROR)], PLANE_STATE
     words = [_span(text, word) for word in line.words.values()]

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from core.language.diagnostics import Diagnostic, make_error_diagnostic
 from core.language.line_reading import SIGNED_NUMBER, uppercase_ascii
 from core.language.omniturn import other_controls, word_faults
-from core.language.omniturn.intended_code import find_intended_code, replace_letter_l
+from core.language.omniturn.intended_code import find_foreign_code, replace_letter_l
 from core.language.omniturn.omniturn_words import LETTERS_WITHOUT_NUMBER, LexedLine, Word
 from core.message import Message
 
@@ -56,7 +56,7 @@ def lex_line(number: int, text: str) -> LexedLine:
     The function does not raise exceptions. The returned line contains its errors with their columns.
     """
     if len(text) > MAX_LINE_LENGTH:
-        return LexedLine(number, errors=(word_faults.make_length_error(number, len(text)),))
+        return LexedLine(number, errors=(word_faults.make_line_length_error(number, len(text)),))
     if _USUAL_LINE.fullmatch(text) and not _MAY_BE_FOREIGN.search(text):
         words = _usual_words(text)
         if words is not None:
@@ -65,7 +65,9 @@ def lex_line(number: int, text: str) -> LexedLine:
         return LexedLine(number, errors=(misread,), text=text)
     if text.count("(") > 1 and (inner := _nested_comment(text)) is not None:
         return LexedLine(
-            number, errors=(word_faults.make_standard_error(number, inner + 1, "comment-nested"),), text=text
+            number,
+            errors=(word_faults.make_fixed_message_error(number, inner + 1, "comment-nested"),),
+            text=text,
         )
     errors: list[Diagnostic] = []
     if _THREE_LETTERS.search(text) or text[:1] in "%oO: ":
@@ -74,7 +76,7 @@ def lex_line(number: int, text: str) -> LexedLine:
     written, columns, comment, comment_column = _without_comment(number, text, errors)
     code = _Code(uppercase_ascii(written), written, columns)
     block_delete = code.text.startswith("/")
-    intent = find_intended_code(code.text)
+    intent = find_foreign_code(code.text)
     if intent is not None:
         error = make_error_diagnostic(
             number, columns[intent.start_index], intent.diagnostic_code, intent.message, intent.remedy
@@ -127,9 +129,11 @@ def _blank_prose(number: int, text: str) -> tuple[str, list[Diagnostic]]:
         start, end = found.span()
         if bare[start - 1 : start] == ";":  # a comment in the style of other controls
             start -= 1
-            errors.append(word_faults.make_character_error(number, start + 1, ";", is_after_number=False))
+            errors.append(
+                word_faults.make_invalid_character_error(number, start + 1, ";", is_after_number=False)
+            )
         else:
-            errors.append(word_faults.make_text_error(number, start + 1, found[0].strip()))
+            errors.append(word_faults.make_stray_text_error(number, start + 1, found[0].strip()))
         text = text[:start] + " " * (end - start) + text[end:]
     return text, errors
 
@@ -176,7 +180,7 @@ def _without_comment(
         first = first or start + 1
         end = text.find(")", start)
         if end < 0:
-            errors.append(word_faults.make_standard_error(number, start + 1, "comment-open"))
+            errors.append(word_faults.make_fixed_message_error(number, start + 1, "comment-open"))
             end = len(text)
         comments.append(text[start + 1 : end])
         at = end + 1
@@ -254,7 +258,9 @@ class _Scanner:
         text = self._code.text
         exponent = _EXPONENT.match(text, at)
         if exponent is not None:
-            self._errors.append(word_faults.make_standard_error(self._number, self._column(at), "exponent"))
+            self._errors.append(
+                word_faults.make_fixed_message_error(self._number, self._column(at), "exponent")
+            )
             return exponent.end()
         return at
 
@@ -283,7 +289,7 @@ class _Scanner:
         sign = self._code.original_text[at]
         after_number = after_number or (at > 0 and self._code.text[at - 1] == ".")
         self._errors.append(
-            word_faults.make_character_error(
+            word_faults.make_invalid_character_error(
                 self._number, self._column(at), sign, is_after_number=after_number
             )
         )

@@ -46,12 +46,12 @@ class Word(NamedTuple):
 class LexedLine(NamedTuple):
     """One line of a program, split into words.
 
-    ``text`` is the code as written, without blanks and comment. ``number`` counts from 1. ``comment`` is
+    ``text`` is the code as written, without blanks and comment. ``line_number`` counts from 1. ``comment`` is
     None if the line has no parenthesis, and ``comment_column`` is the column of the parenthesis. A line
     with ``errors`` must not be executed.
     """
 
-    number: int
+    line_number: int
     words: tuple[Word, ...] = ()
     comment: str | None = None
     comment_column: int = 0

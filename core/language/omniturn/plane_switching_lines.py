@@ -26,7 +26,7 @@ _MAX_FEED = 100_000.0
 _HINT = "Between (~PLXC) or (~PLZC) and (END), write only (X Y Z F), (G02 or G03 X Y I J), (H) and (D)."
 
 
-class PlaneLine(NamedTuple):
+class PlaneSwitchingLine(NamedTuple):
     """One line of a coordinate transformation (plane switching).
 
     ``name`` is PLXC, PLZC or END, or empty for a statement with ``words``. ``arc_code`` is 2 for G02, 3 for
@@ -38,10 +38,10 @@ class PlaneLine(NamedTuple):
     arc_code: int = 0
 
 
-def parse_plane_entry(text: str) -> PlaneLine | None:
+def parse_plane_switching_start(text: str) -> PlaneSwitchingLine | None:
     """Return the line if it starts a coordinate transformation (plane switching), otherwise None."""
     match = _ENTRY.fullmatch(text) if "~" in text else None
-    return PlaneLine(match[1].upper(), {}) if match else None
+    return PlaneSwitchingLine(match[1].upper(), {}) if match else None
 
 
 def is_missing_tilde(text: str, following_lines: Iterable[str]) -> bool | None:
@@ -64,7 +64,7 @@ def is_program_end(text: str) -> bool:
     return _END.fullmatch(text) is not None
 
 
-def lex_plane_line(number: int, text: str) -> PlaneLine:
+def lex_plane_switching_line(number: int, text: str) -> PlaneSwitchingLine:
     """Read a line between the start of plane switching and (END).
 
     Raises ProgramError for a statement that is not allowed.
@@ -76,7 +76,7 @@ def lex_plane_line(number: int, text: str) -> PlaneLine:
         )
     inside = match[1].upper()
     if inside.strip() == "END":
-        return PlaneLine("END", {})
+        return PlaneSwitchingLine("END", {})
     words: dict[str, Word] = {}
     at, base = len(inside) - len(inside.lstrip()), match.start(1) + 1
     while at < len(inside):
@@ -125,7 +125,7 @@ def _word(number: int, column: int, match: re.Match[str]) -> Word:
     return word
 
 
-def _sorted(number: int, words: dict[str, Word]) -> PlaneLine:
+def _sorted(number: int, words: dict[str, Word]) -> PlaneSwitchingLine:
     if not words:
         raise make_program_error(number, 1, "plane-word", "The statement is empty.", _HINT)
     for letter in ("H", "D"):
@@ -167,4 +167,4 @@ def _sorted(number: int, words: dict[str, Word]) -> PlaneLine:
         raise make_program_error(
             number, words["Z"].column, "word-unused", message, "Write the Z move on another line."
         )
-    return PlaneLine("", words, int(code.value or 0) if code else 0)
+    return PlaneSwitchingLine("", words, int(code.value or 0) if code else 0)

@@ -45,7 +45,7 @@ _ERROR_TEXTS = {
 }
 
 
-def make_length_error(line: int, length: int) -> Diagnostic:
+def make_line_length_error(line: int, length: int) -> Diagnostic:
     """Return the error for a line that is too long."""
     return make_error_diagnostic(
         line,
@@ -56,7 +56,7 @@ def make_length_error(line: int, length: int) -> Diagnostic:
     )
 
 
-def make_text_error(line: int, column: int, text: str) -> Diagnostic:
+def make_stray_text_error(line: int, column: int, text: str) -> Diagnostic:
     """Return the error for text outside parentheses."""
     shown = text if len(text) <= _MAX_DISPLAYED else f"{text[:_MAX_DISPLAYED]}…"
     message = Message("'{value}' is text outside parentheses.", value=shown)
@@ -65,7 +65,7 @@ def make_text_error(line: int, column: int, text: str) -> Diagnostic:
     )
 
 
-def make_standard_error(line: int, column: int, code: str) -> Diagnostic:
+def make_fixed_message_error(line: int, column: int, code: str) -> Diagnostic:
     """Return the error for a code whose message is always the same."""
     return make_error_diagnostic(line, column, code, *_ERROR_TEXTS[code])
 
@@ -107,7 +107,9 @@ def make_missing_number_error(line: int, column: int, letter: str, next_characte
     )
 
 
-def make_character_error(line: int, column: int, character: str, *, is_after_number: bool) -> Diagnostic:
+def make_invalid_character_error(
+    line: int, column: int, character: str, *, is_after_number: bool
+) -> Diagnostic:
     """Return the error for a character that cannot start a word."""
     fixed = _SIGNS.get(character) or (_AFTER_NUMBER.get(character) if is_after_number else None)
     if fixed is not None:

@@ -1,6 +1,6 @@
 """Parser of the SINUMERIK turning dialect, with words, lines and syntax errors."""
 
 from core.language.sinumerik.sinumerik_lexer import lex_line
-from core.language.sinumerik.sinumerik_words import LexedBlock, PositionForm, Word
+from core.language.sinumerik.sinumerik_words import LexedBlock, PositionMode, Word
 
-__all__ = ["LexedBlock", "PositionForm", "Word", "lex_line"]
+__all__ = ["LexedBlock", "PositionMode", "Word", "lex_line"]

@@ -49,7 +49,7 @@ def _names(line: LexedBlock) -> Iterator[tuple[str, int]]:
     if line.called_name:
         yield line.called_name, line.call_column
     if line.control_statement is not None:
-        jumps = line.control_statement.target or line.control_statement.keyword != "IF"
+        jumps = line.control_statement.target_label or line.control_statement.keyword != "IF"
         yield (
             (str(line.control_statement.keyword) if jumps else IF_BLOCK_FUNCTION),
             line.control_statement.column,

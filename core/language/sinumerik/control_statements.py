@@ -6,7 +6,7 @@ import re
 from enum import StrEnum
 from typing import NamedTuple
 
-from core.language.formulas import Formula, FormulaError, split_index
+from core.language.formulas import Formula, FormulaError, get_index_formulas
 from core.language.sinumerik.block_reader import MAX_R_NUMBER, BlockReader, ValueList, read_value_list
 from core.language.sinumerik.call_arguments import ProcParameter, read_parameters
 from core.message import Message
@@ -66,18 +66,18 @@ class CaseBranch(NamedTuple):
 
     formula: Formula | None
     jump_keyword: ControlKeyword
-    target: str
+    target_label: str
 
 
 class ControlStatement(NamedTuple):
     """One program control line.
 
     - ``condition`` belongs to IF, CASE, WHILE and UNTIL.
-    - ``target`` of a jump is a label or a block number such as N123.
+    - ``target_label`` of a jump is a label or a block number such as N123.
     - ``identifier``, ``start_value`` and ``end_value`` are the variable, the start and the end of FOR.
-    - PROC uses ``identifier``, ``parameters`` and ``has_save``.
+    - PROC uses ``identifier``, ``parameters`` and ``has_save_keyword``.
     - ``message_parts`` contains the texts and formulas of MSG.
-    - REPEAT executes the lines from ``target`` to ``end_label`` another ``repeat_count`` times.
+    - REPEAT executes the lines from ``target_label`` to ``end_label`` another ``repeat_count`` times.
     - ``else_jump`` is a further IF … GOTO in the block.
     - ``column`` counts from 1.
     """
@@ -85,7 +85,7 @@ class ControlStatement(NamedTuple):
     keyword: ControlKeyword
     column: int
     condition: Formula | None = None
-    target: str = ""
+    target_label: str = ""
     identifier: str = ""
     start_value: Formula | None = None
     end_value: Formula | None = None
@@ -93,7 +93,7 @@ class ControlStatement(NamedTuple):
     definitions: tuple[VariableDefinition, ...] = ()
     case_branches: tuple[CaseBranch, ...] = ()
     parameters: tuple[ProcParameter, ...] = ()
-    has_save: bool = False
+    has_save_keyword: bool = False
     end_label: str = ""
     repeat_count: Formula | None = None
     else_jump: ControlStatement | None = None
@@ -170,7 +170,7 @@ class _Reader(BlockReader):
         return ControlStatement(self._steering, self._column) if read is None else read()
 
     def _goto(self) -> ControlStatement:
-        return ControlStatement(self._steering, self._column, target=self._target())
+        return ControlStatement(self._steering, self._column, target_label=self._target())
 
     def _conditional(self) -> ControlStatement:
         return ControlStatement(self._steering, self._column, self.read_formula())
@@ -242,7 +242,7 @@ class _Reader(BlockReader):
         passes = self.read_formula() if self.match_pattern(_PASSES) else None
         until = labels[-1] if labels[1:] else ""
         return ControlStatement(
-            self._steering, self._column, target=labels[0], end_label=until, repeat_count=passes
+            self._steering, self._column, target_label=labels[0], end_label=until, repeat_count=passes
         )
 
     def _definitions(self) -> list[VariableDefinition]:
@@ -262,7 +262,7 @@ class _Reader(BlockReader):
         made = VariableDefinition(name, None, kind)
         if after == "[":
             self.index -= 1
-            made = made._replace(dimensions=split_index(self.read_index()))
+            made = made._replace(dimensions=get_index_formulas(self.read_index()))
             after = self._sign()
         if after == "=":
             made = self._first_value(made)
@@ -292,7 +292,7 @@ class _Reader(BlockReader):
         saves = False
         while match := self.match_pattern(_ATTRIBUTE):
             saves = saves or match[1] == "SAVE"
-        return jump._replace(has_save=saves)
+        return jump._replace(has_save_keyword=saves)
 
     def _extern(self) -> ControlStatement:
         text = Message("{steering} needs a subprogram name", steering=self._steering)

@@ -18,7 +18,7 @@ WRONG_OTHER_INDEX = 17030
 CHANNEL_NUMBER = 1
 
 
-def make_alarm(
+def make_alarm_diagnostic(
     line: int, column: int, code: int | str, block: str, text: str, hint: str, *, axis: str = ""
 ) -> Diagnostic:
     """Return an error whose code is the control's alarm number or a TurnDesk code in words."""

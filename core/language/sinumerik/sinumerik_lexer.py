@@ -24,12 +24,12 @@ from core.language.sinumerik.control_statements import (
 )
 from core.language.sinumerik.cycle_names import CYCLE_PARAMETERS, IGNORED_CYCLES, UNSUPPORTED_CYCLES
 from core.language.sinumerik.iso_words import find_iso_word
-from core.language.sinumerik.sinumerik_alarms import SYNTAX_ERROR, make_alarm
+from core.language.sinumerik.sinumerik_alarms import SYNTAX_ERROR, make_alarm_diagnostic
 from core.language.sinumerik.sinumerik_words import (
     INTERNAL_AXIS_NAME,
     MAX_LINE_LENGTH,
     LexedBlock,
-    PositionForm,
+    PositionMode,
     Word,
     rename_axis_words,
 )
@@ -60,7 +60,7 @@ _SYSTEM = re.compile(r"\$[A-Z0-9_]+")
 _BRACKET = re.compile(r"\s*\(")
 _PROGRAM = re.compile(r'\s*"?([A-Z_][A-Z0-9_]*|L[0-9]+)"?(?![A-Z0-9_])')
 _FORM = re.compile(r"([A-Z]+)\s*(\()?\s*")
-_FORMS = frozenset(str(form) for form in PositionForm if form)
+_FORMS = frozenset(str(form) for form in PositionMode if form)
 _REST_OF_WORD = re.compile(r"\S*\([^)]*\)?|\S+")
 _PASSES = re.compile(r"\s*P\s*=?\s*([0-9]+)")
 _MAX_PASSES = 9999
@@ -194,7 +194,7 @@ class _Scanner:
         if habit := find_iso_word(self._text):
             number, block = self._number, self._block
             self.errors[:] = [
-                make_alarm(
+                make_alarm_diagnostic(
                     number, habit.start_index + 1, "other-control", block, habit.explanation, habit.remedy
                 )
             ]
@@ -202,7 +202,7 @@ class _Scanner:
     def report_error(self, column: int, text: str, hint: str) -> None:
         """Report a syntax alarm at this column."""
         self._add_finding(
-            make_alarm(
+            make_alarm_diagnostic(
                 self._number,
                 column,
                 SYNTAX_ERROR,
@@ -231,7 +231,9 @@ class _Scanner:
             Message("{word}: {problem}.", word=name, problem=reason),
             ("Remove this text from the program."),
         )
-        self._add_finding(make_alarm(self._number, index + 1, "not-in-subset", self._block, text, hint))
+        self._add_finding(
+            make_alarm_diagnostic(self._number, index + 1, "not-in-subset", self._block, text, hint)
+        )
         rest = _REST_OF_WORD.match(self._text, end)
         return rest.end() if rest and not self._text[end : end + 1].isspace() else end
 
@@ -396,7 +398,7 @@ class _Scanner:
         written = "".join(self._text[at : value.end_index].split())
         named = "R0" if name == "R" else name
         word = Word(
-            named, value.number, at + 1, written, PositionForm.PLAIN, value.formula, element_index=place
+            named, value.number, at + 1, written, PositionMode.PLAIN, value.formula, element_index=place
         )
         return self._keep(word._replace(values=listed), value.end_index)
 
@@ -453,7 +455,7 @@ class _Scanner:
             )
         written = "".join(self._text[at : value.end_index].split())
         return self._keep(
-            Word(name, value.number, at + 1, written, PositionForm.PLAIN, value.formula), value.end_index
+            Word(name, value.number, at + 1, written, PositionMode.PLAIN, value.formula), value.end_index
         )
 
     def _target(self, name: str, index: int, found: re.Match[str]) -> int:
@@ -478,7 +480,7 @@ class _Scanner:
         if self._text[close : close + 1] != ")":
             return self._skip(index, Message("the closing parenthesis of {form} is missing", form=form), hint)
         written = "".join(self._text[index : close + 1].split())
-        word = Word(name, value.number, index + 1, written, PositionForm(form), value.formula)
+        word = Word(name, value.number, index + 1, written, PositionMode(form), value.formula)
         return self._keep(word, close + 1)
 
     def _keep(self, word: Word, end: int) -> int:

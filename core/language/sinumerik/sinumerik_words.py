@@ -16,14 +16,14 @@ from core.language.formulas import Formula
 from core.language.sinumerik.block_reader import ValueList
 from core.language.sinumerik.call_arguments import CallArgument
 from core.language.sinumerik.control_statements import ControlStatement
-from core.language.sinumerik.sinumerik_alarms import make_alarm
+from core.language.sinumerik.sinumerik_alarms import make_alarm_diagnostic
 from core.language.sinumerik.unsupported_words import UNSUPPORTED_WORDS
 from core.language.sinumerik.word_table import GROUP_BY_FUNCTION, VALUE_WORDS
 
 MAX_LINE_LENGTH = 512
 
 
-class PositionForm(StrEnum):
+class PositionMode(StrEnum):
     """How a word specifies its position, such as AC or IC; for PLAIN, G90 or G91 decides."""
 
     PLAIN = ""
@@ -47,7 +47,7 @@ class Word(NamedTuple):
     value: float | None
     column: int
     text: str
-    position_form: PositionForm = PositionForm.PLAIN
+    position_mode: PositionMode = PositionMode.PLAIN
     formula: Formula | None = None
     quoted_name: str = ""
     spindle_number: int = 0
@@ -60,7 +60,8 @@ class Word(NamedTuple):
 class LexedBlock(NamedTuple):
     """One block of a program, split into words; a block with ``errors`` must not be executed.
 
-    - ``number`` is the line of the block, from 1. ``text`` is its code without number, label and comment.
+    - ``line_number`` is the line of the block, from 1. ``text`` is its code without number, label and
+      comment.
     - ``block_name`` names the block in alarms: its N or : number, its label or its line.
     - ``skip_level`` is the level of ``/`` (0 without a digit), or None without ``/``.
     - ``called_name`` is the name of a subprogram or cycle, executed ``execution_count`` times.
@@ -68,7 +69,7 @@ class LexedBlock(NamedTuple):
     - With ``is_modal_call`` (MCALL), the call is executed after each following move.
     """
 
-    number: int
+    line_number: int
     block_name: str
     words: tuple[Word, ...] = ()
     label: str = ""
@@ -95,7 +96,9 @@ class LexedBlock(NamedTuple):
 
         ``code`` is an alarm number of the control, or a TurnDesk code in words.
         """
-        return ProgramError(make_alarm(self.number, column, code, self.block_name, text, hint))
+        return ProgramError(
+            make_alarm_diagnostic(self.line_number, column, code, self.block_name, text, hint)
+        )
 
 
 # --- vocabulary: supported words, and known words that are not executed

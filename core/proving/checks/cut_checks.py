@@ -13,7 +13,7 @@ from itertools import pairwise
 from core.interpreter.shared.elementary_blocks import BlockKind
 from core.message import Message
 from core.part.cutter import CutSide, Cutter
-from core.part.insert_codes import Insert, InsertCodeError, decode_insert_code, make_insert
+from core.part.insert_codes import CuttingInsert, InsertCodeError, decode_insert_code, make_insert
 from core.part.stock import Stock
 from core.part.swept_edge import Point
 from core.part.tool_shape import ToolKind, ToolShape
@@ -75,7 +75,8 @@ INSERT_TOOLS = frozenset({ToolKind.TURNING, ToolKind.BORING})
 class AirCutChecks:
     """Checks for missing cuts after feeds and after rapids into the part, called in program order.
 
-    Call ``check_feed`` or ``check_rapid`` after each move has been cut, and ``record_pause`` between moves.
+    Call ``check_feed_move`` or ``check_rapid_move`` after each move has been cut, and ``record_pause``
+    between moves.
     """
 
     stock: Stock | None = None
@@ -97,7 +98,7 @@ class AirCutChecks:
         """Record a wait or a switched output, which may be why the tool is at its current position."""
         self._went_in = None
 
-    def check_rapid(self, move: TipMove, cut: Cut, tool: int) -> Iterator[Found]:
+    def check_rapid_move(self, move: TipMove, cut: Cut, tool: int) -> Iterator[Found]:
         """Yield a fault if the feeds before this rapid, or earlier rapids into the part, cut nothing."""
         if tool != self._tool:
             self._tool, self._went_in = tool, None
@@ -119,7 +120,7 @@ class AirCutChecks:
         ):
             self._went_in = self._went_in or move
 
-    def check_feed(
+    def check_feed_move(
         self, move: TipMove, cut: Cut, cutter: Cutter, part: TurnedPart, tool: int, cutting_direction: int,
         *, is_drill: bool = False,
     ) -> Iterator[Found]:  # fmt: skip
@@ -145,7 +146,7 @@ class AirCutChecks:
             self._fed = self._fed or move
             self._fed_length += move.length_mm
         gone, self._left_part = self._left_part, None
-        if cut or move.kind is BlockKind.THREAD:
+        if cut or move.block_kind is BlockKind.THREAD:
             self._air, self._cut_before = 0.0, bool(cut)
             return
         if self._is_outside_stock(move):
@@ -154,7 +155,9 @@ class AirCutChecks:
         yield from self._in_air(move, cutter, part)
         self._cut_before = close
 
-    def record_milling(self, line: int, block_number: int, tool: int, has_cut: Callable[[], bool]) -> None:
+    def record_milling_feed(
+        self, line: int, block_number: int, tool: int, has_cut: Callable[[], bool]
+    ) -> None:
         """Record a feed of a live tool. ``has_cut`` is called only if the tool has not cut anything yet."""
         if self._milled.get(tool, (line, block_number)) is None:
             return
@@ -164,7 +167,7 @@ class AirCutChecks:
             self._milled.setdefault(tool, (line, block_number))
 
     @property
-    def uncut_live_feeds(self) -> list[tuple[int, int, int]]:
+    def live_feeds_without_cut(self) -> list[tuple[int, int, int]]:
         """Return the line, block number and tool number of each live tool that has cut nothing.
 
         The line and the block are those of the first feed of the tool.
@@ -180,7 +183,7 @@ class AirCutChecks:
         if fed is not None and not has_cut and length >= _MIN_FEED_LENGTH_MM:
             text = (
                 "Threading moves between two rapids cut only air."
-                if fed.kind is BlockKind.THREAD
+                if fed.block_kind is BlockKind.THREAD
                 else "Feed moves between two rapids cut only air."
             )
             yield Found("unmade-cut", text, fed)
@@ -284,7 +287,7 @@ def check_cut_size(
 ) -> Iterator[Found]:
     """Yield the faults of a feed if ``cut`` is too large for the tool."""
     yield from _check_feed_rate(move, shape, tool, has_holder=cutter.has_holder)
-    if move.kind is BlockKind.THREAD:
+    if move.block_kind is BlockKind.THREAD:
         return
     if shape.kind in GROOVING_TOOLS:
         yield from _check_blade_turning(move, cut, shape, tool)
@@ -295,7 +298,7 @@ def check_cut_size(
 def _check_feed_rate(move: TipMove, shape: ToolShape, tool: int, *, has_holder: bool) -> Iterator[Found]:
     """Check the feed per revolution against the nose radius, the groove width or the drill diameter."""
     feed = move.feed_per_rev_mm or (move.speed_mm_s * 60.0 / abs(move.rpm) if move.rpm else 0.0)
-    if not feed or move.kind is BlockKind.THREAD or shape.kind is ToolKind.TAP:
+    if not feed or move.block_kind is BlockKind.THREAD or shape.kind is ToolKind.TAP:
         return
     limit, breaks, least = _feed_limit(shape, has_holder=has_holder)
     if not feed > limit > 0.0:
@@ -455,7 +458,7 @@ def has_round_insert(shape: ToolShape) -> bool:
     return not _insert(shape).edge_lengths
 
 
-def _insert(shape: ToolShape) -> Insert:
+def _insert(shape: ToolShape) -> CuttingInsert:
     try:
         return decode_insert_code(shape.insert) if shape.insert.strip() else _USUAL
     except InsertCodeError:

@@ -14,7 +14,7 @@ from core.message import Message
 from core.part.cutter import CutSide, Cutter
 from core.part.stock import Stock
 from core.part.swept_edge import Point
-from core.part.tool_shape import Hand, ToolKind, ToolShape
+from core.part.tool_shape import ToolHand, ToolKind, ToolShape
 from core.part.turned_part import NO_CUT, Cut, TurnedPart
 from core.proving.checks.cut_checks import INSERT_TOOLS, check_cut_size, has_round_insert
 from core.proving.checks.thread_checks import Found
@@ -47,12 +47,12 @@ class EdgeChecks:
 
     stock: Stock | None = None
     is_stock_specified: bool = False  # the stock is specified instead of assumed
-    part_off_z: float | None = None  # Z of the deepest part-off on the side of the chuck
+    part_off_z_mm: float | None = None  # Z of the deepest part-off on the side of the chuck
     _turned: dict[int, float] = field(default_factory=dict)  # T → direction in which its edge has cut
     _told: set[int] = field(default_factory=set)
     _solid: float = 0.0  # mm of solid material along Z that the present move enters
 
-    def record_material(self, move: TipMove, shape: ToolShape | None, part: TurnedPart) -> None:
+    def record_solid_length(self, move: TipMove, shape: ToolShape | None, part: TurnedPart) -> None:
         """Record the length of solid material that a boring tool is about to enter."""
         self._solid = 0.0
         if shape is None or not shape.internal or move.is_fast:
@@ -64,7 +64,7 @@ class EdgeChecks:
         )
         self._solid = part.columns.step_mm * float(np.count_nonzero(solid))
 
-    def check_feed(
+    def check_feed_move(
         self,
         move: TipMove,
         cuts: Sequence[Cut],
@@ -114,7 +114,7 @@ class EdgeChecks:
         yield from self._check_contour_past_part_off(move, shape, tool)
         yield from self._drilled(move, shape, tool)
         # otherwise the insert is assumed
-        if cutter.has_holder and shape.kind in INSERT_TOOLS and move.kind is not BlockKind.THREAD:
+        if cutter.has_holder and shape.kind in INSERT_TOOLS and move.block_kind is not BlockKind.THREAD:
             yield from _check_cutting_side(move, cuts, shape, cutter, part, tool)
 
     def _check_spindle_direction(
@@ -127,7 +127,7 @@ class EdgeChecks:
         if not move.rpm:
             return
         if shape.kind in _DRILLS:
-            needed = {Hand.RIGHT: 1.0, Hand.LEFT: -1.0}.get(shape.hand, 0.0)
+            needed = {ToolHand.RIGHT: 1.0, ToolHand.LEFT: -1.0}.get(shape.hand, 0.0)
             if move.rpm * needed < 0.0:
                 yield Found("wrong-spindle-direction", _turns_wrongly(move, shape, tool))
             return
@@ -167,11 +167,11 @@ class EdgeChecks:
             )
 
     def _past_part_off(self, move: TipMove, shape: ToolShape, cutter: Cutter, tool: int) -> Iterator[Found]:
-        if self.part_off_z is None or cutter.is_drill or shape.kind is ToolKind.PARTING:
+        if self.part_off_z_mm is None or cutter.is_drill or shape.kind is ToolKind.PARTING:
             return
         z = min(z for z, _ in move.points)
-        long = (self.stock.front_z_mm if self.stock is not None else 0.0) - self.part_off_z
-        if z < self.part_off_z - max(_PASSED_DISTANCE_MM, long):
+        long = (self.stock.front_z_mm if self.stock is not None else 0.0) - self.part_off_z_mm
+        if z < self.part_off_z_mm - max(_PASSED_DISTANCE_MM, long):
             text = move.modal.format_length
             yield Found(
                 "past-part-off",
@@ -179,22 +179,26 @@ class EdgeChecks:
                     "{tool} cuts at Z {z}, but the part ends at Z {parted_at}.",
                     tool=format_edge_name(tool),
                     z=text(z),
-                    parted_at=text(self.part_off_z),
+                    parted_at=text(self.part_off_z_mm),
                 ),
             )
 
     def _check_contour_past_part_off(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
         """Check for an arc on the bar side of the deepest part-off, past the end of the finished part."""
-        if self.part_off_z is None or move.kind is not BlockKind.ARC or shape.kind not in INSERT_TOOLS:
+        if (
+            self.part_off_z_mm is None
+            or move.block_kind is not BlockKind.ARC
+            or shape.kind not in INSERT_TOOLS
+        ):
             return
         front = max(z for z, _ in move.points)
-        if front < self.part_off_z - _BEYOND_CUT:
+        if front < self.part_off_z_mm - _BEYOND_CUT:
             text = move.modal.format_length
             words = Message(
                 "{tool} cuts an arc at Z {front}, but the part ends at Z {parted_at}.",
                 tool=format_edge_name(tool),
                 front=text(front),
-                parted_at=text(self.part_off_z),
+                parted_at=text(self.part_off_z_mm),
             )
             yield Found("contour-past-part-off", words)
 
@@ -252,7 +256,7 @@ def _is_against_rake(shape: ToolShape, rpm: float) -> bool:
 
     A tool that is mounted upside down, and therefore cuts along Z opposite to its hand, is not checked.
     """
-    upright = {Hand.RIGHT: -1, Hand.LEFT: 1}.get(shape.hand) == shape.direction[0]
+    upright = {ToolHand.RIGHT: -1, ToolHand.LEFT: 1}.get(shape.hand) == shape.direction[0]
     return shape.kind in INSERT_TOOLS and upright and not shape.is_rear_tool and rpm < 0.0
 
 
@@ -281,7 +285,7 @@ def _check_speed_limit(move: TipMove, shape: ToolShape, tool: int) -> Iterator[F
 
 def _arc_turn_angle(move: TipMove) -> float:
     """Return the angle in degrees through which the path of an arc turns, or 0 for any other move."""
-    if move.kind is not BlockKind.ARC or len(move.points) < 3:
+    if move.block_kind is not BlockKind.ARC or len(move.points) < 3:
         return 0.0
     headings = np.unwrap(np.arctan2(*np.diff(np.array(move.points), axis=0).T[::-1]))
     chords = len(headings)
@@ -402,7 +406,7 @@ def _iter_steep_runs(
         )
         if steep > steepest:
             start, end = start if angle else a, b
-            met, angle = met.combine_sequence(cut), max(angle, steep)
+            met, angle = met.combine_with_later(cut), max(angle, steep)
         elif angle:
             yield start, end, met, angle
             met, angle = NO_CUT, 0.0

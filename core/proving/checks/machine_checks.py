@@ -239,7 +239,7 @@ class CuttingChecks:
     def _live_tool_off(self, block: Block) -> None:
         codes = sorted(
             code
-            for code, (name, on) in self.machine.m_codes.items()
+            for code, (name, on) in self.machine.m_code_outputs.items()
             if on and name.startswith(LIVE_TOOL_PREFIX)
         )
         if not codes:

@@ -422,7 +422,7 @@ PROGRAM_CHECKS: Mapping[str, PartCheck] = {
 """Checks that do not need the stock. They cover tool, collet, spindle, inputs and program paths."""
 
 
-def is_serious(finding: Diagnostic) -> bool:
+def is_serious_finding(finding: Diagnostic) -> bool:
     """Return whether a finding is an error, or would be an error if the assumed data were specified."""
     if finding.severity is Severity.ERROR:
         return True

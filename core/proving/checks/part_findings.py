@@ -52,14 +52,14 @@ class PartFindings:
     The moves must be passed in program order.
     """
 
-    find_shape: Callable[[int], ToolShape | None]
+    find_tool_shape: Callable[[int], ToolShape | None]
     stock: Stock | None
     clamping: Clamping | None = None
     neighbors: NeighborTools | None = None
     thread_checks: ThreadChecks = field(default_factory=ThreadChecks)
     find_unspecified_data: Callable[[tuple[str, ...]], tuple[str, ...]] = lambda _rests_on: ()
     silenced_checks: Mapping[str, str] = field(default_factory=dict)  # reason by check
-    part_off_z: float | None = None  # Z of the deepest part-off
+    part_off_z_mm: float | None = None  # Z of the deepest part-off
     _left: tuple[int, TipMove] | None = None  # T with its part-off that stopped before the axis
     clamping_cuts: dict[tuple[str, int], Cut] = field(default_factory=dict)  # by check and line
     _edges: EdgeChecks = field(init=False)
@@ -72,12 +72,12 @@ class PartFindings:
 
     def __post_init__(self) -> None:
         given = not self.find_unspecified_data((STOCK,))
-        self._edges = EdgeChecks(self.stock, is_stock_specified=given, part_off_z=self.part_off_z)
+        self._edges = EdgeChecks(self.stock, is_stock_specified=given, part_off_z_mm=self.part_off_z_mm)
         self._airs = AirCutChecks(self.stock)
-        if self.clamping is not None and self.clamping.diameter and self.stock is not None:
+        if self.clamping is not None and self.clamping.chuck_diameter and self.stock is not None:
             if not self.clamping.quill_diameter:  # stock supported at both ends whirls at a much higher speed
                 self._whirls = calculate_critical_rpm(self.stock, self.clamping.stick_out)
-            self._chuck = TurnedPart(self.clamping.make_chuck_around(self.stock), _CHUCK_STEP)
+            self._chuck = TurnedPart(self.clamping.make_chuck_for_stock(self.stock), _CHUCK_STEP)
         tailstock = self.clamping.tailstock_solid if self.clamping is not None else None
         self._tailstock = TurnedPart(tailstock, _CHUCK_STEP) if tailstock is not None else None
 
@@ -99,13 +99,13 @@ class PartFindings:
         """Remove the material that a move cuts, and check the result."""
         if self._leaves_thread(move, cutter):
             self._found_by(
-                move, self.thread_checks.check_move(move, NO_CUT, part, self.find_shape(tool), tool)
+                move, self.thread_checks.check_move(move, NO_CUT, part, self.find_tool_shape(tool), tool)
             )
-            self._found_by(move, self._airs.check_rapid(move, NO_CUT, tool))
+            self._found_by(move, self._airs.check_rapid_move(move, NO_CUT, tool))
             self._before = move
             return
-        self.thread_checks.record_material(move, part)
-        self._edges.record_material(move, self.find_shape(tool), part)
+        self.thread_checks.record_initial_radii(move, part)
+        self._edges.record_solid_length(move, self.find_tool_shape(tool), part)
         inside = move.is_fast and part.enters_material(move.points, RAPID_TOLERANCE_MM)
         cuts, struck = _execute_move(move, cutter, part)
         met = _combine_cuts(move, cuts)
@@ -135,19 +135,20 @@ class PartFindings:
         if move.is_fast:
             self._check_rapid_cut(move, met, is_certain=inside)
             self._check_rubbing(move, met, cutter, part, tool)
-            self._found_by(move, self._airs.check_rapid(move, met, tool))
+            self._found_by(move, self._airs.check_rapid_move(move, met, tool))
         else:
-            shape = self.find_shape(tool)
+            shape = self.find_tool_shape(tool)
             self._record_part_off(move, met, shape, tool)
             forward = shape.direction[0] if shape is not None else 0
             drill = shape is not None and shape.kind is ToolKind.DRILL and cutter.has_holder
             self._found_by(
-                move, self._airs.check_feed(move, met, cutter, part, tool, forward, is_drill=drill)
+                move, self._airs.check_feed_move(move, met, cutter, part, tool, forward, is_drill=drill)
             )
             self._found_by(
-                move, self._edges.check_feed(move, cuts, met, self.find_shape(tool), cutter, part, tool)
+                move,
+                self._edges.check_feed_move(move, cuts, met, self.find_tool_shape(tool), cutter, part, tool),
             )
-        self._found_by(move, self.thread_checks.check_move(move, met, part, self.find_shape(tool), tool))
+        self._found_by(move, self.thread_checks.check_move(move, met, part, self.find_tool_shape(tool), tool))
         self._before = move
 
     def _leaves_thread(self, move: TipMove, cutter: Cutter) -> bool:
@@ -156,7 +157,7 @@ class PartFindings:
         Contact with material is then not a fault. The end position of the pass is not exactly known, so the
         material that the edge touches is inside the groove.
         """
-        if not move.is_fast or self._before is None or self._before.kind is not BlockKind.THREAD:
+        if not move.is_fast or self._before is None or self._before.block_kind is not BlockKind.THREAD:
             return False
         (z0, r0), (z1, r1) = move.points[0], move.points[-1]
         return abs(z1 - z0) <= _SQUARE and (abs(r1) < abs(r0)) is (cutter.side is CutSide.BORE)
@@ -216,7 +217,7 @@ class PartFindings:
         """
         if cut.depth_mm <= RAPID_TOLERANCE_MM or cut.width_mm <= RAPID_TOLERANCE_MM:
             return
-        deep, fed = _depth(cut, move), move.kind is not BlockKind.RAPID
+        deep, fed = _depth(cut, move), move.block_kind is not BlockKind.RAPID
         behind_cut = self._before is not None and not self._before.is_fast
         if behind_cut and fed:
             text = Message(
@@ -236,7 +237,7 @@ class PartFindings:
         Only a specified insert is checked.
         """
         (z0, r0), (z1, r1) = move.points[0], move.points[-1]
-        before, shape = self._before, self.find_shape(tool)
+        before, shape = self._before, self.find_tool_shape(tool)
         if shape is None or shape.kind is not ToolKind.TURNING or not cutter.has_holder:
             return
         if cut or before is None or before.is_fast:
@@ -258,10 +259,10 @@ class PartFindings:
         """Record that the program waits or switches an output at this point."""
         self._airs.record_pause()
 
-    def finish_program(self) -> None:
+    def add_final_findings(self) -> None:
         """Add the findings that are known only at the end of the program."""
         self._tell_left()
-        for check, text, at in self.thread_checks.finish_thread():
+        for check, text, at in self.thread_checks.check_last_thread():
             if at is not None:
                 self._add(check, at, text)
         for one, other in self.neighbors.coincident_tools if self.neighbors is not None else ():
@@ -272,7 +273,7 @@ class PartFindings:
                 other=format_edge_name(other),
             )
             self._store_finding("tools-in-one-place", 0, 0, words)
-        for line, n, tool in self._airs.uncut_live_feeds:
+        for line, n, tool in self._airs.live_feeds_without_cut:
             self._store_finding(
                 "unmade-cut",
                 line,
@@ -289,7 +290,7 @@ class PartFindings:
             Message("{tool} cuts while neither the tool nor the spindle turns.", tool=format_edge_name(tool)),
         )
 
-    def report_nothing_cut(self, line: int, block_number: int, text: str) -> None:
+    def report_missing_cut(self, line: int, block_number: int, text: str) -> None:
         """Report that a tool, or the whole program, cuts no material."""
         self._store_finding("unmade-cut", line, block_number, text)
 
@@ -318,7 +319,7 @@ class PartFindings:
                 ),
             )
         if not move.is_fast:
-            self._airs.record_milling(
+            self._airs.record_milling_feed(
                 move.line, move.block_number, tool, lambda: bool(cut) or touches_material()
             )
         if move.is_fast and cut.volume_mm3 > RAPID_TOLERANCE_MM * math.pi * (shape.diameter / 2.0) ** 2:
@@ -422,7 +423,7 @@ def _find_body_hit(body: TurnedPart | None, move: TipMove, cutter: Cutter) -> Cu
     met = NO_CUT
     if body is not None:
         for start, end in pairwise(move.points):
-            met = met.combine(cutter.find_collision(body, start, end))
+            met = met.combine_with(cutter.find_collision(body, start, end))
     return met
 
 
@@ -439,12 +440,12 @@ def _execute_move(move: TipMove, cutter: Cutter, part: TurnedPart) -> tuple[list
         True  # The holder is checked before parted material drops, because it may hit that material.
     )
     for start, end in pairwise(move.points):
-        if move.kind is BlockKind.THREAD and move.feed_per_rev_mm:
+        if move.block_kind is BlockKind.THREAD and move.feed_per_rev_mm:
             cuts.append(cutter.cut_thread(part, start, end, move.feed_per_rev_mm, turns))
             turns += abs(end[0] - start[0]) / move.feed_per_rev_mm
         else:
             cuts.append(cutter.cut_material(part, start, end))
-        struck = struck.combine_sequence(cutter.cut_with_body(part, start, end))
+        struck = struck.combine_with_later(cutter.cut_with_body(part, start, end))
     part.drop_parted_pieces()
     return cuts, struck
 
@@ -457,7 +458,7 @@ def _combine_cuts(move: TipMove, cuts: Iterable[Cut]) -> Cut:
     """
     met = NO_CUT
     for cut in cuts:
-        met = met.combine(cut) if move.kind is BlockKind.THREAD else met.combine_sequence(cut)
+        met = met.combine_with(cut) if move.block_kind is BlockKind.THREAD else met.combine_with_later(cut)
     return met
 
 

@@ -60,12 +60,12 @@ UNKNOWN_LIMITS = DriveLimits()
 class ThreadChecks:
     """Checks of screw threads, to be called for each move in program order.
 
-    Call ``record_material`` before each cut and ``check_move`` after it. ``has_releasing_holder`` returns,
-    for a T number, whether the tap holder reverses or releases the tap automatically.
+    Call ``record_initial_radii`` before each cut and ``check_move`` after it. ``has_releasing_tap_holder``
+    returns, for a T number, whether the tap holder reverses or releases the tap automatically.
     """
 
     drive_limits: DriveLimits = UNKNOWN_LIMITS
-    has_releasing_holder: Callable[[int], bool] = lambda _: False
+    has_releasing_tap_holder: Callable[[int], bool] = lambda _: False
     is_stock_specified: bool = False  # the stock is specified instead of assumed
     # line, first column, radii, and 1 for an outside thread
     _crest: tuple[int, int, FloatArray, float] | None = None
@@ -76,9 +76,11 @@ class ThreadChecks:
     _uncut: tuple[int, TipMove] | None = None  # T and first pass of a thread that has not cut yet
     _begun: TipMove | None = None  # =
 
-    def record_material(self, move: TipMove, part: TurnedPart) -> None:
+    def record_initial_radii(self, move: TipMove, part: TurnedPart) -> None:
         """Record the radii of the material before the first pass of a thread is cut."""
-        if move.kind is not BlockKind.THREAD or (self._crest is not None and self._crest[0] == move.line):
+        if move.block_kind is not BlockKind.THREAD or (
+            self._crest is not None and self._crest[0] == move.line
+        ):
             return
         z0, z1 = move.points[0][0], move.points[-1][0]
         short = math.copysign(
@@ -104,17 +106,17 @@ class ThreadChecks:
         self, move: TipMove, cut: Cut, part: TurnedPart, shape: ToolShape | None, tool: int
     ) -> Iterator[Found]:
         """Yield the thread faults of a move that has just been cut."""
-        goes_on = self._pass is not None and move.kind is BlockKind.THREAD  # the pull-out of the thread
+        goes_on = self._pass is not None and move.block_kind is BlockKind.THREAD  # the pull-out of the thread
         yield from self._check_pass_end(move)
         if shape is not None and shape.kind is ToolKind.TAP:
             yield from self._tap(move, cut, shape, tool)
         else:
             self._fed = None
-        if move.kind is BlockKind.THREAD and move.feed_per_rev_mm and not goes_on:
+        if move.block_kind is BlockKind.THREAD and move.feed_per_rev_mm and not goes_on:
             yield from self._thread(move, cut, part, shape, tool)
             self._pass = move, cut
 
-    def finish_thread(self) -> Iterator[Found]:
+    def check_last_thread(self) -> Iterator[Found]:
         """Yield the faults of the last thread of a program or of a tool."""
         uncut, self._uncut, self._begun = self._uncut, None, None
         if uncut is not None and self.is_stock_specified:
@@ -136,7 +138,7 @@ class ThreadChecks:
         """
         before = self._begun
         if before is None or not _is_same_thread(before, move):
-            yield from self.finish_thread()
+            yield from self.check_last_thread()
             self._uncut = tool, move
         self._begun = move
         if cuts:
@@ -227,7 +229,7 @@ class ThreadChecks:
             return
         (cut, met), self._pass = self._pass, None
         needed = self._braking_distance(cut)
-        if move.kind is BlockKind.THREAD or needed <= cut.feed_per_rev_mm or not met:
+        if move.block_kind is BlockKind.THREAD or needed <= cut.feed_per_rev_mm or not met:
             return  # the axis continues during the pull-out, or only the last turn is affected
         z0, z1 = cut.points[0][0], cut.points[-1][0]
         left = met.back_z_mm - z1 if z1 < z0 else z1 - met.front_z_mm
@@ -268,7 +270,7 @@ class ThreadChecks:
             fed = self._fed
             if move.points[-1][0] >= self._entry:
                 self._fed = None
-            if not self.has_releasing_holder(tool):
+            if not self.has_releasing_tap_holder(tool):
                 yield from self._out(move, fed, tool)
 
     def _inside(self, move: TipMove) -> bool:

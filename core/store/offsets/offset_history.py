@@ -20,7 +20,7 @@ from core.store.offsets.offset_tables import (
     select_changes,
 )
 from core.store.store_errors import StoreError
-from core.store.store_rows import OffsetChange, OffsetKind, OffsetRow, ToolRow
+from core.store.store_rows import OffsetChange, OffsetKind, OffsetRow, ToolOffsetRow
 from core.tool_edges import format_edge_name, get_tool_number
 
 
@@ -56,7 +56,7 @@ def _last_step(
     step: int | None
     (step,) = connection.execute(
         f"SELECT max(step) FROM {log.name}"
-        f" WHERE undoes IS NULL AND {log.kind_expression} = coalesce(?, {log.kind_expression})"
+        f" WHERE undoes IS NULL AND {log.kind_sql_expression} = coalesce(?, {log.kind_sql_expression})"
         f" AND {log.key_column} = coalesce(?, {log.key_column})"
         f" AND step NOT IN (SELECT undoes FROM {log.name} WHERE undoes IS NOT NULL)",
         (kind.value if kind else None, number),
@@ -104,11 +104,11 @@ def history(connection: sqlite3.Connection, kind: OffsetKind, limit: int) -> tup
     """Return the latest changes of a table, newest first."""
     log = OFFSET_TABLES[kind].history_table
     return select_changes(
-        connection, log, f"WHERE {log.kind_expression} = ? ORDER BY id DESC LIMIT ?", (kind.value, limit)
+        connection, log, f"WHERE {log.kind_sql_expression} = ? ORDER BY id DESC LIMIT ?", (kind.value, limit)
     )
 
 
-def read_history_in_store(connection: sqlite3.Connection, limit: int) -> tuple[OffsetChange, ...]:
+def read_store_history(connection: sqlite3.Connection, limit: int) -> tuple[OffsetChange, ...]:
     """Return the latest changes of all tables, newest first.
 
     If ``limit`` is negative, all changes are returned.
@@ -122,7 +122,7 @@ def read_rows_at(connection: sqlite3.Connection, kind: OffsetKind, moment: str) 
     """Return the offsets of a table as they were at ``moment`` (UTC), by number."""
     log = OFFSET_TABLES[kind].history_table
     changes = select_changes(
-        connection, log, f"WHERE {log.kind_expression} = ? AND at <= ? ORDER BY id", (kind.value, moment)
+        connection, log, f"WHERE {log.kind_sql_expression} = ? AND at <= ? ORDER BY id", (kind.value, moment)
     )
     rows = {each.number: each.new for each in changes}
     return {number: row for number, row in rows.items() if row is not None}
@@ -159,7 +159,9 @@ def _check(kind: OffsetKind, rows: Mapping[int, OffsetRow]) -> None:
     """Raise StoreError if the table would have two master tools, or a cutting edge without its tool."""
     if kind is not OffsetKind.TOOL:
         return
-    masters = [format_edge_name(n) for n, row in rows.items() if isinstance(row, ToolRow) and row.master]
+    masters = [
+        format_edge_name(n) for n, row in rows.items() if isinstance(row, ToolOffsetRow) and row.master
+    ]
     if len(masters) > 1:
         raise StoreError(
             Message(

@@ -11,16 +11,16 @@ from core.store.offsets.touch_off import TouchPosition
 from core.store.store_access import StoreAccess
 from core.store.store_rows import (
     FieldValue,
-    MillRow,
+    MillToolRow,
     OffsetChange,
     OffsetKind,
     OffsetRow,
     PresetRow,
     RowT,
-    SecondaryRow,
-    ShapeRow,
-    ToolRow,
-    ZeroRow,
+    SecondaryOffsetRow,
+    ToolOffsetRow,
+    ToolShapeRow,
+    ZeroOffsetRow,
 )
 
 if TYPE_CHECKING:
@@ -109,11 +109,11 @@ class OffsetTable(Generic[RowT]):
         )
 
 
-class ToolOffsetTable(OffsetTable[ToolRow]):
+class ToolOffsetTable(OffsetTable[ToolOffsetRow]):
     """The tool offsets of a lathe; one of the tools may be the master tool."""
 
     def __init__(self, store: StoreAccess) -> None:
-        super().__init__(store, OffsetKind.TOOL, ToolRow)
+        super().__init__(store, OffsetKind.TOOL, ToolOffsetRow)
 
     def set_touched_offset(
         self, number: int, touch: TouchPosition, reason: str, *, author: str = "operator"
@@ -143,10 +143,10 @@ class OffsetTables:
     def __init__(self, store: StoreAccess) -> None:
         self._store = store
         self.tool_offsets = ToolOffsetTable(store)
-        self.secondary_offsets = OffsetTable(store, OffsetKind.SECONDARY, SecondaryRow)
-        self.zero_offsets = OffsetTable(store, OffsetKind.ZERO, ZeroRow)
-        self.tool_shapes = OffsetTable(store, OffsetKind.SHAPE, ShapeRow)
-        self.mill_tools = OffsetTable(store, OffsetKind.MILL_TOOL, MillRow)
+        self.secondary_offsets = OffsetTable(store, OffsetKind.SECONDARY, SecondaryOffsetRow)
+        self.zero_offsets = OffsetTable(store, OffsetKind.ZERO, ZeroOffsetRow)
+        self.tool_shapes = OffsetTable(store, OffsetKind.SHAPE, ToolShapeRow)
+        self.mill_tools = OffsetTable(store, OffsetKind.MILL_TOOL, MillToolRow)
         self.presets = OffsetTable(store, OffsetKind.PRESET, PresetRow)
 
     def get_table(self, kind: OffsetKind) -> OffsetTable[OffsetRow]:
@@ -155,7 +155,7 @@ class OffsetTables:
 
     def read_history(self, limit: int = 100) -> tuple[OffsetChange, ...]:
         """Return the latest changes of all tables, newest first."""
-        return self._store.run_query(offset_history.read_history_in_store, limit)
+        return self._store.run_query(offset_history.read_store_history, limit)
 
     def undo_last_step(
         self, reason: str = "undo", *, author: str = "operator"

@@ -23,17 +23,17 @@ from core.store.store_rows import (
     ZERO_CODES,
     FieldType,
     FieldValue,
-    MillRow,
+    MillToolRow,
     OffsetChange,
     OffsetKind,
     OffsetRow,
     PresetRow,
     RowField,
     RowT,
-    SecondaryRow,
-    ShapeRow,
-    ToolRow,
-    ZeroRow,
+    SecondaryOffsetRow,
+    ToolOffsetRow,
+    ToolShapeRow,
+    ZeroOffsetRow,
     convert_to_inches,
     get_utc_now_text,
 )
@@ -61,7 +61,7 @@ class HistoryTable:
     name: str
     key_column: str
     value_columns: tuple[str, ...]
-    kind_expression: str  # SQL expression for the kind of a row
+    kind_sql_expression: str  # SQL expression for the kind of a row
     nothing_to_undo_message: str
 
     @property
@@ -71,7 +71,7 @@ class HistoryTable:
 
 
 @dataclass(frozen=True, slots=True)
-class _Table:
+class _OffsetTableSchema:
     """A table of offsets with its name, its letter, its valid numbers, its row type and its history."""
 
     name: str
@@ -110,12 +110,14 @@ _PRESETS = HistoryTable(
 )
 HISTORY_TABLES = (_OFFSET_LOG, _ZEROS, _SHAPES, _MILL_TOOLS, _PRESETS)
 OFFSET_TABLES = {
-    OffsetKind.TOOL: _Table("tool_offsets", "T", TOOL_ROW_NUMBERS, ToolRow, _OFFSET_LOG),
-    OffsetKind.SECONDARY: _Table("secondary_offsets", "D", OFFSET_NUMBERS, SecondaryRow, _OFFSET_LOG),
-    OffsetKind.ZERO: _Table("zero_offsets", "G", ZERO_CODES, ZeroRow, _ZEROS),
-    OffsetKind.SHAPE: _Table("tool_shapes", "T", TOOL_ROW_NUMBERS, ShapeRow, _SHAPES),
-    OffsetKind.MILL_TOOL: _Table("mill_tools", "T", MILL_TOOL_NUMBERS, MillRow, _MILL_TOOLS),
-    OffsetKind.PRESET: _Table("datum_presets", "PRESET ", PRESET_NUMBERS, PresetRow, _PRESETS),
+    OffsetKind.TOOL: _OffsetTableSchema("tool_offsets", "T", TOOL_ROW_NUMBERS, ToolOffsetRow, _OFFSET_LOG),
+    OffsetKind.SECONDARY: _OffsetTableSchema(
+        "secondary_offsets", "D", OFFSET_NUMBERS, SecondaryOffsetRow, _OFFSET_LOG
+    ),
+    OffsetKind.ZERO: _OffsetTableSchema("zero_offsets", "G", ZERO_CODES, ZeroOffsetRow, _ZEROS),
+    OffsetKind.SHAPE: _OffsetTableSchema("tool_shapes", "T", TOOL_ROW_NUMBERS, ToolShapeRow, _SHAPES),
+    OffsetKind.MILL_TOOL: _OffsetTableSchema("mill_tools", "T", MILL_TOOL_NUMBERS, MillToolRow, _MILL_TOOLS),
+    OffsetKind.PRESET: _OffsetTableSchema("datum_presets", "PRESET ", PRESET_NUMBERS, PresetRow, _PRESETS),
 }
 
 
@@ -141,9 +143,9 @@ def read_typed_rows(connection: sqlite3.Connection, kind: OffsetKind, row: type[
     }
 
 
-def read_tool_offsets(connection: sqlite3.Connection) -> dict[int, ToolRow]:
+def read_tool_offsets(connection: sqlite3.Connection) -> dict[int, ToolOffsetRow]:
     """Return the tool offsets that have been set, by number."""
-    return read_typed_rows(connection, OffsetKind.TOOL, ToolRow)
+    return read_typed_rows(connection, OffsetKind.TOOL, ToolOffsetRow)
 
 
 def change_row(
@@ -200,14 +202,14 @@ def _make_new_rows(
         if number not in rows and values.get("master") and not {"x", "z"} <= values.keys():
             raise StoreError(make_no_offset_message(number), "never-set")
         new = new_rows[number] = apply_field_changes(kind, number, new_rows.get(number), values)
-        if isinstance(new, ShapeRow) and not new.kind:
+        if isinstance(new, ToolShapeRow) and not new.kind:
             text = Message(
                 "{number} does not have a tool shape yet; enter the tool type first: {range}",
                 number=format_edge_name(number),
                 range=FIELDS_BY_KIND[kind]["kind"].range_text,
             )
             raise StoreError(text, "no-shape")
-        if isinstance(new, ToolRow) and new.master:
+        if isinstance(new, ToolOffsetRow) and new.master:
             new_rows |= {n: row._replace(master=False) for n, row in _other_masters(new_rows, number)}
     return new_rows
 
@@ -242,8 +244,10 @@ def check_edge(
         )
 
 
-def _other_masters(rows: Mapping[int, OffsetRow], number: int) -> list[tuple[int, ToolRow]]:
-    return [(n, row) for n, row in rows.items() if n != number and isinstance(row, ToolRow) and row.master]
+def _other_masters(rows: Mapping[int, OffsetRow], number: int) -> list[tuple[int, ToolOffsetRow]]:
+    return [
+        (n, row) for n, row in rows.items() if n != number and isinstance(row, ToolOffsetRow) and row.master
+    ]
 
 
 def make_no_offset_message(number: int) -> str:
@@ -396,7 +400,7 @@ def apply_changes(
         [log.key_column, *columns],
         [(number, *new) for number, (_old, new) in changes.items() if new is not None],
     )
-    kind_map = {"kind": kind.value} if log.kind_expression == "kind" else {}
+    kind_map = {"kind": kind.value} if log.kind_sql_expression == "kind" else {}
     sides = [f"{side}_{column}" for side in ("old", "new") for column in columns]
     nothing = (None,) * len(columns)
     _insert(
@@ -449,7 +453,7 @@ def select_changes(
     if a matching entry is damaged.
     """
     rows = connection.execute(
-        f"SELECT id, step, undoes, at, {log.kind_expression}, {log.key_column}, why, who, "
+        f"SELECT id, step, undoes, at, {log.kind_sql_expression}, {log.key_column}, why, who, "
         f"{', '.join(log.old_and_new_columns)}"
         f" FROM {log.name} {sql_suffix}",
         parameters,

@@ -15,20 +15,20 @@ from core.message import Message
 from core.store.offsets import offset_tables
 from core.store.offsets.offset_tables import ChangeReason
 from core.store.store_errors import StoreError
-from core.store.store_rows import OffsetChange, OffsetKind, OffsetRow, ToolRow
+from core.store.store_rows import OffsetChange, OffsetKind, OffsetRow, ToolOffsetRow
 from core.tool_edges import format_edge_name
 
 
 class TouchPosition(NamedTuple):
     """The machine position in mm, with X as a radius, at which a tip is at part zero.
 
-    An axis is None if it was not touched off. ``moves_only_this_tool`` means that only this tool changes,
-    even if it is the master tool, because its tip has changed but part zero has not.
+    An axis is None if it was not touched off. ``applies_to_this_tool_only`` means that only this tool
+    changes, even if it is the master tool, because its tip has changed but part zero has not.
     """
 
     x: float | None = None
     z: float | None = None
-    moves_only_this_tool: bool = False
+    applies_to_this_tool_only: bool = False
 
 
 def store_touch_off(
@@ -37,7 +37,7 @@ def store_touch_off(
     """Store a touched-off position and set the wear of the touched-off axes to zero.
 
     The new geometry already includes the wear. Touching off the master tool moves all other tools by the
-    same distance, as one step of the history, unless ``touch.moves_only_this_tool`` is True. Raises
+    same distance, as one step of the history, unless ``touch.applies_to_this_tool_only`` is True. Raises
     StoreError, and leaves the store unchanged, if the number is unknown, if a value is out of range, if not
     both axes of a new tool were touched off, or for an additional cutting edge whose tool has no offset yet.
     """
@@ -56,7 +56,7 @@ def store_touch_off(
     geometry = {name: value for name, value in (("x", touch.x), ("z", touch.z)) if value is not None}
     new = _tool(number, old, {**geometry, **{f"wear_{name}": 0.0 for name in geometry}})
     changes: dict[int, tuple[OffsetRow | None, OffsetRow | None]] = {number: (old, new)}
-    if old is not None and old.master and not touch.moves_only_this_tool:
+    if old is not None and old.master and not touch.applies_to_this_tool_only:
         changes |= _make_follower_changes(
             rows, number, new.offset[0] - old.offset[0], new.offset[1] - old.offset[1]
         )
@@ -66,14 +66,14 @@ def store_touch_off(
     return offset_tables.apply_changes(connection, OffsetKind.TOOL, changes, reason)
 
 
-def _tool(number: int, old: ToolRow | None, wanted: dict[str, float]) -> ToolRow:
+def _tool(number: int, old: ToolOffsetRow | None, wanted: dict[str, float]) -> ToolOffsetRow:
     row = offset_tables.apply_field_changes(OffsetKind.TOOL, number, old, wanted)
-    assert isinstance(row, ToolRow)  # always true for the table of tools
+    assert isinstance(row, ToolOffsetRow)  # always true for the table of tools
     return row
 
 
 def _make_follower_changes(
-    rows: dict[int, ToolRow], master: int, x: float, z: float
+    rows: dict[int, ToolOffsetRow], master: int, x: float, z: float
 ) -> dict[int, tuple[OffsetRow | None, OffsetRow | None]]:
     """Return the changes that move all other tools together with part zero, by ``x`` and ``z`` in mm."""
     return {

@@ -104,7 +104,7 @@ def _job(connection: sqlite3.Connection, row: JobRow, held: PendingCounts) -> Jo
     for the job.
     """
     counted = program_records.read_part_count(connection, row.program)
-    reset, more = held.get(program_records.find_loaded_key(connection, row.program), (False, 0))
+    reset, more = held.get(program_records.find_loaded_text_key(connection, row.program), (False, 0))
     if reset and row.base_part_count is not None:
         before = row.parts_made_before + counted - row.base_part_count
         return row._replace(part_count=max(0, more), parts_made_before=before, base_part_count=0)
@@ -131,7 +131,7 @@ def add_job(connection: sqlite3.Connection, program: str, parts_to_make: int, no
     return int(done.lastrowid or 0)
 
 
-def change_job(connection: sqlite3.Connection, job_id: int, parts_to_make: int, note: str) -> None:
+def edit_job(connection: sqlite3.Connection, job_id: int, parts_to_make: int, note: str) -> None:
     """Change the number of parts and the note of a job.
 
     Raises StoreError if the number of parts or the note is invalid, or if the job is unknown.
@@ -202,9 +202,9 @@ def deactivate_job(connection: sqlite3.Connection) -> None:
 
 def save_count_before_reset(connection: sqlite3.Connection, program: str) -> None:
     """Save the number of parts made by the active job before its program's part count is reset."""
-    key = program_records.find_loaded_key(connection, program)
+    key = program_records.find_loaded_text_key(connection, program)
     for row in read_jobs(connection):
-        if row.is_active and program_records.find_loaded_key(connection, row.program) == key:
+        if row.is_active and program_records.find_loaded_text_key(connection, row.program) == key:
             connection.execute("UPDATE jobs SET made = ?, base = 0 WHERE id = ?", (row.parts_made, row.id))
 
 
@@ -213,7 +213,7 @@ def record_loaded_text(connection: sqlite3.Connection, program: str, record_key:
 
     The active job of the program retains the parts that it has made.
     """
-    before = program_records.find_loaded_key(connection, program)
+    before = program_records.find_loaded_text_key(connection, program)
     if before == record_key:
         return
     if before == program:

@@ -35,7 +35,7 @@ class CycleTime(NamedTuple):
     seconds: float
 
 
-class StopRow(NamedTuple):
+class ProductionStopRow(NamedTuple):
     """One stop of production, with its start (UTC), duration in seconds, reason and program line.
 
     ``cycle`` is empty for a stop between two cycles.
@@ -69,7 +69,7 @@ class CorrectionRow(NamedTuple):
     was_z: float
 
 
-ProductionRow = CycleRow | StopRow
+ProductionRow = CycleRow | ProductionStopRow
 _CYCLE = ", ".join(CycleRow._fields)
 
 
@@ -83,11 +83,11 @@ def save_cycle(connection: sqlite3.Connection, row: CycleRow) -> None:
     )
 
 
-def save_stop(connection: sqlite3.Connection, row: StopRow) -> None:
+def save_stop(connection: sqlite3.Connection, row: ProductionStopRow) -> None:
     """Save a stop that has ended, or update the duration and reason of the same stop."""
     marks = ", ".join("?" * len(row))
     connection.execute(
-        f"INSERT INTO production_stops ({', '.join(StopRow._fields)}) VALUES ({marks})"
+        f"INSERT INTO production_stops ({', '.join(ProductionStopRow._fields)}) VALUES ({marks})"
         " ON CONFLICT (key) DO UPDATE SET seconds = excluded.seconds, reason = excluded.reason",
         row,
     )
@@ -131,17 +131,20 @@ def read_cycle_times_since(connection: sqlite3.Connection, since: str) -> tuple[
     return tuple(map(CycleTime._make, rows))
 
 
-def read_stops(connection: sqlite3.Connection, program: str | None, limit: int) -> tuple[StopRow, ...]:
+def read_stops(
+    connection: sqlite3.Connection, program: str | None, limit: int
+) -> tuple[ProductionStopRow, ...]:
     """Return the latest stops, oldest first.
 
     If ``program`` is None, the stops of all programs are returned.
     """
     rows = connection.execute(
-        f"SELECT {', '.join(StopRow._fields)} FROM production_stops WHERE ?1 IS NULL OR program = ?1"
+        f"SELECT {', '.join(ProductionStopRow._fields)} FROM production_stops WHERE ?1 IS NULL OR "
+        f"program = ?1"
         " ORDER BY id DESC LIMIT ?2",
         (program, limit),
     )
-    return tuple(StopRow(*row) for row in rows)[::-1]
+    return tuple(ProductionStopRow(*row) for row in rows)[::-1]
 
 
 def read_corrections(connection: sqlite3.Connection, program: str, limit: int) -> tuple[CorrectionRow, ...]:
@@ -178,14 +181,16 @@ def read_cycles_between(connection: sqlite3.Connection, since: str, until: str) 
     return tuple(CycleRow(*row) for row in rows)
 
 
-def read_stops_between(connection: sqlite3.Connection, since: str, until: str) -> tuple[StopRow, ...]:
+def read_stops_between(
+    connection: sqlite3.Connection, since: str, until: str
+) -> tuple[ProductionStopRow, ...]:
     """Return the ended stops that overlap the time from ``since`` to ``until`` (UTC)."""
     rows = connection.execute(
-        f"SELECT {', '.join(StopRow._fields)} FROM production_stops"
+        f"SELECT {', '.join(ProductionStopRow._fields)} FROM production_stops"
         " WHERE at < ?2 AND julianday(at) + seconds / 86400.0 > julianday(?1) ORDER BY id",
         (since, until),
     )
-    return tuple(StopRow(*row) for row in rows)
+    return tuple(ProductionStopRow(*row) for row in rows)
 
 
 class CycleRecords:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 LAST_ORIGIN_KEY = "last_event"  # key of the setting with the origin of the last stored event
 
 
-class LoadedTexts:
+class LoadedProgramTexts:
     """The record keys of the texts that were loaded since the store opened, by program name."""
 
     def __init__(self) -> None:
@@ -35,7 +35,7 @@ class LoadedTexts:
         if key is not None:
             self._keys[new_name] = key
 
-    def find_key(self, program: str) -> str:
+    def find_record_key(self, program: str) -> str:
         """Return the record key of the text that is loaded under a name.
 
         The result is the name itself if no text was loaded.
@@ -50,10 +50,10 @@ class RunRecords:
     remains in memory and is written later.
     """
 
-    def __init__(self, store: StoreAccess, loaded: LoadedTexts) -> None:
+    def __init__(self, store: StoreAccess, loaded: LoadedProgramTexts) -> None:
         self._store, self._loaded = store, loaded
 
-    def read_records(self) -> tuple[RunRow, ...]:
+    def read_run_records(self) -> tuple[RunRow, ...]:
         """Return the run record of each program, sorted by name."""
         return self._store.run_query(program_records.read_run_records)
 
@@ -64,7 +64,7 @@ class RunRecords:
     def read_part_count(self, program: str) -> int:
         """Return the part count of a program, including the parts that have not been written to disk yet."""
         with self._store.read() as connection:
-            key = program_records.find_loaded_key(connection, self._loaded.find_key(program))
+            key = program_records.find_loaded_text_key(connection, self._loaded.find_record_key(program))
             stored, held = program_records.read_part_count(connection, key), self._store.pending_entries
         reset, more = (False, 0)
         if held is not None:
@@ -78,7 +78,7 @@ class RunRecords:
 
         A negative ``count`` subtracts parts, down to zero.
         """
-        key = self._loaded.find_key(program)
+        key = self._loaded.find_record_key(program)
         return self._store.keep(lambda unwritten: unwritten.add_parts(key, count))
 
     def record_event(
@@ -94,9 +94,9 @@ class RunRecords:
         ``production_rows`` of the event are written in one transaction. The future is done when the data
         are on disk.
         """
-        key = self._loaded.find_key(counted_program) if counted_program else ""
+        key = self._loaded.find_record_key(counted_program) if counted_program else ""
 
-        def keeping(unwritten: WaitingEntries) -> None:
+        def add_event_entries(unwritten: WaitingEntries) -> None:
             unwritten.add_event(event)
             if key:
                 unwritten.add_parts(key, 1)
@@ -108,7 +108,7 @@ class RunRecords:
                     ("setting", LAST_ORIGIN_KEY), lambda c: settings.save_setting(c, LAST_ORIGIN_KEY, value)
                 )
 
-        return self._store.keep(keeping)
+        return self._store.keep(add_event_entries)
 
     def read_last_origin(self) -> EventOrigin | None:
         """Return the origin of the last stored event of a control process, or None if none is stored."""
@@ -120,21 +120,21 @@ class RunRecords:
 
     def reset_parts(self, program: str) -> Future[None]:
         """Set the part count of a program to zero."""
-        key = self._loaded.find_key(program)
+        key = self._loaded.find_record_key(program)
         return self._store.keep(lambda unwritten: unwritten.reset_parts(key))
 
-    def record_start(self, program: str) -> Future[None]:
+    def record_run_start(self, program: str) -> Future[None]:
         """Record that a run of the program starts now."""
-        at, key = get_utc_now_text(), self._loaded.find_key(program)
-        return self._store.store_latest_durably(
-            ("start", key), lambda c: program_records.record_start(c, key, at)
+        at, key = get_utc_now_text(), self._loaded.find_record_key(program)
+        return self._store.store_latest_operation(
+            ("start", key), lambda c: program_records.record_run_start(c, key, at)
         )
 
-    def record_end(self, program: str, outcome: str) -> Future[None]:
+    def record_run_end(self, program: str, outcome: str) -> Future[None]:
         """Record the outcome of the run of a program."""
-        key = self._loaded.find_key(program)
-        return self._store.store_latest_durably(
-            ("end", key), lambda c: program_records.record_outcome(c, key, outcome)
+        key = self._loaded.find_record_key(program)
+        return self._store.store_latest_operation(
+            ("end", key), lambda c: program_records.record_run_outcome(c, key, outcome)
         )
 
     def end_interrupted_runs(self, outcome: str, warning_template: str) -> Future[None]:
@@ -143,7 +143,7 @@ class RunRecords:
         For each of these programs, a warning made from ``warning_template`` is logged.
         """
 
-        def operation(connection: sqlite3.Connection) -> None:
+        def record_interruptions(connection: sqlite3.Connection) -> None:
             cut_off = program_records.record_interrupted_runs(connection, outcome)
             event_log.add_events(
                 connection,
@@ -153,11 +153,11 @@ class RunRecords:
                 ),
             )
 
-        return self._store.store_latest_durably(("start", ""), operation)
+        return self._store.store_latest_operation(("start", ""), record_interruptions)
 
     def record_cycle(self, program: str, cycle_time_s: float) -> Future[None]:
         """Record one complete cycle of a program and its time in seconds."""
-        key = self._loaded.find_key(program)
+        key = self._loaded.find_record_key(program)
         return self._store.keep(lambda unwritten: unwritten.add_cycle(key, cycle_time_s))
 
     def record_proof(
@@ -167,8 +167,12 @@ class RunRecords:
 
         If ``text`` is None, the record is for the text that is loaded under the name ``program``.
         """
-        key = self._loaded.find_key(program) if text is None else program_records.make_text_key(text)
+        key = (
+            self._loaded.find_record_key(program)
+            if text is None
+            else program_records.make_text_record_key(text)
+        )
         at = get_utc_now_text()
-        return self._store.store_latest_durably(
+        return self._store.store_latest_operation(
             ("proof", key), lambda c: program_records.record_proof(c, key, result, cycle_time_s, at)
         )

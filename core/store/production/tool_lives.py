@@ -66,7 +66,7 @@ def read_tool_lives(
     return {row[0]: ToolLifeRow(*row)._replace(stops=bool(row[4])) for row in whole}
 
 
-def save_limits(connection: sqlite3.Connection, row: ToolLifeRow) -> None:
+def save_tool_life_limits(connection: sqlite3.Connection, row: ToolLifeRow) -> None:
     """Save the limits of a lathe tool without changing its recorded use.
 
     Raises StoreError if the tool does not exist.
@@ -79,7 +79,7 @@ def save_limits(connection: sqlite3.Connection, row: ToolLifeRow) -> None:
     )
 
 
-def save_use(
+def save_insert_use(
     connection: sqlite3.Connection,
     number: int,
     parts: int,

@@ -21,7 +21,7 @@ _PATH = "hal.spindle.position_mode"
 _SIMULATED = 100.0  # 1/s, for a simulated spindle.
 
 
-def get_c_turn_pins(file: HalFile) -> tuple[str, ...]:
+def get_c_revolution_pins(file: HalFile) -> tuple[str, ...]:
     """Return the pin through which C reads the spindle revolutions, or no pins without C."""
     return (C_TURN_PIN,) if file.lathe.c_axis is not None else ()
 
@@ -31,18 +31,18 @@ def load_c_components(file: HalFile, *, shares_input: bool) -> None:
 
     If ``shares_input`` is True, the spindle speed and C use the same drive input.
     """
-    file.add_instance("scale", "c-degrees")
-    file.add_instance("pid", _PID)
-    file.first_calls.append("c-degrees")
-    file.last_calls.append(f"{_PID}.do-pid-calcs")
+    file.add_component_instance("scale", "c-degrees")
+    file.add_component_instance("pid", _PID)
+    file.first_function_calls.append("c-degrees")
+    file.last_function_calls.append(f"{_PID}.do-pid-calcs")
     if shares_input:
-        file.add_instance("scale", "c-rpm")
-        file.add_instance("mux2", _CHOICE)
-        file.add_instance("or2", _POWER)
-        file.last_calls += ["c-rpm", _CHOICE, _POWER]
+        file.add_component_instance("scale", "c-rpm")
+        file.add_component_instance("mux2", _CHOICE)
+        file.add_component_instance("or2", _POWER)
+        file.last_function_calls += ["c-rpm", _CHOICE, _POWER]
 
 
-def configure_c_loop(file: HalFile, axis: LatheAxis, *drives: str) -> None:
+def configure_c_position_loop(file: HalFile, axis: LatheAxis, *drives: str) -> None:
     """Configure the pid component of C with its feedback, and connect its output to ``drives``.
 
     The output is in degrees/s.
@@ -57,15 +57,15 @@ def configure_c_loop(file: HalFile, axis: LatheAxis, *drives: str) -> None:
     file.set_pin(f"{_PID}.FF1", 1.0, "FF1 = 1 passes the commanded speed through unchanged")
     file.set_pin(
         f"{_PID}.maxoutput",
-        C_SPEED_FACTOR * axis.vmax,
+        C_SPEED_FACTOR * axis.max_velocity,
         "speed limit in degrees/s; also applies if a fault occurs",
     )
     file.set_pin(f"{_PID}.error-previous-target", 1)
-    file.connect_positions(axis.name, [f"{_PID}.command"], ["c-degrees.out", f"{_PID}.feedback"])
+    file.connect_position_pins(axis.name, [f"{_PID}.command"], ["c-degrees.out", f"{_PID}.feedback"])
     file.connect_pins("c-speed", f"{_PID}.output", *drives)
 
 
-def get_c_speed_pins(file: HalFile, speed_pin: str, enable_pin: str) -> tuple[str, str]:
+def get_spindle_command_pins(file: HalFile, speed_pin: str, enable_pin: str) -> tuple[str, str]:
     """Return the pins for the spindle speed in rpm and for the enable signal.
 
     They are the pins of the drive, or those of the selector if the drive is also the C axis.
@@ -73,18 +73,18 @@ def get_c_speed_pins(file: HalFile, speed_pin: str, enable_pin: str) -> tuple[st
     axis = file.lathe.c_axis
     if axis is None:
         return speed_pin, enable_pin
-    configure_c_loop(file, axis, "c-rpm.in")
+    configure_c_position_loop(file, axis, "c-rpm.in")
     file.set_pin("c-rpm.gain", 1.0 / 6.0, "converts degrees/s to rpm")
     file.connect_pins("c-rpm", "c-rpm.out", f"{_CHOICE}.in1")
     file.connect_pins("spindle-drive-rpm", f"{_CHOICE}.out", speed_pin)
     file.connect_pins("spindle-drive-on", f"{_POWER}.out", enable_pin)
-    file.connect_key(
+    file.connect_key_pins(
         _PATH, "spindle-is-c", f"{_CHOICE}.sel", f"{_POWER}.in1", f"{_PID}.enable", is_required=True
     )
     return f"{_CHOICE}.in0", f"{_POWER}.in0"
 
 
-def get_simulated_c_speed_pin(file: HalFile) -> str:
+def get_simulated_speed_pin(file: HalFile) -> str:
     """Return the pin with the speed of the simulated spindle in rev/s.
 
     With C on the spindle, this is the pin of the selector between the spindle speed and C.
@@ -93,22 +93,22 @@ def get_simulated_c_speed_pin(file: HalFile) -> str:
     if axis is None:
         return "spindle-rps.out"
     file.set_pin("c-rps.gain", 1.0 / 360.0)
-    configure_c_loop(file, axis, "c-rps.in")
+    configure_c_position_loop(file, axis, "c-rps.in")
     file.connect_pins("c-rps", "c-rps.out", f"{_CHOICE}.in1")
     file.connect_pins("spindle-rps-cmd", "spindle-rps.out", f"{_CHOICE}.in0")
-    file.connect_key(_PATH, "spindle-is-c", f"{_CHOICE}.sel", f"{_PID}.enable", is_required=True)
+    file.connect_key_pins(_PATH, "spindle-is-c", f"{_CHOICE}.sel", f"{_PID}.enable", is_required=True)
     return f"{_CHOICE}.out"
 
 
-def load_simulated_c(file: HalFile) -> None:
+def load_simulated_c_components(file: HalFile) -> None:
     """Load the components for C on the simulated spindle."""
     load_c_components(file, shares_input=False)
-    file.add_instance("scale", "c-rps")
-    file.add_instance("mux2", _CHOICE)
-    file.last_calls += ["c-rps", _CHOICE]
+    file.add_component_instance("scale", "c-rps")
+    file.add_component_instance("mux2", _CHOICE)
+    file.last_function_calls += ["c-rps", _CHOICE]
 
 
-def connect_mode_terminal(file: HalFile) -> None:
+def connect_drive_mode_terminal(file: HalFile) -> None:
     """Connect the terminal that switches the drive from its speed input to steps."""
     name = file.lathe.terminal_names.get(_PATH, "")
     if "." not in name:
@@ -118,7 +118,7 @@ def connect_mode_terminal(file: HalFile) -> None:
             terminals=file.terminal_hint,
         )
         file.findings.append(FileFinding(_PATH, name, why))
-    file.connect_key(_PATH, "spindle-is-c", f"{_PID}.enable", is_required=True)
+    file.connect_key_pins(_PATH, "spindle-is-c", f"{_PID}.enable", is_required=True)
 
 
 # --- Mesa's Ethernet cards.
@@ -138,17 +138,17 @@ CARD_NOTES = (
 )
 
 
-def load_card(file: HalFile, card: str, config: str, *further: str) -> None:
+def load_ethernet_card(file: HalFile, card: str, config: str, *further: str) -> None:
     """Load hostmot2 for an Ethernet card; each thread cycle first reads and last writes the card.
 
     ``further`` lists additional pins that report stale inputs of the card.
     """
     lathe = file.lathe
-    file.add_load(f"loadrt threads name1={lathe.servo_thread} period1={lathe.period_s * 1e9:.0f}")
-    file.add_load("loadrt hostmot2")
+    file.add_load_line(f"loadrt threads name1={lathe.servo_thread} period1={lathe.servo_period_s * 1e9:.0f}")
+    file.add_load_line("loadrt hostmot2")
     address = f'board_ip="{lathe.board_table.address}" ' if lathe.board_table.address else ""
-    file.add_load(f'loadrt hm2_eth {address}config="{config}"')
-    file.first_calls.append(f"{card}.read")
+    file.add_load_line(f'loadrt hm2_eth {address}config="{config}"')
+    file.first_function_calls.append(f"{card}.read")
     file.start_section("Watchdog: the card turns all outputs off when it receives nothing from the computer")
     file.set_pin(f"{card}.watchdog.timeout_ns", _WATCHDOG)
     _connect_link(file, card, further)
@@ -164,7 +164,7 @@ def _connect_link(file: HalFile, card: str, other_faults: tuple[str, ...]) -> No
     gates = _list_drive_faults(file)
     silent = f"{card}.packet-error-exceeded", f"{card}.watchdog.has_bit"
     file.connect_link_fault("or", *silent, *other_faults, extra_pins=tuple(f"{gate}.in0" for gate in gates))
-    file.first_calls += gates
+    file.first_function_calls += gates
 
 
 def _list_drive_faults(file: HalFile) -> list[str]:
@@ -184,9 +184,11 @@ def _list_drive_faults(file: HalFile) -> list[str]:
             file.connect_terminal(
                 key, f"{axis.name.lower()}-drive-fault", wired, f"{gate}.in1", is_output=False
             )
-        file.connect_key(path, f"{axis.name.lower()}-fault", f"{gate}.out")
+        file.connect_key_pins(path, f"{axis.name.lower()}-fault", f"{gate}.out")
     if gates:
-        file.add_load(f"loadrt or2 names={','.join(gates)}", "drive fault or lost connection to the card")
+        file.add_load_line(
+            f"loadrt or2 names={','.join(gates)}", "drive fault or lost connection to the card"
+        )
     return gates
 
 
@@ -194,8 +196,8 @@ def load_pid_loops(file: HalFile, axes: tuple[LatheAxis, ...]) -> None:
     """Load one ``pid`` component per axis, which runs after the setpoints are calculated."""
     names = [f"pid.{axis.name.lower()}" for axis in axes]
     if names:
-        file.add_load(f"loadrt pid names={','.join(names)}")
-        file.last_calls += [f"{name}.do-pid-calcs" for name in names]
+        file.add_load_line(f"loadrt pid names={','.join(names)}")
+        file.last_function_calls += [f"{name}.do-pid-calcs" for name in names]
 
 
 def configure_encoder(file: HalFile, pin: str, counts_per_unit: float, description: str) -> None:
@@ -211,12 +213,16 @@ def connect_spindle_encoder(file: HalFile, card: str, terminal: str) -> None:
     board = file.lathe.board_table.spindle
     pin = f"{card}.encoder.{board.encoder:02d}"
     file.start_section(f"Spindle: encoder {board.encoder}")
-    counts = 4 * file.lathe.encoder_line_count * (-1 if board.reversed else 1)
+    counts = 4 * file.lathe.encoder_pulses_per_rev * (-1 if board.reversed else 1)
     configure_encoder(
         file, pin, counts, "counts per revolution: 4 x encoder lines; the position increases with M03"
     )
-    file.connect_key(
-        "hal.spindle.position", "spindle-turns", f"{pin}.position", *get_c_turn_pins(file), label=terminal
+    file.connect_key_pins(
+        "hal.spindle.position",
+        "spindle-turns",
+        f"{pin}.position",
+        *get_c_revolution_pins(file),
+        label=terminal,
     )
-    file.connect_key("hal.spindle.velocity", "spindle-rps", f"{pin}.velocity", label=terminal)
-    file.connect_key("hal.spindle.index_enable", "spindle-index", f"{pin}.index-enable", label=terminal)
+    file.connect_key_pins("hal.spindle.velocity", "spindle-rps", f"{pin}.velocity", label=terminal)
+    file.connect_key_pins("hal.spindle.index_enable", "spindle-index", f"{pin}.index-enable", label=terminal)

@@ -19,7 +19,7 @@ from core.table_schema import (
     DriverTable,
     FileFinding,
     MachineFileReading,
-    TableReference,
+    TableDescription,
     read_axes_and_spindle,
 )
 
@@ -175,9 +175,10 @@ def _read(file: MachineFileReading) -> Iterator[FileFinding]:
 def _read_parts(file: MachineFileReading) -> dict[str, object]:
     """Return the nested tables of the axes and the spindle."""
     axes = {
-        name: file.values.make_model(BoardAxis, f"{_AXES}.{name}") for name in file.list_table_keys(_AXES)
+        name: file.file_values.make_model(BoardAxis, f"{_AXES}.{name}")
+        for name in file.list_table_keys(_AXES)
     }
-    return {"axes": axes, "spindle": file.values.make_model(BoardSpindle, _SPINDLE)}
+    return {"axes": axes, "spindle": file.file_values.make_model(BoardSpindle, _SPINDLE)}
 
 
 # --- Required settings of each kind of board.
@@ -206,7 +207,7 @@ _NUMBER = re.compile(r"0x[0-9a-fA-F]{1,8}")
 
 
 def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
-    values = file.values
+    values = file.file_values
     if "board" not in file.tables or not values.has_values("board.kind"):
         return
     kind = values.text("board.kind")
@@ -232,7 +233,7 @@ def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _axis_rules(file: MachineFileReading, kind: str, axis: str) -> Iterator[FileFinding]:
-    values, path = file.values, f"{_AXES}.{axis}"
+    values, path = file.file_values, f"{_AXES}.{axis}"
     if axis not in file.list_table_keys(_AXES):
         if path not in values.invalid_paths:
             yield FileFinding(
@@ -251,7 +252,7 @@ def _axis_rules(file: MachineFileReading, kind: str, axis: str) -> Iterator[File
 
 
 def _channel_rules(file: MachineFileReading, kind: str, path: str) -> Iterator[FileFinding]:
-    values = file.values
+    values = file.file_values
     if kind in _CHANNELS and values.has_values(f"{path}.channel"):
         channel = values.read_integer(f"{path}.channel")
         if channel not in _CHANNELS[kind]:
@@ -260,14 +261,14 @@ def _channel_rules(file: MachineFileReading, kind: str, path: str) -> Iterator[F
 
 def _spindle_is_c(file: MachineFileReading) -> bool:
     """Return whether HAL controls the spindle and its drive is also the C axis."""
-    values = file.values
+    values = file.file_values
     own = values.has_values("axis.C.own_drive") and values.read_flag("axis.C.own_drive")
     return not own and values.has_text("spindle.driver", "hal")
 
 
 def _check_spindle_as_c(file: MachineFileReading, kind: str, path: str) -> Iterator[FileFinding]:
     """Yield findings about wrong gain, step or drive keys when the C axis is the spindle drive."""
-    values = file.values
+    values = file.file_values
     yield from _check_required(file, kind, path, _SPINDLE_C_KEYS)
     if kind in (PARPORT, MESA_STEP):
         yield from _channel_rules(file, kind, path)
@@ -320,9 +321,9 @@ def _check_required(
     """Yield findings about missing keys that a board of this kind requires."""
     for key, what in stated.get(kind, ()):
         place = f"{path}.{key}"
-        if not file.values.has_values(place):
+        if not file.file_values.has_values(place):
             continue
-        said = file.values.values_by_path[place]
+        said = file.file_values.values_by_path[place]
         if not said:
             yield _missing(place, what)
         elif key in ("vendor", "product") and not _NUMBER.fullmatch(str(said)):
@@ -335,7 +336,7 @@ def _check_required(
 
 def _check_step_rate(file: MachineFileReading, kind: str, axis: str) -> Iterator[FileFinding]:
     """Yield a finding if an axis needs more steps per second than the board can generate."""
-    values, path = file.values, f"{_AXES}.{axis}"
+    values, path = file.file_values, f"{_AXES}.{axis}"
     needed = (
         f"axis.{axis}.vmax",
         f"axis.{axis}.count",
@@ -372,7 +373,7 @@ def _check_step_rate(file: MachineFileReading, kind: str, axis: str) -> Iterator
 
 
 def _fast_enough(file: MachineFileReading, axis: str) -> Iterator[FileFinding]:
-    values, path = file.values, f"{_AXES}.{axis}.full_speed"
+    values, path = file.file_values, f"{_AXES}.{axis}.full_speed"
     if values.has_values(path, f"axis.{axis}.vmax") and 0.0 < values.read_number(path) < values.read_number(
         f"axis.{axis}.vmax"
     ):
@@ -388,7 +389,7 @@ def _fast_enough(file: MachineFileReading, axis: str) -> Iterator[FileFinding]:
 
 def _check_unique_channels(file: MachineFileReading, kind: str) -> Iterator[FileFinding]:
     """Yield findings about channels that are used twice."""
-    values = file.values
+    values = file.file_values
     paths = [f"{_AXES}.{axis}.channel" for axis in file.list_table_keys(_AXES)]
     if kind in (MESA_SERVO, ETHERCAT):
         paths.append(f"{_SPINDLE}.channel")
@@ -405,7 +406,7 @@ def _check_unique_channels(file: MachineFileReading, kind: str) -> Iterator[File
 
 def _check_spindle(file: MachineFileReading, kind: str) -> Iterator[FileFinding]:
     """Yield findings about a spindle speed without a scale, or a scale without a spindle speed."""
-    values = file.values
+    values = file.file_values
     speeds = ("hal.spindle.speed", "hal.spindle.speed_abs")
     if not values.has_values(
         *speeds, f"{_SPINDLE}.full_speed", f"{_SPINDLE}.velocity_per_rpm", f"{_SPINDLE}.channel"
@@ -440,7 +441,7 @@ def _check_spindle(file: MachineFileReading, kind: str) -> Iterator[FileFinding]
 
 def _check_encoder(file: MachineFileReading, kind: str) -> Iterator[FileFinding]:
     """Yield findings about the line count and the channel of the spindle encoder."""
-    values = file.values
+    values = file.file_values
     if not values.has_values("spindle.encoder_ppr", "hal.spindle.position", f"{_SPINDLE}.encoder"):
         return
     has, read = values.read_number("spindle.encoder_ppr"), values.text("hal.spindle.position")
@@ -484,12 +485,12 @@ DRIVER = DriverDeclaration(
             purpose="The hardware for which `turndesk machine hal` writes the HAL file. Scales follow from "
             "`count` of the axes and `encoder_ppr` of the spindle.",
             sub_tables=(
-                TableReference(
+                TableDescription(
                     "board.axis.…",
                     "Connection of one axis to the board; the last word of the heading is the axis name.",
                     BoardAxis,
                 ),
-                TableReference(
+                TableDescription(
                     "board.spindle",
                     "How the spindle and its encoder are connected to the board.",
                     BoardSpindle,

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from drivers.hal.boards.board_parts import get_c_speed_pins, get_c_turn_pins, load_c_components
+from drivers.hal.boards.board_parts import get_c_revolution_pins, get_spindle_command_pins, load_c_components
 from drivers.hal.boards.hal_file_builder import BoardTerminal, HalFile, LatheAxis, LatheData
 
 BUS_XML_NAME = "ethercat-conf.xml"
@@ -23,7 +23,7 @@ def build_ethercat_file(lathe: LatheData) -> HalFile:
     """Build the HAL file for CSP axis drives, a CSV spindle drive, and EL1008 and EL2008 terminals."""
     hint = "a bus terminal: lcec.0.DI.din-0 … din-7 (EL1008), lcec.0.DO.dout-0 … dout-7 (EL2008)"
     file = HalFile(lathe, "EtherCAT drives in cyclic synchronous position mode", _terminal, hint)
-    file.check_notes += [
+    file.pre_motion_checks += [
         ("build the EtherCAT master, linuxcnc-ethercat (lcec) and hal-cia402; Debian does not include them"),
         (
             "read the vendor, product and position of each slave with: ethercat slaves -v; "
@@ -50,10 +50,10 @@ def build_ethercat_file(lathe: LatheData) -> HalFile:
     for axis in lathe.driven_axes:
         _axis(file, axis)
     file.start_section("Drive power")
-    file.connect_enable(*(f"cia402.{axis.name.lower()}.enable" for axis in lathe.driven_axes))
+    file.connect_enable_pins(*(f"cia402.{axis.name.lower()}.enable" for axis in lathe.driven_axes))
     if _turned(lathe):
         _spindle(file)
-    file.connect_remaining()
+    file.connect_remaining_terminals()
     file.extra_files[BUS_XML_NAME] = build_bus_xml(lathe)
     return file
 
@@ -77,19 +77,19 @@ def _has_terminals(lathe: LatheData) -> bool:
 
 def _load(file: HalFile, drives: list[str]) -> None:
     lathe = file.lathe
-    file.add_load(f"loadrt threads name1={lathe.servo_thread} period1={lathe.period_s * 1e9:.0f}")
-    file.add_load(
+    file.add_load_line(f"loadrt threads name1={lathe.servo_thread} period1={lathe.servo_period_s * 1e9:.0f}")
+    file.add_load_line(
         f"loadusr -W lcec_conf {BUS_XML_NAME}", "bus configuration file, in the same folder as this file"
     )
-    file.add_load("loadrt lcec")
-    file.add_load(f"loadrt cia402 names={','.join(f'cia402.{name}' for name in drives)}")
+    file.add_load_line("loadrt lcec")
+    file.add_load_line(f"loadrt cia402 names={','.join(f'cia402.{name}' for name in drives)}")
     if "spindle" in drives:
-        file.add_load("loadrt scale names=spindle-per-s")
-    file.first_calls += ["lcec.read-all", *(f"cia402.{name}.read-all" for name in drives)]
-    file.first_calls += ["spindle-per-s"] * ("spindle" in drives)
+        file.add_load_line("loadrt scale names=spindle-per-s")
+    file.first_function_calls += ["lcec.read-all", *(f"cia402.{name}.read-all" for name in drives)]
+    file.first_function_calls += ["spindle-per-s"] * ("spindle" in drives)
     if lathe.c_axis is not None:
         load_c_components(file, shares_input=True)
-    file.last_calls += [*(f"cia402.{name}.write-all" for name in drives), "lcec.write-all"]
+    file.last_function_calls += [*(f"cia402.{name}.write-all" for name in drives), "lcec.write-all"]
 
 
 def _terminal(name: str) -> BoardTerminal | None:
@@ -129,15 +129,17 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
     file.start_section(f"Axis {axis.name}: slave {board.channel}, cyclic synchronous position")
     file.set_pin(f"{pin}.csp-mode", 1)
     sign = -1.0 if board.reversed else 1.0
-    file.set_pin(f"{pin}.pos-scale", sign / axis.travel_per_count, f"increments per {axis.unit}: 1 / count")
+    file.set_pin(
+        f"{pin}.pos-scale", sign / axis.travel_per_count, f"increments per {axis.position_unit}: 1 / count"
+    )
     file.set_pin(
         f"{pin}.auto-fault-reset",
         1,
         "a drive fault is reset when power is requested again with Reset and DRIVES ON",
     )
     _connect_drive(file, name)
-    file.connect_positions(axis.name, [f"{pin}.pos-cmd"], [f"{pin}.pos-fb"], place)
-    file.connect_key(f"hal.axes.{axis.name}.fault", f"{name}-fault", f"{pin}.drv-fault", label=place)
+    file.connect_position_pins(axis.name, [f"{pin}.pos-cmd"], [f"{pin}.pos-fb"], place)
+    file.connect_key_pins(f"hal.axes.{axis.name}.fault", f"{name}-fault", f"{pin}.drv-fault", label=place)
 
 
 def _spindle(file: HalFile) -> None:
@@ -148,22 +150,22 @@ def _spindle(file: HalFile) -> None:
     file.set_pin(
         f"{pin}.velo-scale", sign * board.velocity_per_rpm, "value of objects 60FF and 606C at 1 rpm"
     )
-    if file.lathe.encoder_line_count:
+    if file.lathe.encoder_pulses_per_rev:
         file.set_pin(
             f"{pin}.pos-scale",
-            sign * 4 * file.lathe.encoder_line_count,
+            sign * 4 * file.lathe.encoder_pulses_per_rev,
             "increments of object 6064 per revolution: 4 x encoder lines",
         )
-        further = get_c_turn_pins(file)
-        file.connect_key("hal.spindle.position", "spindle-turns", f"{pin}.pos-fb", *further, label=place)
+        further = get_c_revolution_pins(file)
+        file.connect_key_pins("hal.spindle.position", "spindle-turns", f"{pin}.pos-fb", *further, label=place)
     _connect_drive(file, "spindle")
     file.set_pin("spindle-per-s.gain", 1.0 / 60.0)
     file.connect_pins("spindle-rpm-fb", f"{pin}.velocity-fb", "spindle-per-s.in")
-    file.connect_key("hal.spindle.velocity", "spindle-rps", "spindle-per-s.out", label=place)
-    speed, on = get_c_speed_pins(file, f"{pin}.velocity-cmd", f"{pin}.enable")
-    file.connect_key("hal.spindle.speed", "spindle-rpm-cmd", speed, label=place, is_required=True)
-    file.connect_key("hal.spindle.on", "spindle-on", on, label=place, is_required=True)
-    file.connect_key("hal.spindle.fault", "spindle-fault", f"{pin}.drv-fault", label=place)
+    file.connect_key_pins("hal.spindle.velocity", "spindle-rps", "spindle-per-s.out", label=place)
+    speed, on = get_spindle_command_pins(file, f"{pin}.velocity-cmd", f"{pin}.enable")
+    file.connect_key_pins("hal.spindle.speed", "spindle-rpm-cmd", speed, label=place, is_required=True)
+    file.connect_key_pins("hal.spindle.on", "spindle-on", on, label=place, is_required=True)
+    file.connect_key_pins("hal.spindle.fault", "spindle-fault", f"{pin}.drv-fault", label=place)
 
 
 # --- The bus.
@@ -176,7 +178,7 @@ def build_bus_xml(lathe: LatheData) -> str:
     """
     lines = [
         "<masters>",
-        f'  <master idx="0" appTimePeriod="{lathe.period_s * 1e9:.0f}" refClockSyncCycles="1">',
+        f'  <master idx="0" appTimePeriod="{lathe.servo_period_s * 1e9:.0f}" refClockSyncCycles="1">',
     ]
     slaves = [(lathe.board_table.axes[axis.name], axis.name.lower()) for axis in lathe.driven_axes]
     drives = [(board.channel, board.vendor, board.product, name) for board, name in slaves]

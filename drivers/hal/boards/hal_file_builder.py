@@ -28,11 +28,11 @@ class LatheAxis:
 
     name: str
     travel_per_count: float
-    vmax: float
-    amax: float
+    max_velocity: float
+    max_acceleration: float
 
     @property
-    def unit(self) -> str:
+    def position_unit(self) -> str:
         """Return the unit of the positions as text."""
         return "degree" if self.name == C_AXIS else "mm"
 
@@ -42,18 +42,18 @@ class LatheData:
     """The data of a machine on which its HAL file depends.
 
     ``terminal_names`` contains the pins and signals of the machine file by their keys, in the order of the
-    file. ``period_s`` is the period of the servo thread in seconds.
+    file. ``servo_period_s`` is the period of the servo thread in seconds.
     """
 
-    name: str
-    source_file: str
+    machine_name: str
+    machine_file_path: str
     board_table: BoardTable
     servo_thread: str
-    period_s: float
+    servo_period_s: float
     axes: tuple[LatheAxis, ...]
     max_rpm: float
-    acceleration_rpm_s: float
-    encoder_line_count: int
+    acceleration_rpm_per_s: float
+    encoder_pulses_per_rev: int
     terminal_names: Mapping[str, str]
     is_spindle_c_axis: bool = False  # C is the spindle drive.
 
@@ -75,7 +75,7 @@ class BoardTerminal(NamedTuple):
     """
 
     is_output: bool
-    label: str
+    printed_label: str
 
 
 class WiringRow(NamedTuple):
@@ -90,7 +90,7 @@ class WiringRow(NamedTuple):
     names: tuple[str, ...]
 
 
-class FileSection(NamedTuple):
+class HalFileSection(NamedTuple):
     """A group of lines with a title."""
 
     title: str
@@ -114,36 +114,36 @@ class HalFile:
     title: str
     find_terminal: Callable[[str], BoardTerminal | None]
     terminal_hint: str = ""  # Names of the board's terminals.
-    check_notes: list[str] = field(default_factory=list)  # Checks before the first motion.
-    load_lines: list[str] = field(default_factory=list)
+    pre_motion_checks: list[str] = field(default_factory=list)  # Checks before the first motion.
+    component_load_lines: list[str] = field(default_factory=list)
     base_thread_calls: list[str] = field(default_factory=list)  # Called in the base thread.
-    first_calls: list[str] = field(default_factory=list)  # Called before the setpoints are read.
-    last_calls: list[str] = field(default_factory=list)
-    sections: list[FileSection] = field(default_factory=list)
+    first_function_calls: list[str] = field(default_factory=list)  # Called before the setpoints are read.
+    last_function_calls: list[str] = field(default_factory=list)
+    sections: list[HalFileSection] = field(default_factory=list)
     wiring_rows: list[WiringRow] = field(default_factory=list)
     findings: list[FileFinding] = field(default_factory=list)
     extra_files: dict[str, str] = field(default_factory=dict)  # Additional files by name.
     _done: set[str] = field(default_factory=set)
     _claimed: dict[str, str] = field(default_factory=dict)
 
-    def add_load(self, line: str, comment: str = "") -> None:
+    def add_load_line(self, line: str, comment: str = "") -> None:
         """Add a line that loads a component, with an optional comment."""
-        self.load_lines += [f"# {comment}", line] if comment else [line]
+        self.component_load_lines += [f"# {comment}", line] if comment else [line]
 
-    def add_instance(self, component: str, name: str) -> None:
+    def add_component_instance(self, component: str, name: str) -> None:
         """Add an instance of a component.
 
         The component is loaded once with all its instances.
         """
-        for index, line in enumerate(self.load_lines):
+        for index, line in enumerate(self.component_load_lines):
             if line.startswith(f"loadrt {component} names="):
-                self.load_lines[index] = f"{line},{name}"
+                self.component_load_lines[index] = f"{line},{name}"
                 return
-        self.add_load(f"loadrt {component} names={name}")
+        self.add_load_line(f"loadrt {component} names={name}")
 
     def start_section(self, title: str) -> None:
         """Start a section with the given title."""
-        self.sections.append(FileSection(title, []))
+        self.sections.append(HalFileSection(title, []))
 
     def add_comment(self, comment: str) -> None:
         """Add a comment to the current section."""
@@ -158,7 +158,7 @@ class HalFile:
         """Connect pins to a signal, with the source pin first."""
         self.sections[-1].lines.append(f"net {signal} {' '.join(pins)}")
 
-    def connect_key(
+    def connect_key_pins(
         self, key: str, signal: str, *pins: str, label: str = "", is_required: bool = False
     ) -> str:
         """Connect the pins that belong to a key of the machine file, and return their signal.
@@ -182,20 +182,20 @@ class HalFile:
             if found is None or found.is_output is not drives:
                 self.findings.append(FileFinding(key, format_toml_value(name), self._expected(pins, found)))
                 return signal
-            label = label or found.label
+            label = label or found.printed_label
             if drives:
                 self.claim_terminal(name, key)
             on = (*pins, name) if drives else (name, *pins)
         self._add_wiring_row(key, signal, on, label, name)
         return signal
 
-    def connect_positions(
+    def connect_position_pins(
         self, axis: str, command: Iterable[str], feedback: Iterable[str], label: str = ""
     ) -> None:
         """Connect the pins of the commanded and the measured position of an axis."""
         path, name = f"hal.axes.{axis}", axis.lower()
-        self.connect_key(f"{path}.command", f"{name}-pos-cmd", *command, label=label, is_required=True)
-        self.connect_key(f"{path}.feedback", f"{name}-pos-fb", *feedback, label=label, is_required=True)
+        self.connect_key_pins(f"{path}.command", f"{name}-pos-cmd", *command, label=label, is_required=True)
+        self.connect_key_pins(f"{path}.feedback", f"{name}-pos-fb", *feedback, label=label, is_required=True)
 
     def connect_terminal(
         self, path: str, signal: str, name: str, pin: str, *, is_output: bool = True
@@ -208,15 +208,15 @@ class HalFile:
         if is_output:
             self.claim_terminal(name, path)
         self.connect_pins(signal, *((pin, name) if is_output else (name, pin)))
-        self.wiring_rows.append(WiringRow(found.label, name, signal, (path,)))
+        self.wiring_rows.append(WiringRow(found.printed_label, name, signal, (path,)))
 
-    def add_signal(self, path: str, name: str) -> None:
+    def add_unconnected_signal(self, path: str, name: str) -> None:
         """Create a signal without a pin, which the user sets by hand."""
         self._done.add(path)
         self.sections[-1].lines.append(f"newsig {name} bit")
         self.wiring_rows.append(WiringRow("", "-", name, (path,)))
 
-    def connect_enable(self, *pins: str) -> None:
+    def connect_enable_pins(self, *pins: str) -> None:
         """Connect the pins of the board and of the machine file that enable the drives.
 
         All of these pins use one signal, because all drives are enabled together.
@@ -237,11 +237,13 @@ class HalFile:
                 )
                 self.findings.append(FileFinding(path, format_toml_value(name), why))
                 continue
-            self.wiring_rows.append(WiringRow(found.label if found else "", name, "machine-on", (path,)))
+            self.wiring_rows.append(
+                WiringRow(found.printed_label if found else "", name, "machine-on", (path,))
+            )
         if named and "hal.machine_on" not in self.lathe.terminal_names:
             self.connect_pins("machine-on", *pins)
         else:
-            self.connect_key("hal.machine_on", "machine-on", *pins, is_required=True)
+            self.connect_key_pins("hal.machine_on", "machine-on", *pins, is_required=True)
 
     def connect_link_fault(self, gate_kind: str, *pins: str, extra_pins: tuple[str, ...] = ()) -> None:
         """Connect hal.link_fault to the output of a gate.
@@ -250,16 +252,16 @@ class HalFile:
         ``extra_pins`` of the file are on the same signal.
         """
         personality = {"or": 0x200, "nand": 0x800}[gate_kind] + len(pins)
-        self.add_load(
+        self.add_load_line(
             f"loadrt logic names=board-link personality={personality:#x}",
             "inputs retain their last value while the board does not respond; this component "
             "then opens the E-stop chain",
         )
-        self.first_calls.append("board-link")
+        self.first_function_calls.append("board-link")
         self.start_section("Board connection: a connection fault opens the E-stop chain")
         for number, pin in enumerate(pins):
             self.connect_pins(f"board-link-{number}", pin, f"board-link.in-{number:02d}")
-        self.connect_key(
+        self.connect_key_pins(
             "hal.link_fault", "link-fault", f"board-link.{gate_kind}", *extra_pins, is_required=True
         )
 
@@ -270,12 +272,12 @@ class HalFile:
             why = Message("expected an unused pin; {first} already uses this pin", first=first)
             self.findings.append(FileFinding(path, format_toml_value(pin), why))
 
-    def connect_remaining(self) -> None:
+    def connect_remaining_terminals(self) -> None:
         """Connect the machine-file keys that have not been connected yet to their terminals."""
         self.start_section("Inputs and outputs")
         for path in self.lathe.terminal_names:
             if path not in self._done:
-                self.connect_key(path, get_signal_name(path))
+                self.connect_key_pins(path, get_signal_name(path))
 
     def _on_signal(self, path: str, name: str, pins: tuple[str, ...], place: str) -> str:
         if pins:
@@ -327,7 +329,7 @@ def get_signal_name(path: str) -> str:
 # --- Output as text.
 
 
-def render_file(file: HalFile) -> str:
+def render_hal_file(file: HalFile) -> str:
     """Return the text of the complete file.
 
     The same machine file always gives the same text.
@@ -337,8 +339,8 @@ def render_file(file: HalFile) -> str:
 
 def _head(file: HalFile) -> Iterator[str]:
     lathe = file.lathe
-    yield f"# {lathe.name}: {file.title}."
-    source = PurePath(lathe.source_file).name
+    yield f"# {lathe.machine_name}: {file.title}."
+    source = PurePath(lathe.machine_file_path).name
     yield (f"# Generated by: turndesk machine hal {source}   Run this command again when that file changes.")
     yield (
         "# Positions are in mm (X as a radius) or degrees (rotary axes). E-stop, guard and "
@@ -346,10 +348,10 @@ def _head(file: HalFile) -> Iterator[str]:
     )
     yield "# Hardwired safety: see docs/integrator/choose-hardware.md."
     yield "# From power-off to the first part: see docs/integrator/wiring.md."
-    if file.check_notes:
+    if file.pre_motion_checks:
         yield "#"
         yield "# Check and measure on the real machine before the first part:"
-        for note in file.check_notes:
+        for note in file.pre_motion_checks:
             lines = textwrap.wrap(note, _WIDTH - 5)
             yield from (f"#  {'-' if n == 0 else ' '} {line}" for n, line in enumerate(lines))
     yield "#"
@@ -359,19 +361,19 @@ def _head(file: HalFile) -> Iterator[str]:
 
 def _body(file: HalFile) -> Iterator[str]:
     thread = file.lathe.servo_thread
-    yield from ("", *file.load_lines, "")
+    yield from ("", *file.component_load_lines, "")
     if file.base_thread_calls:
         yield "# Step generation and encoder counting run in the fast thread."
         yield from (f"addf {call} base-thread" for call in file.base_thread_calls)
         yield ""
     yield "# 1. Functions that read from the machine run first in the thread."
-    yield from (f"addf {call} {thread}" for call in file.first_calls)
+    yield from (f"addf {call} {thread}" for call in file.first_function_calls)
     yield from (
         "",
         "# 2. Setpoints, gear, E-stop chain: TurnDesk replaces the next line with its own functions.",
     )
     yield from (TURNDESK_COMMENT, "", "# 3. Functions that drive the machine run last.")
-    yield from (f"addf {call} {thread}" for call in file.last_calls)
+    yield from (f"addf {call} {thread}" for call in file.last_function_calls)
     for section in file.sections:
         if section.lines:
             yield from ("", f"# --- {section.title}", *section.lines)

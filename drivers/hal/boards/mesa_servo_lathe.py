@@ -11,9 +11,9 @@ from drivers.hal.boards.board_parts import (
     CARD_NOTES,
     configure_encoder,
     connect_spindle_encoder,
-    get_c_speed_pins,
+    get_spindle_command_pins,
     load_c_components,
-    load_card,
+    load_ethernet_card,
     load_pid_loops,
 )
 from drivers.hal.boards.hal_file_builder import C_AXIS, BoardTerminal, HalFile, LatheAxis, LatheData
@@ -33,7 +33,7 @@ def build_mesa_servo_file(lathe: LatheData) -> HalFile:
     """Build the HAL file for ±10 V velocity drives, with encoder and pid position loops."""
     hint = f"an input or relay of the card: {_CARD}.inmux.00.input-00 … -15, {_CARD}.ssr.00.out-00 … -05"
     file = HalFile(lathe, "±10 V servo drives on a Mesa 7I97", _terminal, hint)
-    file.check_notes += [
+    file.pre_motion_checks += [
         *CARD_NOTES,
         (
             "check the direction with drive power off: turn the screw by hand; the position must "
@@ -49,11 +49,11 @@ def build_mesa_servo_file(lathe: LatheData) -> HalFile:
             "the axis stays at rest"
         ),
     ]
-    turns = bool(lathe.encoder_line_count and lathe.terminal_names.get("hal.spindle.position"))
+    turns = bool(lathe.encoder_pulses_per_rev and lathe.terminal_names.get("hal.spindle.position"))
     spindle = lathe.board_table.spindle
     channels = [board.channel for board in lathe.board_table.axes.values()] + [spindle.channel]
     encoders = 1 + max((*channels[:-1], spindle.encoder if turns else -1))
-    load_card(file, _CARD, f"num_encoders={encoders} num_pwmgens={1 + max(channels)} num_stepgens=0")
+    load_ethernet_card(file, _CARD, f"num_encoders={encoders} num_pwmgens={1 + max(channels)} num_stepgens=0")
     load_pid_loops(file, lathe.driven_axes)
     if lathe.c_axis is not None:
         load_c_components(file, shares_input=True)
@@ -62,23 +62,23 @@ def build_mesa_servo_file(lathe: LatheData) -> HalFile:
     for axis in lathe.driven_axes:
         _axis(file, axis)
     file.start_section("Drive power: analog outputs 0 to 3 share one enable signal")
-    file.connect_enable(*_enables(lathe))
+    file.connect_enable_pins(*_enables(lathe))
     if spindle.full_speed:
         _speed(file)
     if turns:
         connect_spindle_encoder(
             file, _CARD, f"encoder {spindle.encoder} (signal A at {_ENCODERS[spindle.encoder]})"
         )
-    file.connect_remaining()
-    file.last_calls.append(f"{_CARD}.write")
+    file.connect_remaining_terminals()
+    file.last_function_calls.append(f"{_CARD}.write")
     return file
 
 
 def _terminal(name: str) -> BoardTerminal | None:
     if (found := _INPUT_PATTERN.fullmatch(name)) and int(found[1]) < 16:
-        return BoardTerminal(is_output=False, label=f"INPUT{int(found[1])}")
+        return BoardTerminal(is_output=False, printed_label=f"INPUT{int(found[1])}")
     if (found := _OUTPUT_PATTERN.fullmatch(name)) and int(found[1]) < len(_RELAYS):
-        return BoardTerminal(is_output=True, label=_RELAYS[int(found[1])])
+        return BoardTerminal(is_output=True, printed_label=_RELAYS[int(found[1])])
     return None
 
 
@@ -105,18 +105,24 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
     place = f"{_ANALOG[board.channel]}, encoder {board.channel} (signal A at {_ENCODERS[board.channel]})"
     file.start_section(f"Axis {axis.name}: analog output and encoder {board.channel}")
     full = _DEGREES_RPM * board.full_rpm if axis.name == C_AXIS else board.full_speed
-    _analog(file, out, full, f"{axis.unit}/s at 10 V")
+    _analog(file, out, full, f"{axis.position_unit}/s at 10 V")
     sign = -1.0 if board.reversed else 1.0
-    configure_encoder(file, counter, sign / axis.travel_per_count, f"counts per {axis.unit}: 1 / count")
+    configure_encoder(
+        file, counter, sign / axis.travel_per_count, f"counts per {axis.position_unit}: 1 / count"
+    )
     for key, value in (("Pgain", board.p), ("Igain", board.i), ("Dgain", board.d), ("FF0", 0.0)):
         file.set_pin(f"{pid}.{key}", value)
     file.set_pin(f"{pid}.FF1", 1.0, "FF1 = 1 passes the commanded speed through unchanged")
     file.set_pin(f"{pid}.FF2", board.ff2)
-    file.set_pin(f"{pid}.maxoutput", full, f"{axis.unit}/s: 10 V")
+    file.set_pin(f"{pid}.maxoutput", full, f"{axis.position_unit}/s: 10 V")
     file.set_pin(f"{pid}.error-previous-target", 1)
-    file.connect_positions(axis.name, [f"{pid}.command"], [f"{counter}.position", f"{pid}.feedback"], place)
+    file.connect_position_pins(
+        axis.name, [f"{pid}.command"], [f"{counter}.position", f"{pid}.feedback"], place
+    )
     index = f"hal.axes.{axis.name}.index_enable"
-    file.connect_key(index, f"{name}-index", f"{counter}.index-enable", f"{pid}.index-enable", label=place)
+    file.connect_key_pins(
+        index, f"{name}-index", f"{counter}.index-enable", f"{pid}.index-enable", label=place
+    )
     file.connect_pins(f"{name}-output", f"{pid}.output", f"{out}.value")
 
 
@@ -126,6 +132,8 @@ def _speed(file: HalFile) -> None:
     file.start_section(f"Spindle: analog output {board.channel}")
     _analog(file, pin, board.full_speed, "spindle speed at 10 V, in rpm")
     speed = "speed" if file.lathe.terminal_names.get("hal.spindle.speed") else "speed_abs"
-    value, enable = get_c_speed_pins(file, f"{pin}.value", f"{pin}.enable")
-    file.connect_key(f"hal.spindle.{speed}", "spindle-rpm-cmd", value, label=place, is_required=True)
-    file.connect_key("hal.spindle.on", "spindle-on", enable, label=f"enable of {place}", is_required=True)
+    value, enable = get_spindle_command_pins(file, f"{pin}.value", f"{pin}.enable")
+    file.connect_key_pins(f"hal.spindle.{speed}", "spindle-rpm-cmd", value, label=place, is_required=True)
+    file.connect_key_pins(
+        "hal.spindle.on", "spindle-on", enable, label=f"enable of {place}", is_required=True
+    )

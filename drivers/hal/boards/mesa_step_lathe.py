@@ -9,11 +9,11 @@ import re
 
 from drivers.hal.boards.board_parts import (
     CARD_NOTES,
-    configure_c_loop,
-    connect_mode_terminal,
+    configure_c_position_loop,
+    connect_drive_mode_terminal,
     connect_spindle_encoder,
     load_c_components,
-    load_card,
+    load_ethernet_card,
     load_pid_loops,
 )
 from drivers.hal.boards.hal_file_builder import BoardTerminal, HalFile, LatheAxis, LatheData
@@ -33,7 +33,7 @@ def build_mesa_step_file(lathe: LatheData) -> HalFile:
     """
     hint = f"an input or output of the card: {_FIELD}.input-00 … -31, {_FIELD}.output-00 … -15"
     file = HalFile(lathe, "step drives on a Mesa 7I76E", _terminal, hint)
-    file.check_notes += [
+    file.pre_motion_checks += [
         *CARD_NOTES,
         (
             "step_ns, space_ns, setup_ns, hold_ns: use the values in the drive manual; a "
@@ -45,9 +45,9 @@ def build_mesa_step_file(lathe: LatheData) -> HalFile:
             "--addr ADDRESS --readhmid"
         ),
     ]
-    encoder = bool(lathe.encoder_line_count and lathe.terminal_names.get("hal.spindle.position"))
+    encoder = bool(lathe.encoder_pulses_per_rev and lathe.terminal_names.get("hal.spindle.position"))
     steps = 1 + max((board.channel for board in lathe.board_table.axes.values()), default=0)
-    load_card(
+    load_ethernet_card(
         file,
         _CARD,
         f"num_encoders={int(encoder)} num_pwmgens=0 num_stepgens={steps} sserial_port_0=0xxxxxxx",
@@ -64,20 +64,20 @@ def build_mesa_step_file(lathe: LatheData) -> HalFile:
     if lathe.c_axis is not None:
         _connect_spindle_c(file, lathe.c_axis)
     file.start_section("Drive power")
-    file.connect_enable(*_enables(lathe))
+    file.connect_enable_pins(*_enables(lathe))
     _connect_spindle(file)
     if encoder:
         connect_spindle_encoder(file, _CARD, "TB3 encoder")
-    file.connect_remaining()
-    file.last_calls.append(f"{_CARD}.write")
+    file.connect_remaining_terminals()
+    file.last_function_calls.append(f"{_CARD}.write")
     return file
 
 
 def _configure_field_io(file: HalFile) -> None:
     """Monitor the card's serial link to its field I/O, because its inputs freeze if transfers fail."""
-    file.add_load("loadrt conv_u32_float names=field-errors")
-    file.add_load("loadrt wcomp names=field-lost")
-    file.first_calls[1:1] = ["field-errors", "field-lost"]
+    file.add_load_line("loadrt conv_u32_float names=field-errors")
+    file.add_load_line("loadrt wcomp names=field-lost")
+    file.first_function_calls[1:1] = ["field-errors", "field-lost"]
     file.start_section("Field I/O: the serial link to the card can fail while the card itself still works")
     file.connect_pins("field-error-count", f"{_CARD}.sserial.port-0.fault-count", "field-errors.in")
     file.connect_pins("field-error-level", "field-errors.out", "field-lost.in")
@@ -112,7 +112,7 @@ def _terminal(name: str) -> BoardTerminal | None:
         return None
     kind, number = found[1], int(found[2])
     return BoardTerminal(
-        is_output=kind == "output", label=f"{_terminal_block(kind, number)} {kind.upper()}{number}"
+        is_output=kind == "output", printed_label=f"{_terminal_block(kind, number)} {kind.upper()}{number}"
     )
 
 
@@ -136,7 +136,9 @@ def _configure_steps(file: HalFile, axis: LatheAxis) -> str:
     board = file.lathe.board_table.axes[axis.name]
     pin = f"{_CARD}.stepgen.{board.channel:02d}"
     sign = -1.0 if board.reversed else 1.0
-    file.set_pin(f"{pin}.position-scale", sign / axis.travel_per_count, f"steps per {axis.unit}: 1 / count")
+    file.set_pin(
+        f"{pin}.position-scale", sign / axis.travel_per_count, f"steps per {axis.position_unit}: 1 / count"
+    )
     for key, value in (
         ("steplen", "step"),
         ("stepspace", "space"),
@@ -147,10 +149,10 @@ def _configure_steps(file: HalFile, axis: LatheAxis) -> str:
     file.set_pin(f"{pin}.step_type", 0, "step and direction")
     file.set_pin(
         f"{pin}.maxvel",
-        1.5 * axis.vmax,
+        1.5 * axis.max_velocity,
         "set this limit above the highest commanded velocity; if the limit takes effect, position is lost",
     )
-    file.set_pin(f"{pin}.maxaccel", 2.5 * axis.amax)
+    file.set_pin(f"{pin}.maxaccel", 2.5 * axis.max_acceleration)
     return pin
 
 
@@ -163,8 +165,8 @@ def _connect_spindle_c(file: HalFile, axis: LatheAxis) -> None:
     )
     pin = _configure_steps(file, axis)
     file.set_pin(f"{pin}.control-type", 1)
-    configure_c_loop(file, axis, f"{pin}.velocity-cmd")
-    connect_mode_terminal(file)
+    configure_c_position_loop(file, axis, f"{pin}.velocity-cmd")
+    connect_drive_mode_terminal(file)
 
 
 def _axis(file: HalFile, axis: LatheAxis) -> None:
@@ -174,12 +176,12 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
     pin = _configure_steps(file, axis)
     if board.mode == "position":
         file.set_pin(f"{pin}.control-type", 0)
-        file.connect_positions(axis.name, [f"{pin}.position-cmd"], [f"{pin}.position-fb"], place)
+        file.connect_position_pins(axis.name, [f"{pin}.position-cmd"], [f"{pin}.position-fb"], place)
         return
     file.set_pin(f"{pin}.control-type", 1)
     file.set_pin(
         f"pid.{name}.Pgain",
-        board.p or 1.0 / file.lathe.period_s,
+        board.p or 1.0 / file.lathe.servo_period_s,
         "P gain in 1/s; corrects a position error within one period",
     )
     for key, gain in (
@@ -190,11 +192,11 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
         ("FF2", board.ff2),
     ):
         file.set_pin(f"pid.{name}.{key}", gain)
-    file.set_pin(f"pid.{name}.maxerror", max(_MOST_ERROR, 2.0 * axis.travel_per_count), axis.unit)
-    file.set_pin(f"pid.{name}.maxoutput", 1.5 * axis.vmax, f"{axis.unit}/s")
+    file.set_pin(f"pid.{name}.maxerror", max(_MOST_ERROR, 2.0 * axis.travel_per_count), axis.position_unit)
+    file.set_pin(f"pid.{name}.maxoutput", 1.5 * axis.max_velocity, f"{axis.position_unit}/s")
     file.set_pin(f"pid.{name}.error-previous-target", 1)
     measured = f"{pin}.position-fb", f"pid.{name}.feedback"
-    file.connect_positions(axis.name, [f"pid.{name}.command"], measured, place)
+    file.connect_position_pins(axis.name, [f"pid.{name}.command"], measured, place)
     file.connect_pins(f"{name}-vel-cmd", f"pid.{name}.output", f"{pin}.velocity-cmd")
 
 
@@ -207,10 +209,10 @@ def _connect_spindle(file: HalFile) -> None:
     file.set_pin(f"{_FIELD}.spinout-scalemax", full, "spindle speed at 10 V, in rpm")
     file.set_pin(f"{_FIELD}.spinout-minlim", 0)
     file.set_pin(f"{_FIELD}.spinout-maxlim", min(full, file.lathe.max_rpm), "rpm")
-    file.connect_key(
+    file.connect_key_pins(
         "hal.spindle.speed_abs", "spindle-rpm-abs", f"{_FIELD}.spinout", label="TB4 SPINOUT", is_required=True
     )
-    file.connect_key(
+    file.connect_key_pins(
         "hal.spindle.on", "spindle-on", f"{_FIELD}.spinena", label="TB4 SPINENA", is_required=True
     )
-    file.connect_key("hal.spindle.reverse", "spindle-reverse", f"{_FIELD}.spindir", label="TB4 SPINDIR")
+    file.connect_key_pins("hal.spindle.reverse", "spindle-reverse", f"{_FIELD}.spindir", label="TB4 SPINDIR")

@@ -24,7 +24,7 @@ from drivers.hal.bridge import hal_pins
 from drivers.hal.bridge.hal_bridge import HalBridge
 from drivers.hal.bridge.packets import BridgeAxis, BridgeConfig, pack_packet
 from drivers.process_messages import MessageSocket
-from drivers.process_rights import request_scheduling
+from drivers.process_rights import request_scheduling_policy
 
 _PERIOD = 0.002  # Seconds between two cycles.
 _CYCLES_PER_REPORT = 2  # Cycles between two reports.
@@ -64,7 +64,7 @@ def main(arguments: list[str]) -> int:
     if component is None:
         return 1
     bridge = _bridge(hal, component, said)
-    cause = request_scheduling("SCHED_FIFO", _PRIORITY)
+    cause = request_scheduling_policy("SCHED_FIFO", _PRIORITY)
     words = f"the HAL bridge runs without real-time priority ({cause}); see docs/integrator/computer.md"
     warnings = [words] if cause else []
     sock.send(pack_packet({"ready": True, "pid": os.getpid(), "warnings": warnings}))
@@ -84,7 +84,10 @@ def _create_component(hal: Any, sock: MessageSocket, settings: Mapping[str, Any]
     wanted = [hal_pins.ExpectedPin(*each) for each in settings["wanted"]]
     pins = hal_pins.parse_pins(hal_pins.run_halcmd("-s", "show", "pin"))
     signals = hal_pins.parse_signals(pins, hal_pins.run_halcmd("-s", "show", "sig"))
-    verdicts = [(each.path, each.pin, hal_pins.describe_pin_error(each, pins, signals)) for each in wanted]
+    verdicts = [
+        (each.machine_file_key, each.pin_name, hal_pins.describe_pin_error(each, pins, signals))
+        for each in wanted
+    ]
     sock.send(pack_packet({"verdicts": verdicts}))
     if settings["only_check"] or any(wrong for _, _, wrong in verdicts):
         return None
@@ -97,9 +100,9 @@ def _create_component(hal: Any, sock: MessageSocket, settings: Mapping[str, Any]
     )
     hal_pins.run_halcmd("-f", str(script))
     for each in wanted:  # The start of a session, like an E-stop, does not change these outputs.
-        output = each.path.removeprefix("io.out.")
+        output = each.machine_file_key.removeprefix("io.out.")
         if output in settings["bridge"]["outputs"] and settings["bridge"]["outputs"][output] is None:
-            component[f"out.{output}"] = hal_pins.is_pin_on(each.pin, pins, signals)
+            component[f"out.{output}"] = hal_pins.is_pin_on(each.pin_name, pins, signals)
     return component
 
 

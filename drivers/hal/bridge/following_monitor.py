@@ -8,7 +8,7 @@ from drivers.hal.bridge.packets import BridgeConfig
 from drivers.hal.bridge.row_streams import HalPins
 
 
-class FollowingMonitor:
+class FollowingErrorMonitor:
     """Monitor of following errors, which detects an axis that exceeds its limit for too long."""
 
     def __init__(self, config: BridgeConfig, pins: HalPins) -> None:

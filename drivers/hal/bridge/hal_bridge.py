@@ -11,8 +11,8 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 
-from drivers.hal.bridge.following_monitor import FollowingMonitor
-from drivers.hal.bridge.output_pins import ChainPins, OutputPins
+from drivers.hal.bridge.following_monitor import FollowingErrorMonitor
+from drivers.hal.bridge.output_pins import OutputPins, SafetyChainPins
 from drivers.hal.bridge.packets import (
     BridgeConfig,
     PacketHead,
@@ -21,7 +21,7 @@ from drivers.hal.bridge.packets import (
     pack_packet,
     parse_pieces,
 )
-from drivers.hal.bridge.row_streams import HalPins, RowStream, RowStreams, SampleStream
+from drivers.hal.bridge.row_streams import HalPins, RowStream, RowStreamPair, SampleStream
 from drivers.hal.bridge.setpoint_player import SetpointPlayer, make_row_function
 from drivers.hal.bridge.spindle_pins import SpindlePins
 from drivers.process_messages import text
@@ -60,11 +60,11 @@ class HalBridge:
         self.config = config
         self.pins = pins
         self.setpoint_player = SetpointPlayer(len(config.axes))
-        self.row_streams = RowStreams(streams, pins)
+        self.row_streams = RowStreamPair(streams, pins)
         self.spindle_pins = SpindlePins(config, pins)
         self._output_pins = OutputPins(config, pins)
-        self._chain_pins = ChainPins(pins)
-        self._following_monitor = FollowingMonitor(config, pins)
+        self._chain_pins = SafetyChainPins(pins)
+        self._following_monitor = FollowingErrorMonitor(config, pins)
         self._sampler = sampler
         self._now = now
         self._orders: deque[tuple[PacketHead, Sequence[float]]] = deque()
@@ -112,7 +112,7 @@ class HalBridge:
             "clear": lambda _head, _numbers: self._clear(),
             "spindle": lambda head, _numbers: self.spindle_pins.set_speed(head),
             "out": lambda head, _numbers: self._output_pins.set_output(head),
-            "safe": lambda _head, _numbers: self._output_pins.set_safe(),
+            "safe": lambda _head, _numbers: self._output_pins.set_safe_states(),
             "homing": self._handle_home,
             "index": self._handle_index,
             "c": self._handle_hold_c,
@@ -138,7 +138,7 @@ class HalBridge:
         self._thread_silence.check(now)
         self._take_samples(now)
         self._supervise(now)
-        while self._orders and not self.row_streams.is_changing:
+        while self._orders and not self.row_streams.is_change_locked:
             head, numbers = self._orders.popleft()
             act = self._acts.get(text(head, "do"))
             if act is not None:
@@ -224,7 +224,7 @@ class HalBridge:
 
     def _supervise(self, now: float) -> None:
         pins = self.pins
-        if not self.row_streams.finish_change(bool(pins["plays-b"])):
+        if not self.row_streams.finish_stream_change(bool(pins["plays-b"])):
             self._trip(
                 "setpoints reached HAL too late; HAL executed the setpoints that were already queued", "late"
             )
@@ -259,7 +259,7 @@ class HalBridge:
             abs(v) > _STANDSTILL_MM_PER_S
             for v in self.setpoint_player.get_motion_at(self.row_streams.played_row_due_s)[1]
         ):
-            self.setpoint_player.reset_to(self._target())
+            self.setpoint_player.reset_to_position(self._target())
             self._trip(
                 f"HAL had no setpoints for {self._dry} periods because this computer was late", "queue-dry"
             )
@@ -285,8 +285,8 @@ class HalBridge:
 
     def _open_chain(self) -> None:
         """Command the spindle and outputs off, so that closing the E-stop chain does not restart them."""
-        self.spindle_pins.switch_off()
-        self._output_pins.switch_off()
+        self.spindle_pins.switch_spindle_off()
+        self._output_pins.switch_outputs_off()
 
     def _trip(self, fault: str, code: str) -> None:
         """Set the fault, and brake all axes on their path before the power is switched off."""
@@ -302,7 +302,7 @@ class HalBridge:
         if not self._sampled:
             return
         if not self._on:
-            self.setpoint_player.reset_to(self._place)
+            self.setpoint_player.reset_to_position(self._place)
         elif self._powered:
             self._least = min(self._least, rows.pending_row_count)
         rest = self.setpoint_player.get_end_time(now) <= rows.last_row_due_s
@@ -328,7 +328,7 @@ class HalBridge:
             return
         t = pieces[0].start_time_s
         if self.row_streams.find_first_recallable_row(t) is None:
-            if not self.row_streams.matches_locked_rows(t, make_row_function(pieces)):
+            if not self.row_streams.has_same_locked_rows(t, make_row_function(pieces)):
                 self._trip("setpoints arrived too late to be executed", "late")
                 return
             t = self.row_streams.find_earliest_recall_time()
@@ -389,7 +389,7 @@ class HalBridge:
     def _enable(self, _head: PacketHead, _numbers: Sequence[float]) -> None:
         if self.fault or self._on:
             return
-        self.setpoint_player.reset_to(self._place)
+        self.setpoint_player.reset_to_position(self._place)
         self._recall(self.row_streams.find_earliest_recall_time())
         self._on, self._off_at = True, INFINITY
         self._following_monitor.reset()
@@ -401,11 +401,11 @@ class HalBridge:
 
         The power is switched on when HAL plays the current axis positions.
         """
-        self._chain_pins.update(now)
+        self._chain_pins.update_pulses(now)
         if self._grant_at <= now:
             self._grant_at, self._granted = INFINITY, now
             self.pins["enable"] = 1
-        self.spindle_pins.update(now)
+        self.spindle_pins.apply_due_actions(now)
         if self._off_at <= now:
             self._power_off()
 
@@ -416,7 +416,7 @@ class HalBridge:
         self._granted = -INFINITY
         self._homing.clear()
         self.spindle_pins.release_c()
-        self.setpoint_player.reset_to(self._place)
+        self.setpoint_player.reset_to_position(self._place)
 
     def _ramp_off(self) -> None:
         if not self._on:
@@ -441,7 +441,7 @@ class HalBridge:
             for index, axis in enumerate(self.config.axes):
                 if axis.is_spindle:
                     place[index] = self.spindle_pins.c_position = self._place[index]
-            self.setpoint_player.reset_to(place)
+            self.setpoint_player.reset_to_position(place)
             self._recall(self.row_streams.find_earliest_recall_time())
             self.spindle_pins.request_position_mode(self.row_streams.last_row_due_s)
 
@@ -477,8 +477,8 @@ class HalBridge:
             self._brake_axes()
 
     def _switch_off(self) -> None:
-        self.spindle_pins.switch_off()
-        self._output_pins.set_safe()
+        self.spindle_pins.switch_spindle_off()
+        self._output_pins.set_safe_states()
 
     def _is_spindle_stopped(self) -> bool:
         """Return whether the spindle is stopped, or True if its position is not known."""

@@ -15,13 +15,13 @@ _HALCMD_TIMEOUT_S = 10.0  # Less than the driver waits for HAL, so that the driv
 class ExpectedPin:
     """A pin or signal that the machine file names.
 
-    ``path`` is its key in the machine file, and ``turndesk_signal`` is TurnDesk's signal for it.
+    ``machine_file_key`` is its key in the machine file, and ``turndesk_signal`` is TurnDesk's signal for it.
     """
 
-    path: str
-    pin: str
-    kind: str
-    is_driven: bool
+    machine_file_key: str
+    pin_name: str
+    hal_type: str
+    is_driven_by_turndesk: bool
     turndesk_signal: str
 
 
@@ -29,13 +29,13 @@ class ExpectedPin:
 class HalPin:
     """A pin of HAL with the value that halcmd shows.
 
-    ``signal`` is empty if the pin is not connected.
+    ``signal_name`` is empty if the pin is not connected.
     """
 
     hal_type: str
     direction: str
-    signal: str = ""
-    value: str = ""
+    signal_name: str = ""
+    value_text: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,7 @@ class HalSignal:
 
     hal_type: str
     is_driven: bool
-    value: str = ""
+    value_text: str = ""
 
 
 def run_halcmd(*words: str) -> str:
@@ -85,7 +85,7 @@ def parse_signals(pins: Mapping[str, HalPin], output: str) -> dict[str, HalSigna
 
     A line contains type, value, name, and the connected pins.
     """
-    driven = {pin.signal for pin in pins.values() if pin.direction == _OUT}
+    driven = {pin.signal_name for pin in pins.values() if pin.direction == _OUT}
     found = {}
     for line in output.splitlines():
         words = line.split()
@@ -98,32 +98,32 @@ def describe_pin_error(
     expected_pin: ExpectedPin, pins: Mapping[str, HalPin], signals: Mapping[str, HalSignal]
 ) -> str:
     """Return the error of a pin or signal in the machine file, or an empty string if it is correct."""
-    pin, signal = pins.get(expected_pin.pin), signals.get(expected_pin.pin)
+    pin, signal = pins.get(expected_pin.pin_name), signals.get(expected_pin.pin_name)
     if pin is None and signal is None:
         return (
             "HAL does not have this pin or signal; check its spelling, and check that its component is loaded"
         )
     kind = pin.hal_type if pin is not None else signal.hal_type if signal is not None else ""
-    if kind != expected_pin.kind:
-        return f"this pin or signal is of type {kind}; expected type {expected_pin.kind}"
+    if kind != expected_pin.hal_type:
+        return f"this pin or signal is of type {kind}; expected type {expected_pin.hal_type}"
     if pin is not None and _has_wrong_direction(expected_pin, pin, signals):
         expected = (
             ("an input pin that TurnDesk drives")
-            if expected_pin.is_driven
+            if expected_pin.is_driven_by_turndesk
             else ("an output pin that TurnDesk reads")
         )
         return f"this pin is an {'output' if pin.direction == _OUT else 'input'}; expected {expected}"
     if (
-        expected_pin.is_driven
+        expected_pin.is_driven_by_turndesk
         and pin is not None
-        and pin.signal
-        and signals.get(pin.signal, HalSignal("", False)).is_driven
+        and pin.signal_name
+        and signals.get(pin.signal_name, HalSignal("", False)).is_driven
     ):
         return (
-            f"another source already drives this pin through the signal {pin.signal}; remove that "
+            f"another source already drives this pin through the signal {pin.signal_name}; remove that "
             "net from the HAL file"
         )
-    if expected_pin.is_driven and signal is not None and signal.is_driven:
+    if expected_pin.is_driven_by_turndesk and signal is not None and signal.is_driven:
         return "another source already drives this signal; remove the net of that source from the HAL file"
     return ""
 
@@ -131,7 +131,7 @@ def describe_pin_error(
 def is_pin_on(pin_name: str, pins: Mapping[str, HalPin], signals: Mapping[str, HalSignal]) -> bool:
     """Return whether a pin or signal is on."""
     found = signals[pin_name] if pin_name in signals else pins[pin_name]
-    return found.value == "TRUE"
+    return found.value_text == "TRUE"
 
 
 def _has_wrong_direction(expected: ExpectedPin, pin: HalPin, signals: Mapping[str, HalSignal]) -> bool:
@@ -139,9 +139,9 @@ def _has_wrong_direction(expected: ExpectedPin, pin: HalPin, signals: Mapping[st
 
     An input pin may also be read if another pin drives its signal.
     """
-    if expected.is_driven:
+    if expected.is_driven_by_turndesk:
         return pin.direction == _OUT
-    return pin.direction == _IN and not signals.get(pin.signal, HalSignal("", False)).is_driven
+    return pin.direction == _IN and not signals.get(pin.signal_name, HalSignal("", False)).is_driven
 
 
 def build_net_lines(
@@ -157,20 +157,23 @@ def build_net_lines(
     """
     theirs, loose, kept = dict[str, str](), [], list[str]()
     for each in expected:
-        signal = pins[each.pin].signal if each.pin in pins else each.pin
+        signal = pins[each.pin_name].signal_name if each.pin_name in pins else each.pin_name
         if not signal:
             loose.append(each)
         elif theirs.setdefault(each.turndesk_signal, signal) != signal:
             raise RuntimeError(
-                f"{each.path}: {signal} and {theirs[each.turndesk_signal]} are driven alike; make them one"
+                f"{each.machine_file_key}: {signal} and {theirs[each.turndesk_signal]} are driven alike; "
+                f"make them one"
             )
-        if not each.is_driven and signal in signals and not signals[signal].is_driven:
+        if not each.is_driven_by_turndesk and signal in signals and not signals[signal].is_driven:
             # The first pin would otherwise set its own value.
-            kept.append(f"sets {signal} {signals[signal].value}")
+            kept.append(f"sets {signal} {signals[signal].value_text}")
     lines = []
     for name, pin in pins.items():
-        if pin.signal in theirs:
-            lines += [f"unlinkp {name}", f"net {theirs[pin.signal]} {name}"]
-    lines += [f"net {theirs.get(each.turndesk_signal, each.turndesk_signal)} {each.pin}" for each in loose]
+        if pin.signal_name in theirs:
+            lines += [f"unlinkp {name}", f"net {theirs[pin.signal_name]} {name}"]
+    lines += [
+        f"net {theirs.get(each.turndesk_signal, each.turndesk_signal)} {each.pin_name}" for each in loose
+    ]
     lines += [f"net {theirs.get(signal, signal)} {' '.join(names)}" for signal, names in bridge_nets.items()]
     return [*lines, *kept]

@@ -23,20 +23,20 @@ class OutputPins:
         if name in self._config.outputs:
             self._pins[f"out.{name}"] = on
 
-    def set_safe(self) -> None:
+    def set_safe_states(self) -> None:
         """Set all outputs to their safe states; outputs without a safe state do not change."""
         for name, safe in self._config.outputs.items():
             if safe is not None:
                 self._pins[f"out.{name}"] = safe
 
-    def switch_off(self) -> None:
+    def switch_outputs_off(self) -> None:
         """Set the outputs to their safe states, except the lamps."""
         for name, safe in self._config.outputs.items():
             if safe is not None and name not in self._config.lamps:
                 self._pins[f"out.{name}"] = safe
 
 
-class ChainPins:
+class SafetyChainPins:
     """The pins that restart the watchdog and reset the safety chain."""
 
     def __init__(self, pins: HalPins) -> None:
@@ -50,7 +50,7 @@ class ChainPins:
         if not self._pins["chain-ok"]:
             self._reset_until = now + _RESET_PULSE_S
 
-    def update(self, now: float) -> None:
+    def update_pulses(self, now: float) -> None:
         """End the watchdog restart and the reset pulse when they are due."""
         self._pins["watch"] = now >= self._watch_from
         self._pins["reset"] = now < self._reset_until and bool(self._pins["alive"])

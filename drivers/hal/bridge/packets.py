@@ -42,7 +42,7 @@ def parse_pieces(numbers: Sequence[float], axis_count: int) -> list[MotionPiece]
     return made
 
 
-def build_packets(
+def build_piece_packets(
     head: Mapping[str, object], pieces: Sequence[MotionPiece], axis_count: int
 ) -> Iterable[bytes]:
     """Yield the packets that transfer any number of motion pieces.

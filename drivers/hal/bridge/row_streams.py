@@ -65,7 +65,7 @@ class _PendingRow(NamedTuple):
     values: SetpointRow
 
 
-class RowStreams:
+class RowStreamPair:
     """Pair of setpoint streams, in which rows that HAL has not played yet can be replaced."""
 
     def __init__(self, streams: tuple[RowStream, RowStream], pins: HalPins) -> None:
@@ -122,7 +122,7 @@ class RowStreams:
                 return each.row_number if each.row_number >= soonest else None
         return self.last_row_number + 1
 
-    def matches_locked_rows(self, time_s: float, make_row: RowFunction) -> bool:
+    def has_same_locked_rows(self, time_s: float, make_row: RowFunction) -> bool:
         """Return whether the rows that can no longer be recalled equal those of ``make_row``.
 
         Only the rows from ``time_s`` on are compared.
@@ -143,7 +143,7 @@ class RowStreams:
         return self.last_row_due_s
 
     @property
-    def is_changing(self) -> bool:
+    def is_change_locked(self) -> bool:
         """Return whether HAL is about to change streams, so that the request can no longer be modified."""
         return self._change is not None and self.played_row_number + _MARGIN >= self._change
 
@@ -153,7 +153,7 @@ class RowStreams:
         Until ``unchanged_until``, a time in seconds, the replacement follows the same path.
         """
         first = self.find_first_recallable_row(time_s)
-        if first is None or self.is_changing:
+        if first is None or self.is_change_locked:
             return False
         if self._change is not None:  # The pending change is included in this one.
             first, unchanged_until = min(first, self._change), min(unchanged_until, self._same_until)
@@ -199,7 +199,7 @@ class RowStreams:
         self._pins["play-b"] = 1 - self._active
         self._pins["switch-at"] = float(first - 1)
 
-    def finish_change(self, is_second_playing: bool) -> bool:
+    def finish_stream_change(self, is_second_playing: bool) -> bool:
         """Complete a requested change of streams, based on the stream that HAL plays.
 
         Returns False if HAL does not play the expected stream.

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from drivers.setpoint_pieces import INFINITY, MotionPiece, PieceQueue
+from drivers.setpoint_pieces import INFINITY, MotionPiece, MotionPieceQueue
 
 _SPEED_WINDOW_S = 0.06  # Seconds of readings from which the speed is calculated.
 SetpointRow = tuple[float, ...]
@@ -15,12 +15,12 @@ MotionState = tuple[tuple[float, ...], tuple[float, ...]]
 
 def make_row_function(pieces: list[MotionPiece]) -> Callable[[float], SetpointRow]:
     """Return a function that converts a time into a setpoint row without spindle following."""
-    queue = PieceQueue(pieces[0].positions)
+    queue = MotionPieceQueue(pieces[0].positions)
     queue.replace_pieces_from(pieces[0].start_time_s, pieces)
     return lambda t: _rest_row(queue, t)
 
 
-def _rest_row(queue: PieceQueue, t: float) -> SetpointRow:
+def _rest_row(queue: MotionPieceQueue, t: float) -> SetpointRow:
     """Return a setpoint row for axes that do not follow the spindle (zero travel per revolution)."""
     return tuple([each for p in queue.get_commanded_state(t)[0] for each in (p, 0.0)])
 
@@ -59,7 +59,7 @@ class PlayerCam(NamedTuple):
 
     start_revolutions: float
     direction_sign: float
-    path_queue: PieceQueue
+    path_queue: MotionPieceQueue
     following_pieces: Sequence[MotionPiece]
 
 
@@ -70,20 +70,20 @@ class SetpointPlayer:
     """
 
     def __init__(self, axes: int) -> None:
-        self.queue = PieceQueue((0.0,) * axes)
+        self.queue = MotionPieceQueue((0.0,) * axes)
         self.spindle_predictor = SpindlePredictor()
         self.cam: PlayerCam | None = None
         self.cam_end_time_s: float | None = None  # End time of the cam in s.
 
-    def reset_to(self, position: Sequence[float]) -> None:
+    def reset_to_position(self, position: Sequence[float]) -> None:
         """Discard all setpoints, and rest at the given position."""
         self.cam = self.cam_end_time_s = None
-        self.queue.reset_to(position)
+        self.queue.reset_to_position(position)
 
     def splice_pieces(self, pieces: list[MotionPiece]) -> None:
         """Replace the setpoints by time-based motion pieces from their start on, and end the cam."""
         if self.cam is not None:
-            self.queue.reset_to(pieces[0].positions)
+            self.queue.reset_to_position(pieces[0].positions)
         self.cam = self.cam_end_time_s = None
         self.queue.replace_pieces_from(pieces[0].start_time_s, pieces)
 
@@ -98,7 +98,7 @@ class SetpointPlayer:
 
         Earlier pieces of the same cam remain.
         """
-        path_queue = PieceQueue(pieces[0].positions)
+        path_queue = MotionPieceQueue(pieces[0].positions)
         if self.cam is not None and (self.cam.start_revolutions, self.cam.direction_sign) == (
             start_revolutions,
             direction_sign,
@@ -117,10 +117,10 @@ class SetpointPlayer:
         """
         state = self.get_motion_at(time_s)
         if self.cam is not None:
-            self.reset_to(state[0])
+            self.reset_to_position(state[0])
         took = max((abs(v) / a for v, a in zip(state[1], deceleration, strict=True)), default=0.0)
         if took <= 0.0:
-            self.queue.reset_to(state[0])
+            self.queue.reset_to_position(state[0])
             return []
         piece = MotionPiece(time_s, took, *state, tuple(-v / took for v in state[1]))
         self.queue.replace_pieces_from(time_s, [piece])
@@ -188,7 +188,7 @@ class SetpointPlayer:
         """End the cam: the axes rest, or continue with time-based pieces if such pieces follow the cam."""
         rest, _ = cam.path_queue.get_commanded_state(INFINITY)
         self.cam_end_time_s = t
-        self.queue.reset_to(rest)
+        self.queue.reset_to_position(rest)
         if cam.following_pieces:
             self.queue.replace_pieces_from(
                 t, [piece._replace(start_time_s=piece.start_time_s + t) for piece in cam.following_pieces]

@@ -31,7 +31,7 @@ class SpindlePins:
         """Return the position of C once the drive has changed to position mode, otherwise None."""
         return self.c_position if self._c_from == INFINITY else None
 
-    def update(self, now: float) -> None:
+    def apply_due_actions(self, now: float) -> None:
         """Change to position mode, and orient the spindle, as soon as each action is due."""
         if self._c_from <= now:
             self._c_from = INFINITY
@@ -77,7 +77,7 @@ class SpindlePins:
         if "orient" in self._config.spindle:
             self._pins["spindle.orient"] = 0
 
-    def switch_off(self) -> None:
+    def switch_spindle_off(self) -> None:
         """Switch the spindle off, and end position mode and orientation."""
         self.release_c()
         self._release_angle()

@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from app.cli.actions.desktop_entry import format_entry
+from app.cli.actions.desktop_entry import format_desktop_entry
 from resources.setup.bundle import BundleError, run
 from resources.setup.licences import PAGE_PATH, parse_page
 from resources.setup.lock import PROJECT_FOLDER
@@ -96,7 +96,7 @@ def _shared_files(root: Path, version: str) -> None:
     """Write all files of the package that are outside of ``/opt``."""
     command = _file(root / "usr/bin/turndesk")
     command.symlink_to(f"/opt/turndesk/{version}/bin/turndesk")
-    _write(root, "usr/share/applications/turndesk.desktop", format_entry("/usr/bin/turndesk %f"))
+    _write(root, "usr/share/applications/turndesk.desktop", format_desktop_entry("/usr/bin/turndesk %f"))
     for name, place in (
         ("desktop/turndesk.svg", "usr/share/icons/hicolor/scalable/apps/turndesk.svg"),
         ("desktop/turndesk.xml", "usr/share/mime/packages/turndesk.xml"),

@@ -10,7 +10,7 @@ import pytest
 from core.faults import get_fault_code
 from core.machine.machine_model import Machine
 from core.ports import DriverError
-from drivers.canopen.drive_set import RecordQueue
+from drivers.canopen.drive_set import PvtRecordQueue
 from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine, cyclic
 from tests.drivers.machines import ramp
@@ -68,7 +68,7 @@ def test_record_with_a_speed_beyond_the_queue_names_the_axis_and_the_speed() -> 
     sent: list[bytes] = []
     queue = axis.record_queue
     assert queue is not None
-    queue = RecordQueue(axis.config, queue.drive_queue, axis.drive.setup, sent.append)
+    queue = PvtRecordQueue(axis.config, queue.drive_queue, axis.drive.setup, sent.append)
     with raises_code(DriverError, "drive-limits", "X: ", "711000.0") as told:
         queue.send_record(10, 711_000.0, 1.27)
     assert told.value.reason == "record-range"

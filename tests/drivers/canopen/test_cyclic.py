@@ -175,11 +175,11 @@ def test_drives_without_a_setpoint_timeout_stop_by_heartbeat_timeout() -> None:
     axes.enable(True)
     axes.splice(ramp(bench.clock.now() + 0.05, ZERO, 60.0, 0.6))
     run(bench, 0.3)
-    before = bench.peers.machine.get_true_position()[0]
+    before = bench.peers.machine.get_true_positions()[0]
     for _ in range(300):
         bench.clock.advance(TICK)
         bench.peers.process_frames()
-    assert bench.peers.machine.get_true_position()[0] - before < 60.0 * 0.02  # two setpoints and the braking
+    assert bench.peers.machine.get_true_positions()[0] - before < 60.0 * 0.02  # two setpoints and the braking
     assert not any(drive.power_states.is_powered for drive in plant.axis_drives.values())
     bench.close()
 
@@ -216,7 +216,7 @@ def test_axis_moved_without_power_stays_in_place_when_enabled(bench: CanBench) -
     run(bench, 0.1)
     axes.enable(True)
     run(bench, 0.2)
-    assert bench.peers.machine.get_true_position()[0] == pytest.approx(3.0, abs=0.002)
+    assert bench.peers.machine.get_true_positions()[0] == pytest.approx(3.0, abs=0.002)
     assert axes.sample().fault == ""
 
 

@@ -10,8 +10,8 @@ from core.ports import MotionSegments
 from core.table_schema import FileFinding, MachineFileError
 from drivers.canopen.canopen_config import AxisConfig
 from drivers.canopen.canopen_objects import build_drive_dictionary
-from drivers.canopen.canopen_rules import calculate_cyclic_load, get_max_frame_bits
-from drivers.canopen.drive_profiles import CIA402_PROFILE, PROFILES, find_profile
+from drivers.canopen.canopen_rules import calculate_cyclic_bus_load, get_max_frame_bits
+from drivers.canopen.drive_profiles import CIA402_PROFILE, PROFILES, find_drive_profile
 from drivers.canopen.drive_set import pack_copley_segment, unpack_copley_segment
 from tests.drivers.canopen.bench import CanBench, can_machine, cyclic
 from tests.drivers.machines import ramp
@@ -31,7 +31,7 @@ from tests.drivers.machines import ramp
 def test_drive_family_is_selected_by_name_or_eds(
     name: str, vendor: int | None, product: str | None, family: str
 ) -> None:
-    assert find_profile(name, vendor, product).name == family
+    assert find_drive_profile(name, vendor, product).name == family
 
 
 @pytest.mark.parametrize(
@@ -57,12 +57,12 @@ def axis(family: str, counts_per_rev: int) -> AxisConfig:
 
 def test_speeds_are_converted_to_drive_units() -> None:
     """25.4 mm/s are 20 000 counts/s, five turns of 4000 a second; 3048 mm/s² are 2.4 million counts/s²."""
-    assert axis("cia402", 0).convert_speed(25.4) == pytest.approx(20000.0)
-    assert axis("epos4", 4000).convert_speed(25.4) == pytest.approx(300.0)
-    assert axis("cia402", 0).convert_acceleration(3048.0) == 2_400_000
-    assert axis("epos4", 4000).convert_acceleration(3048.0) == 36_000
-    assert axis("cia402", 4000).convert_acceleration(3048.0) == 2_400_000
-    assert axis("epos4", 4000).convert_acceleration(0.0) == 1
+    assert axis("cia402", 0).convert_to_drive_speed(25.4) == pytest.approx(20000.0)
+    assert axis("epos4", 4000).convert_to_drive_speed(25.4) == pytest.approx(300.0)
+    assert axis("cia402", 0).convert_to_drive_acceleration(3048.0) == 2_400_000
+    assert axis("epos4", 4000).convert_to_drive_acceleration(3048.0) == 36_000
+    assert axis("cia402", 4000).convert_to_drive_acceleration(3048.0) == 2_400_000
+    assert axis("epos4", 4000).convert_to_drive_acceleration(0.0) == 1
 
 
 def test_copley_segment_is_packed_into_its_bytes() -> None:
@@ -97,13 +97,13 @@ def test_copley_drives_follow_the_same_path() -> None:
 def test_bus_load_matches_hand_calculation() -> None:
     # 47 + 8n + floor((34 + 8n - 1)/4): 55, 125 and 135 bits
     assert [get_max_frame_bits(n) for n in (0, 7, 8)] == [55, 125, 135]
-    load = calculate_cyclic_load(2, 2, 1_000_000, 0.001, 10)
+    load = calculate_cyclic_bus_load(2, 2, 1_000_000, 0.001, 10)
     assert load.bits_per_sync == 55 + 2 * 250
     assert load.slow_bits_per_sync == (2 * 135 + 4 * 135) / 10
     assert load.used_fraction == pytest.approx(0.636)
     assert load.has_reserve
-    assert not calculate_cyclic_load(3, 0, 1_000_000, 0.001, 10).has_reserve  # 80 % and the seldom ones
-    assert calculate_cyclic_load(3, 0, 1_000_000, 0.002, 5).has_reserve
+    assert not calculate_cyclic_bus_load(3, 0, 1_000_000, 0.001, 10).has_reserve  # 80 % and the seldom ones
+    assert calculate_cyclic_bus_load(3, 0, 1_000_000, 0.002, 5).has_reserve
 
 
 def refused(*changes: tuple[str, str]) -> FileFinding:

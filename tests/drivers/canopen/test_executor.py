@@ -65,7 +65,7 @@ def test_palm_buttons_start_if_machine_file_requires_two_hands() -> None:
     rig.start(OVER)
     rig.run(0.1)
     assert rig.state is MachineState.IDLE
-    assert rig.shot.start_refusal == text("executor.press-palms")
+    assert rig.shot.start_refusal_reason == text("executor.press-palms")
     rig.bench.peers.machine.press_start()
     rig.until(MachineState.RUN, limit=0.3)
     rig.bench.close()
@@ -78,7 +78,7 @@ def test_homing_follows_the_machine_file_order_and_precedes_a_cycle() -> None:
     rig.start(OVER)
     rig.run(0.2)
     assert rig.state is MachineState.IDLE
-    assert rig.shot.start_refusal == text("executor.not-homed", axes="X, Z")
+    assert rig.shot.start_refusal_reason == text("executor.not-homed", axes="X, Z")
     order: list[str] = []
 
     def note(shot: object) -> None:

@@ -77,9 +77,9 @@ def test_random_frames_raise_no_exception_and_any_fault_stops_all(
     sample = axes.sample()
     if sample.fault:
         assert not sample.enabled
-    before = bench.peers.machine.get_true_position()
+    before = bench.peers.machine.get_true_positions()
     bench.run(0.1)
-    assert bench.peers.machine.get_true_position() == before
+    assert bench.peers.machine.get_true_positions() == before
     bench.close()
 
 

@@ -13,7 +13,7 @@ from core.executor.executor import Executor
 from core.executor.snapshot import MachineState
 from core.ports import MachinePorts
 from drivers.canopen.canopen_encoder import MeasuredSpindle
-from drivers.inverter.command_monitor import SpeedComparison
+from drivers.inverter.command_monitor import SpeedComparator
 from drivers.inverter.inverter_spindle import InverterSpindle, create_inverter_control
 from tests.drivers.canopen.bench import can_machine
 from tests.drivers.canopen.test_encoder import OWN
@@ -52,7 +52,7 @@ class MeasuredRig(BusRig):
             get_encoder_fault=ports.spindle.read_fault,
         )
         self.line = Bench(clock, self.inverter, memory, wire, one, spindle)
-        one.open_and_check()
+        one.open_and_check_line()
         self.bench.run(clock.now() - self.clock.now())
         joined = MachinePorts(
             clock=self.clock,
@@ -108,7 +108,7 @@ def test_thread_has_its_programmed_pitch(rig: MeasuredRig) -> None:
     reads: list[tuple[float, float]] = []
 
     def note(_shot: object) -> None:
-        z, turns = rig.bench.peers.machine.get_true_position()[1], rig.bench.peers.plant.spindle.revolutions
+        z, turns = rig.bench.peers.machine.get_true_positions()[1], rig.bench.peers.plant.spindle.revolutions
         reads.append((z, turns))
 
     rig.watch.append(note)
@@ -193,7 +193,7 @@ def test_swapped_motor_cable_is_detected(rig: MeasuredRig) -> None:
 
 def feed(pairs: list[tuple[float, float]], fraction: float = 0.15) -> list[str]:
     """What is said of (measured, given) every tenth of a second."""
-    agreement = SpeedComparison(fraction)
+    agreement = SpeedComparator(fraction)
     return [agreement.compare_speeds(measured, given, 0.1 * i) for i, (measured, given) in enumerate(pairs)]
 
 

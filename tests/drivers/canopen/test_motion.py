@@ -101,12 +101,12 @@ def test_feed_hold_at_a_reversal_point_does_not_start_the_return_move(bench: Can
 
 def test_a_stop_with_power_off_does_not_wait_for_the_queue(moving: CanBench) -> None:
     axes = moving.machine.axes
-    before = moving.peers.machine.get_true_position()[0]
+    before = moving.peers.machine.get_true_positions()[0]
     axes.stop(StopMode.RAMP_OFF)
     moving.run(0.2)
     assert not axes.sample().enabled
     # v²/2a is 2.4 mm, and a SYNC of way
-    assert moving.peers.machine.get_true_position()[0] - before < 2.4 + 1.3
+    assert moving.peers.machine.get_true_positions()[0] - before < 2.4 + 1.3
     assert axes.sample().fault == ""
 
 
@@ -152,7 +152,7 @@ def test_drives_reject_setpoints_when_off_too_fast_or_outside_travel(bench: CanB
         axes.splice(ramp(bench.clock.now() + 0.05, ZERO, 60.0, 0.1))
     assert told.value.reason == "too-early"
     bench.run(0.5)
-    assert bench.peers.machine.get_true_position() == ZERO
+    assert bench.peers.machine.get_true_positions() == ZERO
 
 
 def test_a_path_of_the_shortest_records_never_overfills_the_drives() -> None:

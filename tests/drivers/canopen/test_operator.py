@@ -87,7 +87,7 @@ def test_hold_button_stops_on_the_path_and_bars_start_while_pressed(make: Callab
     rig.bench.peers.machine.press_start()
     rig.run(0.5)
     assert rig.state is MachineState.HOLD
-    assert rig.shot.start_refusal == text("executor.hold-pressed")
+    assert rig.shot.start_refusal_reason == text("executor.hold-pressed")
     rig.bench.peers.machine.release_hold()
     rig.run(0.5)
     rig.bench.peers.machine.press_start()
@@ -217,7 +217,7 @@ def test_handwheel_clicks_over_the_bus_are_thousandths_of_an_inch(turned: Turned
     turned.until(MachineState.IDLE, limit=2.0)
     turned.run(0.3)
     assert turned.shot.demand[1] == pytest.approx(25 * THOU, abs=1e-6)
-    assert turned.bench.peers.machine.get_true_position()[1] == pytest.approx(25 * THOU, abs=0.00254)
+    assert turned.bench.peers.machine.get_true_positions()[1] == pytest.approx(25 * THOU, abs=0.00254)
     turned.spin(-25)
     turned.until(MachineState.IDLE, limit=2.0)
     turned.run(0.3)
@@ -245,15 +245,15 @@ def test_disconnected_handwheel_module_stops_the_axis(turned: Turned) -> None:
     turned.until(MachineState.FAULT, limit=1.0)
     assert turned.shot.wheel == ""
     turned.run(0.5)
-    assert turned.bench.peers.machine.get_true_position()[1] < 100 * THOU
+    assert turned.bench.peers.machine.get_true_positions()[1] < 100 * THOU
 
 
 def test_restarted_handwheel_module_moves_nothing(turned: Turned) -> None:
     turned.spin(50)
     turned.until(MachineState.IDLE, limit=2.0)
-    at = turned.bench.peers.machine.get_true_position()[1]
+    at = turned.bench.peers.machine.get_true_positions()[1]
     turned.bench.peers.nodes["io"].boot_up()
     turned.bench.peers.machine.turn_handwheel(-200)  # back to 0
     turned.run(1.0)
     assert turned.state is MachineState.FAULT
-    assert turned.bench.peers.machine.get_true_position()[1] == pytest.approx(at, abs=1e-3)
+    assert turned.bench.peers.machine.get_true_positions()[1] == pytest.approx(at, abs=1e-3)

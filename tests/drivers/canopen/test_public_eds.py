@@ -20,7 +20,7 @@ from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_table import CanopenTable
-from drivers.canopen.drive_profiles import find_profile
+from drivers.canopen.drive_profiles import find_drive_profile
 from drivers.wakeups import ManualClock
 from tests.drivers.canopen.bench import CanBench, can_machine, cyclic, says
 from tests.drivers.machines import ramp
@@ -34,7 +34,7 @@ pytestmark = pytest.mark.skipif(not FILES, reason="TURNDESK_EDS names no folder 
 def dictionary(path: Path) -> ObjectDictionary:
     """Of the file; the test is skipped where it is none of a drive."""
     try:
-        found = od.load_dictionary(path.name, str(path), od.build_drive_dictionary)
+        found = od.load_object_dictionary(path.name, str(path), od.build_drive_dictionary)
     except DriverError as error:
         pytest.skip(str(error))
     if od.CONTROL not in found or od.TARGET not in found:
@@ -46,7 +46,7 @@ def machine_of(path: Path) -> Machine:
     """The shipped lathe with this drive on its slides, in the best mode that it has."""
     found = dictionary(path)
     told = found.device_information
-    family = find_profile("", told.vendor_number, told.product_name)
+    family = find_drive_profile("", told.vendor_number, told.product_name)
     if family.record_queue is not None:
         machine = can_machine(('drive = "epos2"', f'drive = "{family.name}"'))
     elif od.IP_RECORD in found:

@@ -64,17 +64,17 @@ def test_pvt_record_is_split_where_the_acceleration_jumps() -> None:
     assert find_max_deviation(kink, -0.01, 0.02, (1.0,)) == pytest.approx(9 / 2048 * 3000.0 * 0.02**2)
     cut = fit_longest_piece(kink, -0.01, 20, (0.00127,))
     assert cut.duration_ms < 20
-    assert cut.deviation_counts <= 0.5
+    assert cut.max_deviation_counts <= 0.5
     assert fit_longest_piece(kink, 0.0, 20, (0.00127,)).duration_ms == 20
 
 
 def test_shortest_record_is_used_despite_its_deviation_and_reports_it() -> None:
     cut = fit_longest_piece(lambda t: ((abs(t),), (1.0 if t > 0 else -1.0,)), -0.001, 20, (1e-6,))
     assert cut.duration_ms == 2
-    assert cut.deviation_counts > 1.0
+    assert cut.max_deviation_counts > 1.0
 
 
 def test_straight_line_uses_the_longest_records() -> None:
     line = fit_longest_piece(lambda t: ((5.0 * t, -3.0 * t), (5.0, -3.0)), 1.0, 20, (0.001, 0.001))
     assert line.duration_ms == 20
-    assert line.deviation_counts == pytest.approx(0.0, abs=1e-9)
+    assert line.max_deviation_counts == pytest.approx(0.0, abs=1e-9)

@@ -22,7 +22,7 @@ def test_each_sync_gives_a_sample_row_with_the_drive_positions(bench: CanBench) 
     assert source.sample_rate_hz == pytest.approx(1.0 / bench.machine.config.bus_settings.sync)
     axes = bench.machine.axes
     axes.enable(True)
-    source.take()
+    source.take_samples()
     width = 5 + 3 * len(axes.axes)
     begin = bench.clock.now() + axes.commit + 0.05
     axes.splice(ramp(begin, axes.sample().demand, 30.0, 0.5))
@@ -30,7 +30,7 @@ def test_each_sync_gives_a_sample_row_with_the_drive_positions(bench: CanBench) 
     for _ in range(180):
         bench.tick()
         seen.append(axes.sample())
-    rows = source.take()
+    rows = source.take_samples()
     assert rows.shape[1] == width
     assert np.diff(rows[10:, 0]) == pytest.approx(bench.machine.config.bus_settings.sync, abs=1e-6)
     by_time = {sample.t: sample for sample in seen}
@@ -52,7 +52,7 @@ def test_drive_torque_is_its_load_in_percent(bench: CanBench, monkeypatch: pytes
     source, axes = bench.machine.ports.samples, bench.machine.axes
     assert source is not None
     bench.run(0.2)
-    assert list(source.take()[-1, 1 + 2 * len(axes.axes) : 3 + 2 * len(axes.axes)]) == [-34.5, -34.5]
+    assert list(source.take_samples()[-1, 1 + 2 * len(axes.axes) : 3 + 2 * len(axes.axes)]) == [-34.5, -34.5]
 
 
 def test_drive_without_torque_mapping_reports_no_load_and_starts(

@@ -11,7 +11,7 @@ from core.executor.commands import CycleStart, EnableDrives, FeedHold, Jog, Rese
 from core.executor.snapshot import MachineState
 from core.machine.machine_model import Machine
 from core.ports import DriverError
-from drivers.canopen.canopen_spindle import CanopenCStep, CanopenSpindleC
+from drivers.canopen.canopen_spindle import CanopenCAxis, CAxisModeStep
 from drivers.wakeups import ManualClock
 from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine
@@ -34,7 +34,7 @@ class CBench(CanBench):
     """Drives on."""
 
     @property
-    def c(self) -> CanopenSpindleC:
+    def c(self) -> CanopenCAxis:
         assert self.machine.spindle_c is not None
         return self.machine.spindle_c
 
@@ -99,15 +99,15 @@ def test_orientation_works_with_a_clock_that_advances_on_every_read(
 def test_index_is_searched_only_once(stand: CBench) -> None:
     stand.hold(orient=True)
     stand.c.set_c_mode(False)
-    stand.until(lambda: stand.c.step is CanopenCStep.SPINDLE_MODE, 5.0)
-    seen: list[CanopenCStep] = []
+    stand.until(lambda: stand.c.step is CAxisModeStep.SPINDLE_MODE, 5.0)
+    seen: list[CAxisModeStep] = []
     stopped_somewhere(stand, -1234.0)
     stand.c.set_c_mode(True, True)
     for _ in range(1000):
         stand.tick()
         if stand.c.step not in seen:
             seen.append(stand.c.step)
-    assert CanopenCStep.FIND_INDEX not in seen
+    assert CAxisModeStep.FIND_INDEX not in seen
     assert stand.c.is_c_ready()
     off = (stand.degrees() + 180.0) % 360.0 - 180.0
     assert off == pytest.approx(0.0, abs=0.15)
@@ -122,7 +122,7 @@ def test_spindle_turns_again_only_after_c_mode_ends(stand: CBench) -> None:
     stand.machine.ports.spindle.set_speed(500.0)
     stand.run(0.02)
     assert stand.peers.machine.get_spindle_rpm() == 0.0
-    stand.until(lambda: stand.c.step is CanopenCStep.SPINDLE_MODE, 5.0)
+    stand.until(lambda: stand.c.step is CAxisModeStep.SPINDLE_MODE, 5.0)
     stand.run(1.5)
     assert stand.peers.machine.get_spindle_rpm() == pytest.approx(500.0, abs=2.0)
 
@@ -156,13 +156,15 @@ def test_estop_ends_c_mode_and_nothing_turns_on_release(stand: CBench) -> None:
     assert not stand.c.is_c_ready()
     stand.peers.machine.release_estop()
     stand.run(2.0)
-    assert stand.c.step is CanopenCStep.SPINDLE_MODE
+    assert stand.c.step is CAxisModeStep.SPINDLE_MODE
     assert stand.peers.plant.spindle_drive is not None
     assert not stand.peers.plant.spindle_drive.power_states.is_powered
 
 
-@pytest.mark.parametrize("step", [CanopenCStep.FIND_INDEX, CanopenCStep.SET_POSITION, CanopenCStep.ENGAGED])
-def test_closing_in_any_step_of_c_mode_disables_the_spindle_drive(stand: CBench, step: CanopenCStep) -> None:
+@pytest.mark.parametrize(
+    "step", [CAxisModeStep.FIND_INDEX, CAxisModeStep.SET_POSITION, CAxisModeStep.ENGAGED]
+)
+def test_closing_in_any_step_of_c_mode_disables_the_spindle_drive(stand: CBench, step: CAxisModeStep) -> None:
     drive = stand.peers.plant.spindle_drive
     assert drive is not None
     stand.c.set_c_mode(True, True)
@@ -232,7 +234,7 @@ def test_x_and_c_together_follow_their_path(rig: BusRig) -> None:
     off: list[float] = []
 
     def note(_shot: object) -> None:
-        x = rig.bench.peers.machine.get_true_position()[0]
+        x = rig.bench.peers.machine.get_true_positions()[0]
         if rig.state is MachineState.RUN and 0.5 < x < 12.0:
             off.append(((degrees(rig) - x / 12.7 * 360.0) + 180.0) % 360.0 - 180.0)
 
@@ -257,16 +259,16 @@ def test_feed_hold_and_reset_stop_a_c_move(rig: BusRig) -> None:
     rig.until(MachineState.IDLE, limit=3.0)
     rig.run(3.0)
     assert rig.bench.machine.spindle_c is not None
-    assert rig.bench.machine.spindle_c.step is CanopenCStep.SPINDLE_MODE
+    assert rig.bench.machine.spindle_c.step is CAxisModeStep.SPINDLE_MODE
     assert rig.shot.alarms == ()
 
 
-def once_in(rig: BusRig, c: CanopenSpindleC, step: CanopenCStep, do: Callable[[], None]) -> None:
+def once_in(rig: BusRig, c: CanopenCAxis, step: CAxisModeStep, do: Callable[[], None]) -> None:
     """Do this as the step begins: between two ticks it may have begun and ended."""
-    begun: list[CanopenCStep] = []
+    begun: list[CAxisModeStep] = []
     enter = c._enter
 
-    def entered(new: CanopenCStep, now: float) -> None:
+    def entered(new: CAxisModeStep, now: float) -> None:
         enter(new, now)
         if new is step and not begun:
             begun.append(new)
@@ -278,10 +280,10 @@ def once_in(rig: BusRig, c: CanopenSpindleC, step: CanopenCStep, do: Callable[[]
 
 
 @pytest.mark.parametrize(
-    "step", [CanopenCStep.FIND_INDEX, CanopenCStep.SET_POSITION, CanopenCStep.TURN_TO_POSITION]
+    "step", [CAxisModeStep.FIND_INDEX, CAxisModeStep.SET_POSITION, CAxisModeStep.TURN_TO_POSITION]
 )
 def test_hold_during_c_engagement_stops_it_and_cycle_start_repeats_it(
-    rig: BusRig, step: CanopenCStep
+    rig: BusRig, step: CAxisModeStep
 ) -> None:
     c = rig.bench.machine.spindle_c
     assert c is not None
@@ -305,7 +307,7 @@ def test_missing_spindle_index_raises_an_alarm(rig: BusRig, monkeypatch: pytest.
     assert drive is not None
     monkeypatch.setattr(
         drive.spindle_servo,
-        "set_switch_position",
+        "set_home_position",
         lambda _method: setattr(drive.spindle_servo, "switch", 1e9),
     )
     rig.start("G90G94F300\nM19\nC90S60\nM05\nM30")
@@ -408,26 +410,26 @@ def test_drive_that_restarts_as_c_returns_to_spindle_mode_without_index(rig: Bus
     rig.post(Reset())
     rig.until(MachineState.DISABLED, limit=5.0)
     rig.run(1.0)
-    assert c.step is CanopenCStep.SPINDLE_MODE
-    seen: list[CanopenCStep] = []
+    assert c.step is CAxisModeStep.SPINDLE_MODE
+    seen: list[CAxisModeStep] = []
     rig.watch.append(lambda _shot: seen.append(c.step))
     rig.start("G90G94F300\nM03S600\nG04F1\nM05\nM19\nG04F1\nM05\nM30")
     rig.until(MachineState.IDLE, MachineState.FAULT, limit=60.0)
     assert rig.shot.alarms == ()
-    assert CanopenCStep.FIND_INDEX in seen
+    assert CAxisModeStep.FIND_INDEX in seen
 
 
 @pytest.mark.parametrize(
     "step",
     [
-        CanopenCStep.FIND_INDEX,
-        CanopenCStep.SET_POSITION,
-        CanopenCStep.POWER_ON,
-        CanopenCStep.TURN_TO_POSITION,
-        CanopenCStep.ENGAGED,
+        CAxisModeStep.FIND_INDEX,
+        CAxisModeStep.SET_POSITION,
+        CAxisModeStep.POWER_ON,
+        CAxisModeStep.TURN_TO_POSITION,
+        CAxisModeStep.ENGAGED,
     ],
 )
-def test_estop_in_every_step_of_c_engagement_is_recoverable(rig: BusRig, step: CanopenCStep) -> None:
+def test_estop_in_every_step_of_c_engagement_is_recoverable(rig: BusRig, step: CAxisModeStep) -> None:
     c, drive = rig.bench.machine.spindle_c, rig.bench.peers.plant.spindle_drive
     assert c is not None
     assert drive is not None
@@ -437,7 +439,7 @@ def test_estop_in_every_step_of_c_engagement_is_recoverable(rig: BusRig, step: C
     rig.until(MachineState.ESTOP, limit=0.2)
     rig.run(3.0)
     assert not drive.power_states.is_powered
-    assert c.step is CanopenCStep.SPINDLE_MODE
+    assert c.step is CAxisModeStep.SPINDLE_MODE
     rig.bench.peers.machine.release_estop()
     rig.run(1.0)
     rig.post(EnableDrives())

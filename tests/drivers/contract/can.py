@@ -13,7 +13,7 @@ from app.compose.backends.canopen_backend import connect_canopen_machine
 from core.machine.machine_model import Machine
 from core.ports import ALL_UNKNOWN_PARTS, DriverError, UnknownPart
 from drivers.canopen.canopen_machine import CanopenMachine
-from drivers.driver_host.host_connection import HostConnection, HostLink, clear_host_faults
+from drivers.driver_host.host_connection import HostConnection, HostLink, clear_drive_faults
 from drivers.driver_host.host_ports import create_host_ports
 from drivers.driver_host.host_server import DriverBundle, DriverHost
 from drivers.simulators.plant_controls import PlantControls
@@ -166,7 +166,7 @@ def bus_driven(machine: CanopenMachine) -> DriverBundle:
         machine.run_cycle,
         close=lambda: None,
         get_next_tick_time=machine.get_next_cycle_time,
-        collect_notes=machine.collect_warnings,
+        collect_driver_messages=machine.collect_warnings,
     )
 
 
@@ -212,7 +212,7 @@ class FedCanopen(Canopen):
             self.bench.machine = connect_canopen_machine(self.machine, self.clock, self.peers.process_frames)
             self.host = DriverHost(bus_driven(self.bench.machine))
             self.link = BrokenLink(self.host)
-            return clear_host_faults(self.link)
+            return clear_drive_faults(self.link)
 
         return ConnectionAttempt(begun, synchronous=True)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from app.compose.program_proving import create_proof
 from core.executor.commands import Command, ConfirmStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
@@ -93,7 +93,9 @@ class Control:
 
     def load(self, text: str, *, proved: bool = True) -> Job:
         """With the proof that proving gives; or with one that has nothing against it."""
-        setup = create_setup(self.rig.machine, tool_offsets={1: ToolOffset(0.0, 0.0)}, secondary_offsets={})
+        setup = create_power_up_setup(
+            self.rig.machine, tool_offsets={1: ToolOffset(0.0, 0.0)}, secondary_offsets={}
+        )
         job = make_job(ProgramSource("PART", text), setup)
         proof = Proof(job.digest, ())
         if proved:

@@ -102,7 +102,7 @@ class GrblWorld:
     def press_estop(self) -> None:
         """Its pin, its alarm, and the relay of the spindle."""
         self.set_input("estop", True)
-        self._peer.command_spindle(0.0)
+        self._peer.command_spindle_speed(0.0)
         self._peer.output_states.update(flood=False, mist=False)
         self._peer.raise_alarm(10)
         self._motor.remove_power(self._peer.clock.now())
@@ -126,7 +126,7 @@ class GrblWorld:
 
     def spindle_ignores_stop(self) -> None:
         """Its inverter no longer obeys."""
-        self._motor.faults.ignores_stop = True
+        self._motor.faults.is_stop_ignored = True
 
     def spindle_dies(self) -> None:
         """The belt slips."""
@@ -204,7 +204,7 @@ class Grblhal(Rig):
 
     def _motor_fault(self) -> None:
         """As its firmware does on this input: all off, then the alarm."""
-        self.peer.command_spindle(0.0)
+        self.peer.command_spindle_speed(0.0)
         self.peer.output_states.update(flood=False, mist=False)
         self.peer.raise_alarm(17)
 

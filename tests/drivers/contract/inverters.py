@@ -9,7 +9,11 @@ from functools import partial
 from typing import ClassVar
 
 import resources
-from app.compose.backends.inverter_backend import FaultClearingAxes, find_unknown_parts, halt_with_inverter
+from app.compose.backends.inverter_backend import (
+    FaultClearingAxes,
+    find_unknown_machine_parts,
+    halt_inverter_and_machine,
+)
 from app.compose.machine.machine_files import parse_machine
 from core.ports import UnknownPart
 from drivers.inverter.command_monitor import PRESS_ESTOP_TEXT
@@ -90,7 +94,7 @@ class OnALine(Simulated):
         self.wire = BenchWire(far_end(self.family, self.inverter)[1], self.clock)
         self.attendant = create_inverter_control(config(self.family), self.wire.opened, self.clock, FOLDER)
         self.keeper = InverterThread(self.attendant)
-        self.attendant.open_and_check()
+        self.attendant.open_and_check_line()
         ports = self.ports
         spindle = InverterSpindle(
             config(self.family),
@@ -105,8 +109,8 @@ class OnALine(Simulated):
             axes=FaultClearingAxes(ports.axes, spindle.clear_fault),
             spindle=spindle,
             gear=None,
-            halt_machine=partial(halt_with_inverter, ports, spindle),
-            unknown=partial(find_unknown_parts, ports, spindle),
+            halt_machine=partial(halt_inverter_and_machine, ports, spindle),
+            unknown=partial(find_unknown_machine_parts, ports, spindle),
             spindle_lag=spindle.get_line_delay,
         )
         self.world = InverterWorld(self.hands, ports.io.get_outputs)

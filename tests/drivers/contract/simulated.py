@@ -10,7 +10,7 @@ from app.compose.backends.simulated_backend import create_simulation
 from app.compose.machine.machine_files import load_machine
 from core.machine.machine_model import InputModel, Machine
 from core.ports import ALL_UNKNOWN_PARTS, DriverError, MachinePorts
-from drivers.driver_host.host_connection import HostConnection, HostLink, InProcessLink, clear_host_faults
+from drivers.driver_host.host_connection import HostConnection, HostLink, InProcessLink, clear_drive_faults
 from drivers.driver_host.host_messages import Message
 from drivers.driver_host.host_ports import create_host_ports
 from drivers.driver_host.host_server import DriverBundle, DriverHost
@@ -173,7 +173,7 @@ class Fed(Simulated):
                 raise DriverError("the driver host does not start", "feeder-gone")
             self.host = DriverHost(simulation_driven(self.inner, self.hands))
             self.link = BrokenLink(self.host)
-            return clear_host_faults(self.link)
+            return clear_drive_faults(self.link)
 
         return ConnectionAttempt(begun, synchronous=True)
 

@@ -25,7 +25,7 @@ from core.ports import (
     UnknownPart,
 )
 from drivers.operator_station import OnScreenStation
-from drivers.setpoint_queue import JunctionTolerance, SetpointQueue, check_limits
+from drivers.setpoint_queue import JunctionTolerance, SetpointQueue, check_setpoint_limits
 from drivers.simulators.plant_config import SimConfig
 from drivers.simulators.plant_terminals import SimulatedTerminals
 from drivers.simulators.spindle_motor import SpindleMotor
@@ -92,7 +92,7 @@ class BoardAxes:
         """Queue setpoints. Raises DriverError."""
         now = self.poll()
         self._need_power()
-        check_limits(segments, self._config.axes, self._homed)
+        check_setpoint_limits(segments, self._config.axes, self._homed)
         self._queue.splice_segments(segments, now)
 
     def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -159,13 +159,13 @@ class BoardAxes:
 
     def _power_lost(self) -> None:
         """Forget the setpoints, and the home of each axis that only counts."""
-        self._queue.reset_to(self._board.place)
+        self._queue.reset_to_position(self._board.place)
         self._homed = [axis.absolute for axis in self._config.axes]
         self._homing, self._off_at = None, NEVER
 
     def _reference(self, homed: int) -> None:
         self._board.place = tuple(0.0 if n == homed else p for n, p in enumerate(self._board.place))
-        self._queue.reset_to(self._board.place)
+        self._queue.reset_to_position(self._board.place)
         self._homed[homed], self._homing = True, None
 
 
@@ -286,7 +286,7 @@ class BoardWorld:
 
     def spindle_ignores_stop(self) -> None:
         """Make the inverter ignore stops."""
-        self._board.motor.faults.ignores_stop = True
+        self._board.motor.faults.is_stop_ignored = True
 
     def spindle_dies(self) -> None:
         """Make the belt slip."""

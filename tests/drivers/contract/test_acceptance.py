@@ -145,5 +145,5 @@ def test_program_changed_since_its_proof_is_refused(control: Control) -> None:
     control.post(LoadJob(other, Proof(job.digest, ())))
     control.press()
     assert control.state is MachineState.IDLE
-    assert text("executor.other-proof") in control.shot.start_refusal
+    assert text("executor.other-proof") in control.shot.start_refusal_reason
     assert control.nothing_moves()

@@ -69,7 +69,7 @@ def test_thread_is_refused_before_cutting_without_an_encoder(control: Control) -
         pytest.skip("it has an encoder: its threads are cut, and tried above")
     control.start(THREAD)
     control.until(MachineState.FAULT, MachineState.IDLE, limit=5.0)
-    assert "encoder" in control.shot.start_refusal + "".join(a.cause for a in control.shot.alarms)
+    assert "encoder" in control.shot.start_refusal_reason + "".join(a.cause for a in control.shot.alarms)
     assert control.world.place()[1] > 0.2 * INCH - 0.01
 
 

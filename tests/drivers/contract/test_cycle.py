@@ -94,7 +94,7 @@ def test_hold_button_holds_and_bars_start_while_pressed(control: Control) -> Non
     control.until(MachineState.HOLD, limit=0.4)
     control.press()
     assert control.state is MachineState.HOLD
-    assert control.shot.start_refusal == text("executor.hold-pressed")
+    assert control.shot.start_refusal_reason == text("executor.hold-pressed")
     control.world.release_hold()
     control.press()
     control.until(MachineState.RUN, limit=0.1)
@@ -165,7 +165,7 @@ def test_cycle_runs_after_homing(lost: Rig) -> None:
     control = Control(lost)
     control.start("G90G94F300\nX.1Z.1\nM30\n")
     assert control.state is MachineState.IDLE
-    assert "homed" in control.shot.start_refusal
+    assert "homed" in control.shot.start_refusal_reason
     control.post(HomeAxes())
     control.until(MachineState.HOMING, limit=0.1)
     control.until(MachineState.IDLE)

@@ -8,7 +8,7 @@ import pytest
 
 import resources
 from app.compose.machine.machine_files import load_shipped_machine, parse_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from app.compose.program_proving import create_proof
 from core.executor.commands import LoadJob
 from core.executor.job import make_job
@@ -51,7 +51,7 @@ def start(control: Control) -> None:
     machine = control.rig.machine
     job = make_job(
         ProgramSource("PART.MPF", PROGRAM),
-        create_setup(machine, tool_offsets={1: ToolOffset(quadrant=3)}, secondary_offsets={}),
+        create_power_up_setup(machine, tool_offsets={1: ToolOffset(quadrant=3)}, secondary_offsets={}),
     )
     proof = create_proof(job, prove(job.source, job.setup, machine))
     assert not proof.errors, proof.errors

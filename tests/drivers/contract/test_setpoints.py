@@ -114,9 +114,9 @@ def test_full_block_controller_rejects_blocks_and_runs_each_ticket_once(powered:
     assert full
     assert taken == list(range(taken[0], taken[0] + 200))
     done, places = [], []
-    while sink.state().last_done_ticket < taken[-1]:
+    while sink.state().last_completed_ticket < taken[-1]:
         powered.tick()
-        done.append(sink.state().last_done_ticket)
+        done.append(sink.state().last_completed_ticket)
         places.append(powered.world.place()[0])
     assert done == sorted(done)
     assert places == sorted(places)

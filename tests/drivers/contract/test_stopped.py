@@ -79,7 +79,7 @@ def test_fault_stops_all_and_only_the_operator_can_resume(broken: Broken) -> Non
     parts = control.shot.parts
     control.start(SHORT)
     if outcome.homeless:
-        assert re.fullmatch(pattern("executor.not-homed"), control.shot.start_refusal)
+        assert re.fullmatch(pattern("executor.not-homed"), control.shot.start_refusal_reason)
         return
     control.until(MachineState.IDLE, limit=20.0)
     assert control.shot.parts == parts + 1

@@ -121,7 +121,7 @@ def test_control_pause_at_standstill_is_announced_if_outputs_turned_off(
         MachineState.HOLD,
         MachineState.PROGRAM_STOP,
     }  # nobody has had the time to read it
-    assert re.fullmatch(pattern("executor.look-first"), control.shot.start_refusal)
+    assert re.fullmatch(pattern("executor.look-first"), control.shot.start_refusal_reason)
     control.run(2.0)
     assert on(control) == {"collet"}
     assert control.world.rpm() == 0.0

@@ -9,7 +9,7 @@ import pytest
 
 from core.executor.commands import StopJog, TouchOffTool
 from core.executor.snapshot import MachineState, TouchPhase, TouchResult
-from core.machine.setter_table import SetterModel
+from core.machine.setter_table import ToolSetterModel
 from core.ports import PROBE_INPUT
 from tests.drivers.contract.conftest import need
 from tests.drivers.contract.control import Control
@@ -18,7 +18,7 @@ from tests.texts import pattern, text
 
 FACE = -6.0  # mm of X: the setter is touched by slides that go beyond, from 0 towards −
 SLOW = 0.2  # mm/s
-SETTER = SetterModel(
+SETTER = ToolSetterModel(
     x=0.0, z=0.0, width=2.0, overtravel=4.0, speed=10.0, slow=SLOW, search=12.0, back_off=1.0
 )
 LEASE = 0.2

@@ -69,7 +69,7 @@ class SimWorld:
 
     def place(self) -> tuple[float, float]:
         """X and Z."""
-        x, z, *_ = self.hands.get_true_position()
+        x, z, *_ = self.hands.get_true_positions()
         return x, z
 
     def rpm(self) -> float:

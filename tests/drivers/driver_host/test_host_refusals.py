@@ -13,7 +13,7 @@ import pytest
 from core.ports import DriverError
 from drivers import process_messages
 from drivers.driver_host import host_loop
-from drivers.driver_host.host_connection import HostConnection, InProcessLink, SocketLink, clear_host_faults
+from drivers.driver_host.host_connection import HostConnection, InProcessLink, SocketLink, clear_drive_faults
 from drivers.driver_host.host_messages import NO_NUMBERS, Message, encode_message, parse_floats
 from drivers.driver_host.host_ports import create_host_ports
 from drivers.driver_host.host_server import DriverBundle, DriverHost
@@ -123,10 +123,10 @@ def test_driver_host_that_cannot_be_restarted_reports_that_it_is_gone() -> None:
 def test_a_reset_that_the_drives_refuse_starts_no_driver_host(monkeypatch: pytest.MonkeyPatch) -> None:
     sim, _ = simulation()
     link = InProcessLink(DriverHost(simulation_driven(sim.ports, sim.machine)))
-    assert clear_host_faults(link) is link
+    assert clear_drive_faults(link) is link
     monkeypatch.setattr(sim.ports.axes, "clear_fault", refuse("Z: overcurrent"))
     with raises_code(DriverError, "driver", "Z: overcurrent"):
-        clear_host_faults(link)
+        clear_drive_faults(link)
 
 
 def test_reply_received_in_pieces_is_reassembled(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -18,7 +18,7 @@ import resources
 from app.compose.backends.backend_entry import NO_PRIORITY_TEXT
 from app.compose.backends.driver_host_process import (
     DriverHostProcess,
-    get_setpoint_interval,
+    get_setpoint_interval_s,
     make_priority_warning,
 )
 from app.compose.machine.machine_files import parse_machine
@@ -151,7 +151,7 @@ def test_denied_real_time_priority_is_reported(monkeypatch: pytest.MonkeyPatch) 
         raise PermissionError(1, "Operation not permitted")
 
     monkeypatch.setattr(os, "sched_setscheduler", refused)
-    (told,) = host_loop.request_real_time()
+    (told,) = host_loop.request_real_time_scheduling()
     assert "(Operation not permitted)" in told
 
 
@@ -164,11 +164,11 @@ def test_request_is_not_handled_shortly_before_a_sync_is_due() -> None:
     ours.sendall(encode_message(Message({"do": "horizon"}, NO_NUMBERS)))
     ours.setblocking(False)
     due = clock.now() + 0.0002
-    assert ear.listen_until_due(due, is_punctual=True) == due
+    assert ear.handle_messages_until_due(due, is_punctual=True) == due
     with pytest.raises(BlockingIOError):
         ours.recv(1000)
     clock.advance(0.005)  # a control is not left alone for longer
-    assert ear.listen_until_due(clock.now(), is_punctual=True) == clock.now()
+    assert ear.handle_messages_until_due(clock.now(), is_punctual=True) == clock.now()
     assert ours.recv(1000)
     ours.close()
     theirs.close()
@@ -179,7 +179,7 @@ def test_request_is_not_handled_shortly_before_a_sync_is_due() -> None:
     [("gt75-epos4.toml", 0.002), ("gt75-canopen.toml", 0.0), ("gt75.toml", 0.0)],
 )
 def test_setpoint_interval_applies_to_drives_with_a_setpoint_each_sync(shipped: str, expected: float) -> None:
-    assert get_setpoint_interval(parse_machine(resources.read_machine_file(shipped), shipped)) == expected
+    assert get_setpoint_interval_s(parse_machine(resources.read_machine_file(shipped), shipped)) == expected
 
 
 @pytest.mark.parametrize(
@@ -223,7 +223,7 @@ def asleep(patient: pytest.MonkeyPatch) -> Iterator[tuple[DriverHostProcess, Mac
     ports = create_host_ports(process.connection)
     ports.axes.sample()
     assert ports.wakeup is not None
-    assert ports.wakeup.is_settled()
+    assert ports.wakeup.can_rely_on_wakeups()
     yield process, ports
     if process.process.poll() is None:
         process.process.send_signal(signal.SIGCONT)
@@ -238,9 +238,9 @@ def test_killed_driver_host_wakes_its_control_and_its_successor_does_too(
     process.process.kill()
     assert ports.wakeup.wait_for_wakeup(60.0)
     assert get_fault_code(ports.axes.sample().fault, "driver") == "feeder-gone"
-    assert not ports.wakeup.is_settled()
+    assert not ports.wakeup.can_rely_on_wakeups()
     ports.axes.clear_fault()
-    while process.connection.is_lost and not process.connection.fault:
+    while process.connection.is_host_unavailable and not process.connection.fault:
         ports.axes.sample()
         ports.clock.sleep_until(ports.clock.now() + 0.01)
     assert ports.axes.sample().fault == ""
@@ -264,7 +264,7 @@ def test_driver_host_suspended_during_control_sleep_is_found_at_next_poll(
     sample = ports.axes.sample()
     assert get_fault_code(sample.fault, "driver") == "feeder-silent"
     assert not sample.enabled
-    assert not ports.wakeup.is_settled()
+    assert not ports.wakeup.can_rely_on_wakeups()
 
 
 class Asleep:
@@ -306,5 +306,5 @@ def test_cycle_due_soon_runs_early_with_the_poll_of_a_sleeping_control(
         said = [True]
         monkeypatch.setattr(select, "select", waited)
         ours.sendall(encode_message(Message({"do": "look"}, NO_NUMBERS)))
-        due = ear.listen_until_due(left, is_punctual=punctual)
+        due = ear.handle_messages_until_due(left, is_punctual=punctual)
         assert due == pytest.approx(0.0 if early else left, abs=1e-5)

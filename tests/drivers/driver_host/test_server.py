@@ -98,7 +98,7 @@ def test_samples_recorded_while_the_control_was_late_are_delivered_later(bench: 
     for _ in range(5):
         bench.clock.advance(0.01)
         bench.ports.axes.sample()
-        rows.append(source.take())
+        rows.append(source.take_samples())
     assert [len(each) for each in rows[:2]] == [400, 400]  # no answer is longer than a late control can bear
     found = np.concatenate(rows)
     assert np.diff(found[:, 0]) == pytest.approx(0.001, abs=1e-9)
@@ -106,14 +106,14 @@ def test_samples_recorded_while_the_control_was_late_are_delivered_later(bench: 
     assert found[-1, 0] == pytest.approx(bench.clock.now(), abs=0.002)
     for row in found[::50]:
         assert tuple(row[1:4]) == bench.sim.ports.axes.demand_at(row[0])[0]
-    assert source.take().shape == (0, 14)
+    assert source.take_samples().shape == (0, 14)
 
 
 def test_damaged_sample_batch_is_dropped(bench: Bench) -> None:
     assert bench.ports.samples is not None
     bench.line.sample_batches.append(np.zeros(15))
     bench.line.sample_batches.append(np.zeros(28))
-    assert bench.ports.samples.take().shape == (2, 14)
+    assert bench.ports.samples.take_samples().shape == (2, 14)
 
 
 def test_driver_without_samples_has_no_sample_port_in_driver_host() -> None:
@@ -372,7 +372,7 @@ class Sleeper:
 
     def _ring(self) -> None:
         self.rung += 1
-        self.bell.wake()
+        self.bell.send_wakeup()
 
     def look(self) -> None:
         """As a tick of the control does."""
@@ -387,7 +387,7 @@ class Sleeper:
     def sleeps(self) -> bool:
         """Whether something has rung by the time the driver host has gone round once more."""
         assert self.ports.wakeup is not None
-        assert self.ports.wakeup.is_settled()
+        assert self.ports.wakeup.can_rely_on_wakeups()
         self.ports.wakeup.wait_for_wakeup(0.0)
         self.clock.advance(0.005)
         self.host.run_cycle()
@@ -426,7 +426,7 @@ def test_sleeping_control_is_not_woken_without_a_change(sleeper: Sleeper) -> Non
         assert not sleeper.sleeps()
         sleeper.look()
         assert sleeper.host.is_asleep
-    assert not sleeper.bell.wait(0.0)
+    assert not sleeper.bell.wait_for_wakeup(0.0)
 
 
 @pytest.mark.parametrize(
@@ -453,7 +453,7 @@ def test_change_wakes_the_control_once_per_poll(
         sleeper.clock.advance(0.005)
         sleeper.host.run_cycle()
     assert sleeper.rung == 1
-    assert sleeper.bell.wait(0.0)
+    assert sleeper.bell.wait_for_wakeup(0.0)
     sleeper.host.run_cycle()
     assert sleeper.rung == 1
 
@@ -466,7 +466,7 @@ def test_change_between_last_poll_and_sleep_wakes_the_control(sleeper: Sleeper) 
 def test_control_that_polls_normally_is_not_woken(sleeper: Sleeper) -> None:
     sleeper.sleeps()
     assert sleeper.ports.wakeup is not None
-    sleeper.bell.wake()
+    sleeper.bell.send_wakeup()
     assert sleeper.ports.wakeup.wait_for_wakeup(0.0)  # something was asked for: it is awake
     sleeper.look()
     assert not sleeper.host.is_asleep
@@ -485,7 +485,7 @@ def test_command_ends_the_sleep(sleeper: Sleeper) -> None:
 
 def test_station_action_on_screen_wakes_its_own_control(sleeper: Sleeper) -> None:
     HostStationControls(sleeper.line).press_hold()
-    assert sleeper.bell.wait(0.0)
+    assert sleeper.bell.wait_for_wakeup(0.0)
 
 
 def test_sleeping_control_is_missed_after_half_a_second(sleeper: Sleeper) -> None:
@@ -534,11 +534,11 @@ def test_orphaned_driver_host_does_not_continue_sleeping(sleeper: Sleeper) -> No
 def test_full_or_closed_wakeup_is_not_an_error() -> None:
     bell = ProcessWakeup()
     for _ in range(3000):
-        bell.wake()
-    assert bell.wait(0.0)
-    assert not bell.wait(0.0)
+        bell.send_wakeup()
+    assert bell.wait_for_wakeup(0.0)
+    assert not bell.wait_for_wakeup(0.0)
     bell.close()
-    bell.wake()
+    bell.send_wakeup()
 
 
 @pytest.mark.parametrize(

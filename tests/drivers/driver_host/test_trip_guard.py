@@ -76,15 +76,15 @@ def test_trip_is_acknowledged_only_by_its_number_and_stops_always_pass() -> None
     assert guard.active_trip is not None
     for head in ({"what": "run", "rpm": 100.0}, {"what": "home"}, {"do": "splice"}, {"what": "orient"}):
         with raises_code(DriverError, "late", "0.40 s"):
-            guard.require_allowed(Message(head, ()))
+            guard.require_request_allowed(Message(head, ()))
     for head in ({"what": "run", "rpm": 0.0}, {"what": "stop"}, {"what": "write", "on": False}):
-        guard.require_allowed(Message(head, ()))
+        guard.require_request_allowed(Message(head, ()))
     guard.acknowledge_trip(guard.active_trip.trip_number + 1)
     assert guard.active_trip is not None
     guard.acknowledge_trip(guard.active_trip.trip_number)
     assert guard.active_trip is None
     guard.acknowledge_trip(1)
-    guard.require_allowed(Message({"what": "home"}, ()))
+    guard.require_request_allowed(Message({"what": "home"}, ()))
 
 
 # --- the spindle drive as C: its index search turns the spindle -------------------------------------------
@@ -119,7 +119,7 @@ def test_c_is_not_engaged_before_the_trip_is_acknowledged(silent: SilentBench, o
 def test_commands_that_move_nothing_pass_during_a_trip(command: dict[str, object]) -> None:
     guard = TripGuard()
     guard.record_trip(0.4, ["coolant"], is_spindle_stopped=True)
-    guard.require_allowed(Message({"do": "do", **command}, NO_NUMBERS))
+    guard.require_request_allowed(Message({"do": "do", **command}, NO_NUMBERS))
 
 
 @pytest.mark.parametrize(
@@ -137,10 +137,10 @@ def test_commands_that_move_nothing_pass_during_a_trip(command: dict[str, object
 )
 def test_commands_that_move_something_are_rejected_during_a_trip(head: dict[str, object]) -> None:
     guard = TripGuard()
-    guard.require_allowed(Message(head, NO_NUMBERS))
+    guard.require_request_allowed(Message(head, NO_NUMBERS))
     guard.record_trip(0.4, ["coolant"], is_spindle_stopped=True)
     with pytest.raises(TrippedError):
-        guard.require_allowed(Message(head, NO_NUMBERS))
+        guard.require_request_allowed(Message(head, NO_NUMBERS))
 
 
 def test_silence_during_the_index_search_of_c_releases_the_drive_and_is_a_trip(silent: SilentBench) -> None:

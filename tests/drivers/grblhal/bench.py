@@ -9,7 +9,7 @@ from typing import Any
 import resources
 from app.compose.backends.grblhal_backend import create_grblhal_config
 from app.compose.machine.machine_files import parse_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from app.compose.program_proving import create_proof
 from core.executor.commands import Command, ConfirmStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
@@ -124,7 +124,9 @@ class GrblBench:
 
     def load(self, text: str) -> Job:
         """With the proof that proving gives, which tells what the program needs."""
-        setup = create_setup(self.model, tool_offsets={1: ToolOffset(0.0, 0.0)}, secondary_offsets={})
+        setup = create_power_up_setup(
+            self.model, tool_offsets={1: ToolOffset(0.0, 0.0)}, secondary_offsets={}
+        )
         job = make_job(ProgramSource("PART", text), setup)
         proof = create_proof(job, prove(job.source, job.setup, self.model))
         assert not proof.errors, proof.errors

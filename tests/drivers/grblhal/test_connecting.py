@@ -104,7 +104,7 @@ def test_settings_are_written_after_reset_of_a_critical_alarm() -> None:
     assert made.controller.fault == ""
     assert firmware.alarm_number == 0
     assert firmware.registers[13] == 0.0
-    assert made.block_controller.state().start_refusal == ""
+    assert made.block_controller.state().start_refusal_reason == ""
 
 
 @pytest.mark.parametrize("at", [0.41, 0.42, 0.43, 0.44, 0.5])

@@ -161,7 +161,7 @@ def test_alarm_in_motion_loses_the_position(alarm: int) -> None:
     assert not any(bench.shot.homed[:2])
     bench.load(LONG)
     bench.press()
-    assert "homed" in bench.shot.start_refusal
+    assert "homed" in bench.shot.start_refusal_reason
     for axis in "XZ":
         bench.post(HomeAxes(axis))
         bench.until(MachineState.IDLE)
@@ -214,7 +214,7 @@ def test_controller_that_requires_homing_is_homed_axis_by_axis() -> None:
     bench.run(0.5)
     bench.load("G90G94F300\nX.3\nM30\n")
     bench.press()
-    assert "homed" in bench.shot.start_refusal
+    assert "homed" in bench.shot.start_refusal_reason
     bench.post(HomeAxes())
     bench.until(MachineState.IDLE, limit=10.0)
     assert all(bench.shot.homed)

@@ -190,7 +190,7 @@ def test_receive_buffer_with_less_than_100_bytes_free_reads_nothing() -> None:
     desk.say(lines)
     assert desk.firmware.free_receive_byte_count == 100
     desk.say(START)
-    assert desk.firmware.state == "Hold:0"
+    assert desk.firmware.state_name == "Hold:0"
     assert desk.firmware.lost_byte_count == 0
 
 

@@ -36,7 +36,7 @@ def test_program_that_needs_an_absent_output_is_refused_before_start() -> None:
     assert not bench.alarms()
     bench.start(PART.format("M13\nM12\n"))
     assert bench.state is MachineState.IDLE
-    assert text("executor.no-such-for-line", line=3, what="output collet") in bench.shot.start_refusal
+    assert text("executor.no-such-for-line", line=3, what="output collet") in bench.shot.start_refusal_reason
 
 
 def test_output_missing_from_the_machine_file_is_a_file_error() -> None:

@@ -137,7 +137,7 @@ def test_cycle_start_at_the_controller_does_not_end_a_hold_of_turndesk() -> None
     bench.peer.receive_bytes(b"\x81")
     bench.run(1.0)
     assert bench.state is MachineState.HOLD
-    assert bench.peer.state == "Hold:0"
+    assert bench.peer.state_name == "Hold:0"
     bench.press()
     bench.until(MachineState.IDLE)
     assert bench.peer.motion.position == pytest.approx((25.4, -50.8))

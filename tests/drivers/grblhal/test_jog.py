@@ -64,7 +64,7 @@ def let_go_on_a_slow_line() -> GrblBench:
     while bench.machine.controller.line_sender.is_idle:
         hold_key(bench, 0.04)
     bench.post(StopJog())
-    assert bench.machine.controller.is_busy
+    assert bench.machine.controller.is_script_running
     return bench
 
 
@@ -145,4 +145,4 @@ def test_a_program_cannot_be_started_in_a_jog() -> None:
     bench.load("G90G94F300\nX.3\nM30\n")
     hold_key(bench, 0.3)
     bench.press()
-    assert "jogged" in bench.shot.start_refusal or bench.state is MachineState.JOG
+    assert "jogged" in bench.shot.start_refusal_reason or bench.state is MachineState.JOG

@@ -79,7 +79,7 @@ def test_a_thread_is_refused_before_the_start() -> None:
     bench = GrblBench(quirks=quirky(**AS_IT_COMES))
     bench.start(THREAD.replace("S600", "S900"))
     assert bench.state is MachineState.IDLE
-    assert "threads" in bench.shot.start_refusal
+    assert "threads" in bench.shot.start_refusal_reason
     assert bench.wire.lines() == []
 
 

@@ -75,12 +75,12 @@ def test_a_controller_that_has_restarted_meanwhile_has_to_be_homed(homes: bool) 
     """It counts from 0 where it stands, under G17: nobody may believe that place."""
     bench = GrblBench(grbl_machine(*HOMING), quirky(homing=True)) if homes else GrblBench()
     if homes:
-        bench.peer.homed_axes = 5
+        bench.peer.homed_axis_mask = 5
     bench.ready()
     bench.run(0.5)
     bench.wire.cut = True
     bench.run(0.5)
-    bench.peer.power_cycle()
+    bench.peer.cycle_power()
     bench.wire.cut = False
     bench.post(Reset())
     bench.run(2.0)
@@ -88,7 +88,7 @@ def test_a_controller_that_has_restarted_meanwhile_has_to_be_homed(homes: bool) 
     bench.post(EnableDrives())
     bench.run(0.5)
     bench.press()
-    assert re.fullmatch(pattern("executor.not-homed"), bench.shot.start_refusal)
+    assert re.fullmatch(pattern("executor.not-homed"), bench.shot.start_refusal_reason)
 
 
 def test_controller_reset_by_its_button_retains_a_nonzero_position() -> None:

@@ -33,7 +33,7 @@ def test_block_arrives_exactly_at_its_target() -> None:
     assert ticket == 1
     assert not bench.machine.block_controller.state().is_at_rest
     bench.alone(1.0)
-    assert bench.machine.block_controller.state().last_done_ticket == 1
+    assert bench.machine.block_controller.state().last_completed_ticket == 1
     assert bench.machine.axes.sample().actual[:2] == (3.14159, -2.71828)
 
 
@@ -60,7 +60,7 @@ def test_stop_brakes_and_discards_the_queued_blocks(how: StopMode) -> None:
     assert not bench.peer.motion.block_queue
     assert bench.machine.axes.sample().enabled is (how is StopMode.RAMP_HOLD)
     assert not bench.machine.axes.sample().moving
-    assert bench.machine.block_controller.state().start_refusal == ""
+    assert bench.machine.block_controller.state().start_refusal_reason == ""
 
 
 def test_the_spindle_turns_and_stops() -> None:

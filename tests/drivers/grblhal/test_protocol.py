@@ -204,15 +204,15 @@ def test_unanswered_bytes_never_exceed_the_buffer() -> None:
     for _ in range(20):
         stream.send_line(line, 0.0)
     assert len(sent) == 8
-    assert not stream.can_send("x")
-    stream.handle_reply(0)
+    assert not stream.can_send_now("x")
+    stream.assign_reply(0)
     stream.send_waiting_lines(0.0)
     assert len(sent) == 9
 
 
 def test_unexpected_reply_is_detected() -> None:
     stream = LineSender(lambda _: None)
-    assert stream.handle_reply(0) is None
+    assert stream.assign_reply(0) is None
 
 
 @pytest.mark.parametrize(

@@ -58,8 +58,10 @@ def test_slow_axis_limits_only_its_own_share_of_the_speed() -> None:
     lines = bench.wire.lines()
     assert lines[0].startswith("N1G0X0Z")
     assert all("G0" in line for line in lines[:4])
-    assert bench.machine.block_controller.get_max_line_speed(0.0, 1.0) == pytest.approx(127.0)
-    assert bench.machine.block_controller.get_max_line_speed(1.0, 1.0) == pytest.approx(25.4 * math.sqrt(2.0))
+    assert bench.machine.block_controller.get_max_directional_speed(0.0, 1.0) == pytest.approx(127.0)
+    assert bench.machine.block_controller.get_max_directional_speed(1.0, 1.0) == pytest.approx(
+        25.4 * math.sqrt(2.0)
+    )
 
 
 def test_faster_controller_runs_no_faster_than_proved() -> None:
@@ -95,7 +97,7 @@ def test_active_block_is_the_block_shown() -> None:
     bench.until_true(lambda shot: shot.line == 4)
     bench.run(2.0)
     assert bench.shot.block_text.startswith("G01Z-2")
-    assert bench.shot.next_text.startswith("X1")
+    assert bench.shot.next_block_text.startswith("X1")
     bench.until_true(lambda shot: shot.line == 5)
     assert bench.peer.motion.position[1] == pytest.approx(-50.8, abs=2.0)
 
@@ -175,7 +177,7 @@ def test_unsupported_function_is_refused_before_the_start(text: str, expected: s
     )
     bench.start(f"G90G94F300\nX.5Z.2\n{text}\nM30\n")
     assert bench.state is MachineState.IDLE
-    assert expected in bench.shot.start_refusal
+    assert expected in bench.shot.start_refusal_reason
     assert bench.wire.lines() == []
 
 
@@ -191,7 +193,7 @@ def test_a_thread_with_a_pull_out_is_refused_before_the_start() -> None:
     bench = GrblBench()
     bench.start("G90G94F300\nM03S600\nX.5Z.2\nX.25\nG33X.2Z-.5I.025K.05P\nG00Z1\nM30\n")
     assert bench.state is MachineState.IDLE
-    assert "pull-out" in bench.shot.start_refusal
+    assert "pull-out" in bench.shot.start_refusal_reason
 
 
 def test_outputs_are_switched_and_inputs_are_awaited() -> None:

@@ -10,7 +10,7 @@ import pytest
 from core.executor.commands import Reset
 from core.executor.snapshot import MachineState
 from core.faults import get_fault_code
-from drivers.grblhal.grblhal_state import MAX_FIRMWARE_WAIT_S, get_max_firmware_wait
+from drivers.grblhal.grblhal_state import MAX_FIRMWARE_WAIT_S, get_firmware_wait_s
 from drivers.simulators.grblhal_firmware import GrblFirmware
 from drivers.simulators.plant_config import SimSpindle
 from drivers.simulators.spindle_motor import SpindleMotor
@@ -95,7 +95,7 @@ def test_a_spindle_stop_does_not_wait_for_the_speed(held: bool) -> None:
     bench.alone(2.0)
     assert bench.peer.program.active_wait is not None
     if held:
-        bench.machine.block_controller.hold_on_path()
+        bench.machine.block_controller.stop_on_path()
         bench.alone(0.3)
     bench.machine.spindle.set_speed(0.0)
     bench.alone(1.0)
@@ -129,7 +129,7 @@ def test_lost_reply_to_m3_is_missed_after_the_longest_wait() -> None:
     ],
 )
 def test_the_longest_wait_follows_the_settings(line: str, settings: dict[int, str], seconds: float) -> None:
-    assert get_max_firmware_wait(line, settings) == seconds
+    assert get_firmware_wait_s(line, settings) == seconds
 
 
 def test_firmware_reports_during_the_spindle_wait_but_reads_no_line() -> None:

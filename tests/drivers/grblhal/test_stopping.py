@@ -26,7 +26,7 @@ def ends_well(bench: GrblBench) -> None:
     assert bench.peer.alarm_number == 0
     assert not bench.peer.motion.block_queue
     assert bench.machine.controller.is_position_reliable
-    assert bench.machine.block_controller.state().start_refusal == ""
+    assert bench.machine.block_controller.state().start_refusal_reason == ""
     assert bench.peer.program.modes.plane == "G18"
 
 
@@ -69,7 +69,7 @@ def test_stop_during_a_hold_starts_no_motion() -> None:
     bench = powered()
     bench.machine.block_controller.submit_block(LineOperation(50.0, 0.0, 40.0))
     bench.alone(0.5)
-    bench.machine.block_controller.hold_on_path()
+    bench.machine.block_controller.stop_on_path()
     bench.alone(0.5)
     at = bench.peer.motion.position
     bench.machine.axes.stop(StopMode.RAMP_OFF)
@@ -114,7 +114,7 @@ def test_spindle_is_stopped_by_its_toggle_in_a_hold_and_stays_off() -> None:
     bench.alone(1.0)
     bench.machine.block_controller.submit_block(LineOperation(50.0, 0.0, 10.0))
     bench.alone(0.5)
-    bench.machine.block_controller.hold_on_path()
+    bench.machine.block_controller.stop_on_path()
     bench.alone(0.5)
     bench.machine.spindle.set_speed(0.0)
     bench.alone(1.5)
@@ -134,7 +134,7 @@ def test_spindle_that_does_not_stop_in_a_hold_is_reported() -> None:
     bench.alone(1.0)
     bench.machine.block_controller.submit_block(LineOperation(50.0, 0.0, 10.0))
     bench.alone(0.5)
-    bench.machine.block_controller.hold_on_path()
+    bench.machine.block_controller.stop_on_path()
     bench.alone(0.5)
     bench.machine.spindle.set_speed(0.0)
     bench.alone(1.5)
@@ -169,7 +169,7 @@ def test_full_buffer_never_prevents_the_resume_command() -> None:
         bench.alone(0.0)
     assert sent >= 40
     bench.alone(0.2)
-    bench.machine.block_controller.hold_on_path()
+    bench.machine.block_controller.stop_on_path()
     bench.alone(0.3)
     while (
         bench.machine.block_controller.submit_block(
@@ -180,7 +180,7 @@ def test_full_buffer_never_prevents_the_resume_command() -> None:
         sent += 1
     bench.machine.block_controller.resume()
     bench.alone(0.5)
-    assert bench.peer.state == "Run"
+    assert bench.peer.state_name == "Run"
     assert bench.machine.controller.fault == ""
 
 

@@ -84,7 +84,7 @@ def test_spindle_without_variable_speed_is_refused_before_the_start() -> None:
     bench.start(FACE)
     assert bench.state is MachineState.IDLE
     assert re.match(
-        pattern("executor.controller-cannot", what="constant surface speed"), bench.shot.start_refusal
+        pattern("executor.controller-cannot", what="constant surface speed"), bench.shot.start_refusal_reason
     )
 
 

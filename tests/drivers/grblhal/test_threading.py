@@ -44,7 +44,7 @@ def test_without_an_encoder_threads_are_refused_before_the_start() -> None:
     bench = GrblBench(quirks=quirky(encoder=False))
     bench.start(THREAD)
     assert bench.state is MachineState.IDLE
-    assert "threads" in bench.shot.start_refusal
+    assert "threads" in bench.shot.start_refusal_reason
 
 
 def test_thread_pass_runs_at_full_override_which_is_restored_afterwards() -> None:

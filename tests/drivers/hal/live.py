@@ -13,7 +13,7 @@ import pytest
 
 from app.compose.backends.connection import connect_machine
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from app.compose.program_proving import create_proof
 from core.executor.commands import Command, ConfirmStart, CycleStart, EnableDrives, LoadJob, Reset
 from core.executor.executor import TICK_PAUSE_S, Executor
@@ -118,7 +118,9 @@ class LiveLathe:
 
     def start(self, text: str) -> None:
         """A program, proved, and Cycle Start."""
-        setup = create_setup(self.machine, tool_offsets={1: ToolOffset(0.0, 0.0)}, secondary_offsets={})
+        setup = create_power_up_setup(
+            self.machine, tool_offsets={1: ToolOffset(0.0, 0.0)}, secondary_offsets={}
+        )
         job = make_job(ProgramSource("PART", text), setup)
         proof = create_proof(job, prove(job.source, job.setup, self.machine))
         assert not proof.errors, proof.errors
@@ -128,7 +130,7 @@ class LiveLathe:
             looked = self.clock.now() + 0.9
             self.until(lambda _: self.clock.now() > looked)
         self.post(CycleStart())
-        assert not self.shot.start_refusal, self.shot.start_refusal
+        assert not self.shot.start_refusal_reason, self.shot.start_refusal_reason
 
     def run(self, text: str) -> None:
         """A program to its end."""

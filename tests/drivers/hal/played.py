@@ -68,11 +68,11 @@ class Bench:
 
     @property
     def x(self) -> float:
-        return self.far.plant_controls.get_true_position()[0]
+        return self.far.plant_controls.get_true_positions()[0]
 
     @property
     def z(self) -> float:
-        return self.far.plant_controls.get_true_position()[1]
+        return self.far.plant_controls.get_true_positions()[1]
 
 
 @contextmanager

@@ -88,7 +88,7 @@ def test_thread_for_revolutions_already_passed_stops_the_axes(bench: Bench) -> N
 def test_mismatch_with_the_stream_played_by_hal_stops_the_axes(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(bench.far.bridge.row_streams, "finish_change", lambda _plays_b: False)
+    monkeypatch.setattr(bench.far.bridge.row_streams, "finish_stream_change", lambda _plays_b: False)
     bench.run(2 * TICK)
     assert bench.bridge[1] == "late"
     assert "HAL" in bench.bridge[0]

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from drivers.hal.bridge.row_streams import RowStreams, SetpointRow
+from drivers.hal.bridge.row_streams import RowStreamPair, SetpointRow
 
 PERIOD = 0.001  # s
 SPEED = 20.0  # mm/s
@@ -45,7 +45,7 @@ class Thread:
     def __init__(self) -> None:
         self.streams = Rows(), Rows()
         self.pins: dict[str, float] = {}
-        self.rows = RowStreams(self.streams, self.pins)
+        self.rows = RowStreamPair(self.streams, self.pins)
         self.plays = 0
         self.played: list[SetpointRow] = []
         for n in range(1, AHEAD + 1):
@@ -61,7 +61,7 @@ class Thread:
     def seen(self) -> bool:
         """The bridge looks again."""
         self.rows.record_played_row(int(self.played[-1][0]))
-        return self.rows.finish_change(bool(self.plays))
+        return self.rows.finish_stream_change(bool(self.plays))
 
     def late(self, what: Callable[[float], SetpointRow], at: float, past: int) -> None:
         """Asked for, but the thread was past it by so many rows before it has heard of it."""
@@ -139,6 +139,6 @@ def test_setpoints_already_played_by_hal_are_accepted_if_they_match(thread: Thre
     thread.run(10)
     thread.seen()
     assert thread.rows.find_first_recallable_row(0.012) is None
-    assert thread.rows.matches_locked_rows(0.012, stops_at(0.030))
-    assert not thread.rows.matches_locked_rows(0.012, stops_at(0.014))
-    assert not thread.rows.matches_locked_rows(-1.0, stops_at(0.030))  # of that nobody knows any more
+    assert thread.rows.has_same_locked_rows(0.012, stops_at(0.030))
+    assert not thread.rows.has_same_locked_rows(0.012, stops_at(0.014))
+    assert not thread.rows.has_same_locked_rows(-1.0, stops_at(0.030))  # of that nobody knows any more

@@ -19,7 +19,7 @@ from core.executor.commands import (
     TouchOffTool,
 )
 from core.executor.snapshot import MachineState, Snapshot
-from drivers.hal.boards.hal_file_builder import render_file
+from drivers.hal.boards.hal_file_builder import render_hal_file
 from tests.drivers.hal.halrun import folder_for_all, halrun_on_path
 from tests.drivers.hal.lathes import PATIENT, Changes, lathe
 from tests.drivers.hal.live import LiveLathe, live
@@ -101,7 +101,7 @@ MACHINE: Changes = (
 
 @pytest.fixture(scope="module")
 def behind_hal() -> Iterator[LiveLathe]:
-    text = render_file(written("gt75-hal", *AS_C["gt75-hal"]))  # the spindle's drive is C
+    text = render_hal_file(written("gt75-hal", *AS_C["gt75-hal"]))  # the spindle's drive is C
     with folder_for_all() as folder, halrun_on_path(), live(lathe(folder, MACHINE, HAL, text)) as made:
         yield made
 

@@ -17,7 +17,7 @@ import pytest
 import resources
 from app.compose.backends.hal_file_writer import build_hal_file
 from app.compose.machine.machine_files import load_shipped_machine
-from drivers.hal.boards.hal_file_builder import HalFile, render_file
+from drivers.hal.boards.hal_file_builder import HalFile, render_hal_file
 from tests.drivers.hal.board_pins import PINS, without_board
 
 FILES = ("gt75-hal", "gt75-parport", "gt75-mesa-7i76e", "gt75-mesa-7i97", "gt75-ethercat")
@@ -31,8 +31,8 @@ def written(name: str) -> HalFile:
 @pytest.mark.parametrize("name", FILES)
 def test_shipped_hal_file_matches_the_command_output(name: str) -> None:
     file = written(name)
-    assert render_file(file) == render_file(written(name))
-    assert resources.get_hal_path(f"{name}.hal").read_text(encoding="utf-8") == render_file(file)
+    assert render_hal_file(file) == render_hal_file(written(name))
+    assert resources.get_hal_path(f"{name}.hal").read_text(encoding="utf-8") == render_hal_file(file)
     for other, text in file.extra_files.items():
         assert resources.get_hal_path(other).read_text(encoding="utf-8") == text
 
@@ -41,7 +41,7 @@ def test_shipped_hal_file_matches_the_command_output(name: str) -> None:
 def test_every_terminal_of_the_machine_file_is_on_a_net(name: str) -> None:
     file = written(name)
     wired = set()
-    for line in render_file(file).splitlines():
+    for line in render_hal_file(file).splitlines():
         words = line.split("#")[0].split()
         if words[:1] in (["net"], ["newsig"]):
             wired |= set(words[1:])
@@ -54,7 +54,7 @@ def test_every_terminal_of_the_machine_file_is_on_a_net(name: str) -> None:
 @pytest.mark.parametrize("name", FILES)
 def test_each_pin_is_on_one_signal_and_setpoints_are_added_once(name: str) -> None:
     on: dict[str, str] = {}
-    text = render_file(written(name))
+    text = render_hal_file(written(name))
     for line in text.splitlines():
         words = line.split("#")[0].split()
         if words[:1] == ["net"]:
@@ -81,7 +81,7 @@ def test_each_pin_is_on_one_signal_and_setpoints_are_added_once(name: str) -> No
     ],
 )
 def test_scales_are_in_millimeters_and_revolutions(name: str, pin: str, value: float) -> None:
-    found = re.search(rf"^setp {re.escape(pin)} (\S+)", render_file(written(name)), re.MULTILINE)
+    found = re.search(rf"^setp {re.escape(pin)} (\S+)", render_hal_file(written(name)), re.MULTILINE)
     assert found
     assert float(found[1]) == pytest.approx(value, rel=1e-8)
 
@@ -90,7 +90,7 @@ def test_scales_are_in_millimeters_and_revolutions(name: str, pin: str, value: f
 @pytest.mark.parametrize("name", FILES)
 def test_halrun_loads_the_hal_file(name: str, tmp_path: Path) -> None:
     """Every component, parameter, pin, direction and order of the file, by HAL itself; then it is started."""
-    done = load(tmp_path, name, render_file(written(name)))
+    done = load(tmp_path, name, render_hal_file(written(name)))
     assert done.returncode == 0, done.stderr + done.stdout
     signals = re.findall(r"^(?:bit|float|s32|u32)\s+\S+\s+(\S+)", done.stdout, re.MULTILINE)
     assert {wire.signal for wire in written(name).wiring_rows} <= set(signals)
@@ -99,7 +99,7 @@ def test_halrun_loads_the_hal_file(name: str, tmp_path: Path) -> None:
 @pytest.mark.usefixtures("halrun")
 def test_halrun_rejects_a_pin_that_the_board_does_not_have(tmp_path: Path) -> None:
     """The trial can fail: one letter of one pin."""
-    text = render_file(written("gt75-mesa-7i97")).replace("encoder.01.position ", "encoder.01.positron ")
+    text = render_hal_file(written("gt75-mesa-7i97")).replace("encoder.01.position ", "encoder.01.positron ")
     done = load(tmp_path, "gt75-mesa-7i97", text)
     assert done.returncode != 0
     assert "positron" in done.stderr + done.stdout

@@ -39,13 +39,13 @@ class Slides:
     def demand_at(self, _t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         return (self.place - (self.zero or 0.0),), (0.0,)
 
-    def read_bit(self, _name: str) -> bool:
+    def read_bit_pin(self, _name: str) -> bool:
         return self.index
 
-    def read_number(self, _name: str) -> float:
+    def read_number_pin(self, _name: str) -> float:
         return self.index_at
 
-    def splice_homing(self, segments: MotionSegments) -> None:
+    def splice_homing_move(self, segments: MotionSegments) -> None:
         dt, p, v, a = (
             each[-1]
             for each in (
@@ -63,11 +63,11 @@ class Slides:
         self.halts += 1
         self.until = self.t
 
-    def request_index(self, _pin: str, enabled: bool) -> None:
+    def request_encoder_index(self, _pin: str, enabled: bool) -> None:
         self.asked.append(enabled)
         self.index = enabled
 
-    def ignore_limit_switch(self, _axis: str, ignored: bool) -> None:
+    def set_limit_switch_ignored(self, _axis: str, ignored: bool) -> None:
         self.limits.append(ignored)
 
     def read_hal_position(self, _index: int) -> float:
@@ -104,19 +104,19 @@ def rests(order: HalHoming, slides: Slides) -> None:
 def test_homing_finds_the_switch_and_backs_off_slowly(method: int, way: float) -> None:
     """1.2 times its travel at the search's speed, back with a tenth; zero lies OFFSET beside the mark."""
     order, slides = homing(method)
-    order.add_sample(0.0, False)
+    order.add_switch_sample(0.0, False)
     order.continue_homing(0.0)
     assert slides.ways[-1] == pytest.approx((way * 120.0, 20.0))
     slides.place = way * 30.0
-    order.add_sample(slides.place, True)
+    order.add_switch_sample(slides.place, True)
     steps(order, slides, 0.01)
     assert slides.halts == 1
     rests(order, slides)
     assert slides.ways[-1] == pytest.approx((slides.place - way * 120.0, 2.0))
     slides.place = way * 29.0
-    order.add_sample(slides.place, False)
+    order.add_switch_sample(slides.place, False)
     slides.place = way * 28.5  # it brakes behind its mark
-    order.add_sample(slides.place, False)
+    order.add_switch_sample(slides.place, False)
     steps(order, slides, 0.01)
     assert slides.halts == 2
     rests(order, slides)
@@ -130,7 +130,7 @@ def test_homing_finds_the_switch_and_backs_off_slowly(method: int, way: float) -
 
 def test_homing_that_starts_on_the_switch_backs_off_at_latch_speed() -> None:
     order, slides = homing(19, latch=3.0)
-    order.add_sample(0.0, True)
+    order.add_switch_sample(0.0, True)
     order.continue_homing(0.0)
     assert slides.ways == [pytest.approx((-120.0, 3.0))]
 
@@ -147,9 +147,9 @@ def test_homing_at_the_present_position_is_done_immediately(method: int) -> None
 
 def test_home_is_the_index_after_the_switch() -> None:
     order, slides = homing(3)
-    order.add_sample(0.0, True)
+    order.add_switch_sample(0.0, True)
     order.continue_homing(0.0)
-    order.add_sample(-1.0, False)
+    order.add_switch_sample(-1.0, False)
     steps(order, slides, 0.05)
     assert slides.asked == [True]
     slides.index, slides.index_at = False, -3.25
@@ -185,7 +185,7 @@ def test_switch_without_samples_is_reported_after_one_second() -> None:
 
 def test_homing_without_a_switch_within_the_travel_fails() -> None:
     order, slides = homing(19)
-    order.add_sample(0.0, False)
+    order.add_switch_sample(0.0, False)
     order.continue_homing(0.0)
     steps(order, slides, 1.0)
     with raises_code(DriverError, "homing", "X: ") as told:
@@ -196,11 +196,11 @@ def test_homing_without_a_switch_within_the_travel_fails() -> None:
 
 def test_homing_that_overruns_its_switch_fails() -> None:
     order, slides = homing(19)
-    order.add_sample(0.0, False)
+    order.add_switch_sample(0.0, False)
     order.continue_homing(0.0)
-    order.add_sample(30.0, True)
+    order.add_switch_sample(30.0, True)
     steps(order, slides, 0.01)
-    order.add_sample(31.0, False)
+    order.add_switch_sample(31.0, False)
     with raises_code(DriverError, "homing", "X: ") as told:
         rests(order, slides)
     assert told.value.reason == "ran-over"
@@ -208,7 +208,7 @@ def test_homing_that_overruns_its_switch_fails() -> None:
 
 def test_homing_fails_if_the_switch_stays_on() -> None:
     order, slides = homing(19)
-    order.add_sample(0.0, True)
+    order.add_switch_sample(0.0, True)
     order.continue_homing(0.0)
     steps(order, slides, 1.0)
     with raises_code(DriverError, "homing", "X: ") as told:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from drivers.hal.hal_session import create_session_folder, remove_old_folders
+from drivers.hal.hal_session import create_session_folder, remove_old_session_folders
 
 
 @pytest.fixture(autouse=True)
@@ -26,7 +26,7 @@ def test_used_session_folder_stays_and_abandoned_one_is_removed() -> None:
     deserted, its_lock = create_session_folder()
     (deserted / "session.hal").write_text("")
     os.close(its_lock)
-    remove_old_folders(nobody_waits)
+    remove_old_session_folders(nobody_waits)
     assert used.exists()
     assert not deserted.exists()
     os.close(lock)
@@ -40,14 +40,14 @@ def test_folder_of_a_running_process_is_removed_only_after_it_ends() -> None:
         assert left.stdout
         # A process that is just being begun has no command line yet.
         assert left.stdout.readline() == b"runs\n"
-        remove_old_folders(lambda: False)
+        remove_old_session_folders(lambda: False)
         assert folder.exists()
 
         def ends() -> bool:
             left.communicate(b"\n")
             return True
 
-        remove_old_folders(ends)
+        remove_old_session_folders(ends)
     assert not folder.exists()
 
 
@@ -55,6 +55,6 @@ def test_folders_of_other_programs_are_not_removed(tmp_path: Path) -> None:
     other, link = tmp_path / "turndesk-hal-other", tmp_path / "turndesk-hal-link"
     other.mkdir()  # without a lock: somebody else's, or just being made
     link.symlink_to(other)
-    remove_old_folders(nobody_waits)
+    remove_old_session_folders(nobody_waits)
     assert other.exists()
     assert link.is_symlink()

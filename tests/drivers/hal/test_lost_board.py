@@ -11,7 +11,7 @@ from app.compose.machine.machine_files import parse_machine
 from core.faults import get_fault_code
 from core.ports import ALL_UNKNOWN_PARTS, DriverError
 from core.table_schema import MachineFileError
-from drivers.hal.boards.hal_file_builder import render_file
+from drivers.hal.boards.hal_file_builder import render_hal_file
 from tests.coded import raises_code
 from tests.drivers.hal.played import powered
 from tests.drivers.hal.test_hal_files import written
@@ -44,11 +44,11 @@ def test_lost_board_with_drives_off_is_also_a_fault() -> None:
 def test_frozen_inputs_have_infinite_age_and_are_unknown() -> None:
     with powered() as bench:
         assert bench.driver.io.read_state().age < 0.1
-        assert not bench.driver.find_unknown_items()
+        assert not bench.driver.find_unknown_parts()
         bench.far.is_cable_disconnected = True
         bench.run(ERRORS)
         assert bench.driver.io.read_state().age == math.inf
-        assert bench.driver.find_unknown_items() == ALL_UNKNOWN_PARTS
+        assert bench.driver.find_unknown_parts() == ALL_UNKNOWN_PARTS
 
 
 def test_lost_board_removes_power_in_motion_and_stops_the_spindle() -> None:
@@ -75,7 +75,7 @@ def test_reset_reloads_hal_only_after_the_board_is_reconnected() -> None:
                 bench.axes.clear_fault()
             bench.run(0.1)
             assert get_fault_code(bench.driver.axes.fault, "driver") == "hal-board"
-            assert bench.driver.find_unknown_items() == ALL_UNKNOWN_PARTS
+            assert bench.driver.find_unknown_parts() == ALL_UNKNOWN_PARTS
         thread = bench.far.servo_thread
         bench.far.is_cable_disconnected = False
         bench.run(0.5)
@@ -84,7 +84,7 @@ def test_reset_reloads_hal_only_after_the_board_is_reconnected() -> None:
         bench.run(0.1)
         assert not bench.driver.axes.fault
         assert bench.far.servo_thread is not thread
-        assert not bench.driver.find_unknown_items()
+        assert not bench.driver.find_unknown_parts()
         assert not bench.axes.sample().enabled
 
 
@@ -123,7 +123,9 @@ def test_board_input_requires_the_link_fault_without_a_board_table_too() -> None
 )
 def test_communication_pins_of_every_board_are_in_the_board_link(name: str, pins: set[str]) -> None:
     nets = [
-        line.split() for line in render_file(written(name)).splitlines() if line.startswith("net board-link-")
+        line.split()
+        for line in render_hal_file(written(name)).splitlines()
+        if line.startswith("net board-link-")
     ]
     assert pins <= {words[2] for words in nets}
     assert all(words[3].startswith("board-link.in-") for words in nets)

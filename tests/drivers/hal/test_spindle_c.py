@@ -14,7 +14,7 @@ from core.faults import get_fault_code
 from core.ports import DriverError
 from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_link import HalLink
-from drivers.hal.hal_spindle import HalSpindle, HalSpindleCAxis, HalSpindleCStep
+from drivers.hal.hal_spindle import HalCAxisChangeStep, HalSpindle, HalSpindleCAxis
 from tests.coded import raises_code
 from tests.drivers.hal.lathes import PATIENT, changed
 
@@ -50,16 +50,16 @@ class Link:
         self.said.append((command, values.get("on")))
         return 0
 
-    def read_bit(self, _name: str) -> bool:
+    def read_bit_pin(self, _name: str) -> bool:
         return self.is_c
 
-    def send_pieces(self, *_what: object, **_values: object) -> None:
+    def send_setpoint_pieces(self, *_what: object, **_values: object) -> None:
         """Taken."""
 
-    def is_executed(self, _order: int) -> bool:
+    def is_command_executed(self, _order: int) -> bool:
         return True
 
-    def wait_until(self, *_what: object) -> bool:
+    def wait_until_ready(self, *_what: object) -> bool:
         return True
 
     def pop_sample_rows(self) -> Iterator[Sequence[float]]:
@@ -113,7 +113,7 @@ class Stand:
             x, z, c = (p + zero for p, zero in zip(place, self.axes.home_positions, strict=True))
             self.link.sample_rows.append((self.t, x, z, c, x, z - self.z, c, *self.spindle))
             self.axes.run_cycle()
-            self.c.update()
+            self.c.continue_mode_change()
 
 
 def test_axes_report_motion_while_c_turns_to_its_position() -> None:
@@ -122,8 +122,8 @@ def test_axes_report_motion_while_c_turns_to_its_position() -> None:
     assert not stand.axes.sample().moving
     stand.c.set_c_mode(True, should_orient=True)
     stand.run(0.02)
-    assert stand.c.step is HalSpindleCStep.TURN_TO_POSITION
-    while stand.c.step is HalSpindleCStep.TURN_TO_POSITION:
+    assert stand.c.step is HalCAxisChangeStep.TURN_TO_POSITION
+    while stand.c.step is HalCAxisChangeStep.TURN_TO_POSITION:
         assert stand.axes.sample().moving, stand.axes.sample()
         stand.run(0.01)
     stand.run(0.5)
@@ -164,7 +164,7 @@ def test_c_is_rejected_with_drives_off_or_the_spindle_turning() -> None:
     with raises_code(DriverError, "c-coupling") as told:
         stand.c.set_c_mode(True)
     assert told.value.reason == "drives-off"
-    assert stand.c.step is HalSpindleCStep.SPINDLE_MODE
+    assert stand.c.step is HalCAxisChangeStep.SPINDLE_MODE
     assert not [each for each in stand.link.said if each[0] == "c"]
 
 
@@ -174,20 +174,20 @@ def test_c_finds_its_index_at_60_rpm_and_brakes_before_it_engages() -> None:
     stand.turning.is_known = False
     stand.c.set_c_mode(True, should_orient=True)
     assert (stand.c.step, stand.turning.commanded_rpm, stand.turning.is_used_as_c) == (
-        HalSpindleCStep.FIND_INDEX,
+        HalCAxisChangeStep.FIND_INDEX,
         60.0,
         True,
     )
     stand.c.set_c_mode(True, should_orient=True)  # asked again, it goes on
     stand.turning.rpm = 60.0
     stand.run(1.0)
-    assert stand.c.step is HalSpindleCStep.FIND_INDEX
+    assert stand.c.step is HalCAxisChangeStep.FIND_INDEX
     stand.turning.is_known = True
     stand.run(0.1)
-    assert (stand.c.step, stand.turning.commanded_rpm) == (HalSpindleCStep.STOP, 0.0)
+    assert (stand.c.step, stand.turning.commanded_rpm) == (HalCAxisChangeStep.STOP, 0.0)
     stand.turning.rpm = 1.0
     stand.run(0.01)
-    assert stand.c.step is HalSpindleCStep.CHANGE_MODE
+    assert stand.c.step is HalCAxisChangeStep.CHANGE_MODE
     assert stand.link.said[-1] == ("c", True)
 
 
@@ -215,7 +215,7 @@ def test_c_engagement_that_times_out_is_a_fault_and_frees_the_spindle(
     assert stand.axes.fault.startswith("C: ")
     assert named in stand.axes.fault
     assert (stand.c.step, stand.turning.commanded_rpm, stand.turning.is_used_as_c) == (
-        HalSpindleCStep.SPINDLE_MODE,
+        HalCAxisChangeStep.SPINDLE_MODE,
         0.0,
         False,
     )
@@ -229,8 +229,8 @@ def test_c_is_released_on_an_unknown_state_but_not_over_a_lost_link(lost: str) -
     stand.turning.is_known = False
     stand.c.set_c_mode(True, should_orient=True)
     stand.link.is_state_unknown, stand.link.failure = True, lost
-    stand.c.update()
-    assert stand.c.step is HalSpindleCStep.SPINDLE_MODE
+    stand.c.continue_mode_change()
+    assert stand.c.step is HalCAxisChangeStep.SPINDLE_MODE
     assert stand.turning.commanded_rpm == (60.0 if lost else 0.0)
     assert (("c", False) in stand.link.said) is not bool(lost)
 

@@ -11,7 +11,7 @@ import resources
 from app.compose.backends.hal_file_writer import build_hal_file
 from app.compose.machine.machine_files import parse_machine
 from core.table_schema import MachineFileError
-from drivers.hal.boards.hal_file_builder import HalFile, render_file
+from drivers.hal.boards.hal_file_builder import HalFile, render_hal_file
 from tests.drivers.hal.lathes import Changes, changed
 from tests.drivers.hal.test_hal_files import load
 
@@ -58,14 +58,14 @@ def written(name: str, *changes: tuple[str, str], own: bool = False) -> HalFile:
 def nets(file: HalFile) -> dict[str, list[str]]:
     """Pins by signal."""
     found: dict[str, list[str]] = {}
-    for words in (line.split("#")[0].split() for line in render_file(file).splitlines()):
+    for words in (line.split("#")[0].split() for line in render_hal_file(file).splitlines()):
         if words[:1] == ["net"]:
             found.setdefault(words[1], []).extend(words[2:])
     return found
 
 
 def figure(file: HalFile, pin: str) -> float:
-    found = re.search(rf"^setp {re.escape(pin)} (\S+)", render_file(file), re.MULTILINE)
+    found = re.search(rf"^setp {re.escape(pin)} (\S+)", render_hal_file(file), re.MULTILINE)
     assert found, pin
     return float(found[1])
 
@@ -79,7 +79,7 @@ def refused(name: str, *changes: tuple[str, str], own: bool = False) -> str:
 @pytest.mark.usefixtures("halrun")
 @pytest.mark.parametrize("name", list(AS_C))
 def test_halrun_loads_the_spindle_as_c(name: str, tmp_path: Path) -> None:
-    done = load(tmp_path, name, render_file(written(name, *AS_C[name])))
+    done = load(tmp_path, name, render_hal_file(written(name, *AS_C[name])))
     assert done.returncode == 0, done.stderr + done.stdout
     for signal in ("c-pos-cmd", "c-pos-fb", "spindle-is-c"):
         assert re.search(rf"\s{signal}$", done.stdout, re.MULTILINE), done.stdout
@@ -113,7 +113,7 @@ def test_speed_controlled_drive_receives_spindle_or_c_speed(name: str, rpm: str,
     assert on["spindle-drive-on"] == ["spindle-power.out", enable]
     assert {"c-or-speed.sel", "spindle-power.in1"} <= set(on["spindle-is-c"])
     assert figure(file, "c-rpm.gain") == pytest.approx(1 / 6)
-    calls = [line.split()[1] for line in render_file(file).splitlines() if line.startswith("addf")]
+    calls = [line.split()[1] for line in render_hal_file(file).splitlines() if line.startswith("addf")]
     reads, writes = ("hm2_7i97.0.read", "hm2_7i97.0.write")
     if name == "gt75-ethercat":
         reads, writes = "cia402.spindle.read-all", "cia402.spindle.write-all"
@@ -159,7 +159,7 @@ def test_c_with_its_own_drive_is_an_additional_axis(tmp_path: Path) -> None:
     assert figure(file, "hm2_7i97.0.pwmgen.03.scale") == 720.0
     assert figure(file, "hm2_7i97.0.encoder.03.scale") == pytest.approx(4096 / 360)
     assert nets(file)["spindle-rpm-cmd"] == ["hm2_7i97.0.pwmgen.04.value"]
-    done = load(tmp_path, "gt75-mesa-7i97", render_file(file))
+    done = load(tmp_path, "gt75-mesa-7i97", render_hal_file(file))
     assert done.returncode == 0, done.stderr + done.stdout
 
 

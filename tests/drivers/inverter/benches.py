@@ -75,7 +75,7 @@ def bench(family: str, *, connect: bool = True) -> Bench:
     one = create_inverter_control(config(family), wire.opened, clock, FOLDER)
     made = Bench(clock, inverter, memory, wire, one, InverterSpindle(config(family), one, clock))
     if connect:
-        one.open_and_check()
+        one.open_and_check_line()
     return made
 
 

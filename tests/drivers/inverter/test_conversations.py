@@ -155,14 +155,17 @@ def talk(family: str, opened: str, stands: str, *turns: tuple[float, str, str]) 
     line.expect(opened)
     for _ in range(2 if family == "huanyang" else 1):  # ten good answers, or one
         line.expect(stands.format(set="0000"))
-    one.open_and_check()
+    one.open_and_check_line()
     for hz, script, stop in turns:
         line.expect(script)
         one.commanded_hz = hz
         one.run_exchange()
         assert not line.left
         assert one.last_poll is not None
-        assert (one.last_poll.state.signed_output_hz, one.last_poll.state.current_a) == (hz, 2.5)
+        assert (one.last_poll.inverter_state.signed_output_hz, one.last_poll.inverter_state.current_a) == (
+            hz,
+            2.5,
+        )
         line.expect(stop + stands.format(set="07D0"))
         one.commanded_hz = 0.0
         one.run_exchange()

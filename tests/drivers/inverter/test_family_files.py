@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from core.ports import DriverError
-from drivers.inverter.family_files import load_family, read_family_file
+from drivers.inverter.family_files import load_inverter_family, read_family_file
 from drivers.inverter.family_table import FrequencyKeys, StateKeys
 from drivers.inverter.inverter_table import FAMILY_FOLDER, FAMILY_NAMES
 from tests.coded import raises_code
@@ -42,9 +42,9 @@ def line_of(text: str, part: str) -> int:
 
 @pytest.mark.parametrize("name", FAMILY_NAMES)
 def test_every_shipped_family_can_be_read(name: str) -> None:
-    table = load_family(name, Path("/nowhere"))
+    table = load_inverter_family(name, Path("/nowhere"))
     assert table.name
-    assert (table.registers is None) is (name == "huanyang")
+    assert (table.register_table is None) is (name == "huanyang")
 
 
 def test_documented_family_file_is_the_one_tested_here() -> None:
@@ -62,12 +62,12 @@ def test_family_files_are_installed_with_the_package() -> None:
 
 
 def test_family_file_is_parsed_into_its_table() -> None:
-    table = load_family(benches.OWN, benches.FOLDER)
-    assert (table.line.baud, table.line.write_multiple) == ((1200.0, 38400.0), True)
+    table = load_inverter_family(benches.OWN, benches.FOLDER)
+    assert (table.serial_line.baud, table.serial_line.write_multiple) == ((1200.0, 38400.0), True)
     assert (table.max_hz, table.setpoint_step_hz) == (400.0, 0.01)
-    assert table.registers is not None
-    assert (table.registers.faults[0x0021], len(table.parameters)) == ("communication error", 4)
-    assert [each.value for each in table.registers.commands["reset"]] == [8, 0]
+    assert table.register_table is not None
+    assert (table.register_table.fault_texts[0x0021], len(table.parameters)) == ("communication error", 4)
+    assert [each.value for each in table.register_table.command_writes["reset"]] == [8, 0]
 
 
 @pytest.mark.parametrize(
@@ -209,7 +209,7 @@ def test_a_fault_code_outside_the_reads_needs_a_fault_state(tmp_path: Path) -> N
     )
     text = changed(text, "fault_code = { register = 0x0080", "fault_code = { register = 0x0021")
     (tmp_path / "my.toml").write_text(text)
-    assert read_family_file(tmp_path / "my.toml").registers is not None
+    assert read_family_file(tmp_path / "my.toml").register_table is not None
 
 
 def test_registers_are_rejected_for_a_family_with_coded_frames(tmp_path: Path) -> None:
@@ -227,5 +227,5 @@ def test_unreadable_family_file_is_reported(tmp_path: Path) -> None:
     (tmp_path / "folder.toml").mkdir()
     for name in ("none.toml", "latin.toml", "huge.toml", "folder.toml"):
         with raises_code(DriverError, "driver", name) as told:
-            load_family(name, tmp_path)
+            load_inverter_family(name, tmp_path)
         assert told.value.reason == "bad-family"

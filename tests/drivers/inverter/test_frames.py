@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from drivers.inverter import modbus_rtu
-from drivers.inverter.family_files import load_family
+from drivers.inverter.family_files import load_inverter_family
 from drivers.inverter.modbus_rtu import ModbusMaster, NoResponseError, RequestRejectedError
 from drivers.inverter.register_family import RegisterInverter
 from drivers.wakeups import ManualClock
@@ -44,12 +44,12 @@ def test_crc_matches_frames_in_manuals(body: str, crc: str) -> None:
 @pytest.mark.parametrize(
     ("pdu", "expected"),
     [
-        (modbus_rtu.encode_read(3, 0x2103, 1), "03 21 03 00 01"),
+        (modbus_rtu.encode_read_request(3, 0x2103, 1), "03 21 03 00 01"),
         (modbus_rtu.encode_write_coil(0, True), "05 00 00 FF 00"),
         (modbus_rtu.encode_write_coil(1, False), "05 00 01 00 00"),
         (modbus_rtu.encode_write_register(0x2001, 6000), "06 20 01 17 70"),
         (modbus_rtu.encode_write_registers(0, (0, 5000)), "10 00 00 00 02 04 00 00 13 88"),
-        (modbus_rtu.encode_loopback(0xA537), "08 00 00 A5 37"),
+        (modbus_rtu.encode_echo_request(0xA537), "08 00 00 A5 37"),
     ],
 )  # fmt: skip
 def test_modbus_requests_are_encoded(pdu: bytes, expected: str) -> None:
@@ -154,10 +154,10 @@ def on_bench(name: str) -> tuple[RegisterInverter, BenchWire, ManualClock]:
     clock = ManualClock()
     _, slave = far_end(name, Inverter(clock))
     wire = BenchWire(slave, clock)
-    table = load_family(name, FOLDER)
-    assert table.registers is not None
+    table = load_inverter_family(name, FOLDER)
+    assert table.register_table is not None
     line = ModbusMaster(wire, clock, 1, 10 / 9600)
-    return RegisterInverter(table, table.registers, line, clock), wire, clock
+    return RegisterInverter(table, table.register_table, line, clock), wire, clock
 
 
 @pytest.mark.parametrize(
@@ -171,7 +171,7 @@ def test_run_command_is_repeated_as_the_family_requires(
     counts = []
     for hz in (20.0, 30.0, -30.0):
         wire.sent.clear()
-        family.command_hz(hz)
+        family.command_frequency_hz(hz)
         counts.append(len(wire.sent))
     assert counts == [first, next_speed, other_way]
 

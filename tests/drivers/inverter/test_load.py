@@ -17,7 +17,9 @@ from tests.drivers.inverter.benches import FAMILIES, Bench, bench, config
 
 def rated(family: str, amps: float) -> tuple[Bench, InverterSpindle]:
     made = bench(family)
-    spindle = InverterSpindle(dataclasses.replace(config(family), rated=amps), made.attendant, made.clock)
+    spindle = InverterSpindle(
+        dataclasses.replace(config(family), rated_current_a=amps), made.attendant, made.clock
+    )
     return made, spindle
 
 
@@ -25,8 +27,8 @@ def draws(made: Bench, amps: float) -> None:
     """What the inverter says that it gives."""
     seen = made.attendant.last_poll
     assert seen is not None
-    look: InverterState = dataclasses.replace(seen.state, current_a=amps)
-    made.attendant.last_poll = dataclasses.replace(seen, state=look)
+    look: InverterState = dataclasses.replace(seen.inverter_state, current_a=amps)
+    made.attendant.last_poll = dataclasses.replace(seen, inverter_state=look)
 
 
 @pytest.mark.parametrize("family", FAMILIES)
@@ -56,12 +58,12 @@ class Rows:
 
     sample_rate_hz = 100.0
 
-    def take(self, max_rows: int = 8192) -> FloatArray:
+    def take_samples(self, max_rows: int = 8192) -> FloatArray:
         return np.arange(22.0).reshape(2, 11)[:max_rows]
 
 
 def test_axis_samples_include_the_inverter_load() -> None:
-    rows = AxisOnlySamples(Rows(), 2, lambda: 40.0).take()
+    rows = AxisOnlySamples(Rows(), 2, lambda: 40.0).take_samples()
     assert np.isnan(rows[:, 7:9]).all()  # speed and turns
     assert list(rows[:, 9]) == [40.0, 40.0]
     assert list(rows[:, 10]) == [10.0, 21.0]  # the queue is the slides'

@@ -106,7 +106,7 @@ def tenths(folder: Path) -> tuple[InverterControl, DecihertzMemory, Callable[[fl
     memory = DecihertzMemory(Inverter(clock))
     wire = BenchWire(RtuSlave(memory), clock)
     one = create_inverter_control(own(parity="E"), wire.opened, clock, folder)
-    one.open_and_check()
+    one.open_and_check_line()
 
     def run(seconds: float) -> None:
         end = clock.now() + seconds
@@ -129,7 +129,7 @@ def test_own_family_file_turns_the_spindle_in_both_directions(tmp_path: Path) ->
         assert one.failure == ""
         assert memory.inverter.rpm / 60 == pytest.approx(hz, abs=0.06)
         assert one.last_poll is not None
-        assert one.last_poll.state.signed_output_hz == pytest.approx(hz, abs=0.06)
+        assert one.last_poll.inverter_state.signed_output_hz == pytest.approx(hz, abs=0.06)
 
 
 def test_a_setpoint_that_is_off_by_two_steps_is_still_a_fault(tmp_path: Path) -> None:

@@ -27,7 +27,7 @@ def test_delta_timeout_is_written_once() -> None:
     assert one.attendant.warnings == ()
     one.memory.written.clear()
     one.attendant.close()
-    one.attendant.open_and_check()
+    one.attendant.open_and_check_line()
     assert [address for address, _ in one.memory.written if address < 0x2000] == []
 
 
@@ -62,7 +62,7 @@ def test_differing_user_settings_are_reported_and_not_changed(
     one = bench(family, connect=False)
     assert not isinstance(one.memory, HuanyangSlave)
     one.memory.settings[register] = value
-    one.attendant.open_and_check()
+    one.attendant.open_and_check_line()
     (warning,) = one.attendant.warnings
     assert all(each in warning for each in named)
     assert one.memory.settings[register] == value
@@ -72,7 +72,7 @@ def test_settings_unknown_to_the_inverter_are_reported() -> None:
     one = bench("delta-vfdb", connect=False)
     assert isinstance(one.memory, DeltaMemory)
     del one.memory.settings[0x0903]
-    one.attendant.open_and_check()
+    one.attendant.open_and_check_line()
     assert len(one.attendant.warnings) == 1
     assert "Pr.09-03" in one.attendant.warnings[0]
 
@@ -81,7 +81,7 @@ def test_unreadable_maximum_frequency_is_reported() -> None:
     one = bench(OWN, connect=False)
     assert isinstance(one.memory, MyDriveMemory)
     del one.memory.settings[0x0303]
-    one.attendant.open_and_check()
+    one.attendant.open_and_check_line()
     (warning,) = one.attendant.warnings
     assert warning.startswith("P2-04 ")
 
@@ -90,16 +90,16 @@ def test_huanyang_controlled_by_its_keypad_is_reported() -> None:
     one = bench("huanyang", connect=False)
     assert isinstance(one.memory, HuanyangSlave)
     one.memory.parameters[1] = 0
-    one.attendant.open_and_check()
+    one.attendant.open_and_check_line()
     assert any(re.search(r"PD001 .*\b0\b.*\b2\b", warning) for warning in one.attendant.warnings)
 
 
 def test_huanyang_start_after_a_lost_response_needs_ten_valid_ones() -> None:
     one = bench("huanyang")
-    assert one.attendant.is_trusted
+    assert one.attendant.is_inverter_trusted
     one.wire.loses = 1
     one.attendant.run_exchange()
-    assert not one.attendant.is_trusted
+    assert not one.attendant.is_inverter_trusted
     with raises_code(DriverError, "spindle-off") as told:
         one.spindle.set_speed(100.0)
     assert told.value.reason == "not-ready"
@@ -113,7 +113,7 @@ def test_missing_inverter_is_reported_in_one_line(family: str, fault: str, kind:
     one = bench(family, connect=False)
     setattr(one.wire, fault, True)
     with pytest.raises(kind):
-        one.attendant.open_and_check()
+        one.attendant.open_and_check_line()
 
 
 @pytest.mark.parametrize("family", FAMILIES)
@@ -123,7 +123,7 @@ def test_spindle_turning_at_connection_is_stopped(family: str) -> None:
     one.inverter.obey(run=True)
     one.clock.advance(2.0)
     assert one.rpm == pytest.approx(1800.0)
-    one.attendant.open_and_check()
+    one.attendant.open_and_check_line()
     one.run(2.0)
     assert one.rpm == 0.0
     assert one.spindle.read_fault() == ""

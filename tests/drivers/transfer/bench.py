@@ -20,13 +20,13 @@ class OtherSide:
     ) -> None:
         self.clock, self.script, self.holds, self.cut_at = clock, list(script or ()), holds, cut_at
         self.taken = bytearray()
-        self.damaged_count = 0
+        self.damaged_character_count = 0
         self.closed = self.obeys = False
         self.largest = 0  # chunk
         self.before_listening: Callable[[], object] = lambda: None
         self._out = 0.0  # when the last byte will have gone out
 
-    def send_available(self, data: bytes) -> int:
+    def send_available_bytes(self, data: bytes) -> int:
         self._look()
         if self._held:
             return 0
@@ -36,7 +36,7 @@ class OtherSide:
         return len(data)
 
     def send(self, data: bytes) -> None:
-        self.send_available(data)
+        self.send_available_bytes(data)
 
     def receive(self, timeout_s: float) -> bytes:
         self.before_listening()
@@ -49,12 +49,12 @@ class OtherSide:
         self.clock.sleep_until(until)
         return b""
 
-    def count_unsent(self) -> int:
+    def count_unsent_bytes(self) -> int:
         self._look()
         return max(0, round((self._out - self.clock.now()) * 960.0))
 
     def discard_output(self) -> None:
-        self.taken = self.taken[: len(self.taken) - self.count_unsent()]
+        self.taken = self.taken[: len(self.taken) - self.count_unsent_bytes()]
         self._out = self.clock.now()
 
     def enable_xon_xoff(self) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from drivers.serial_line import LineSettings
 from drivers.transfer.program_framing import (
-    IncompleteError,
+    IncompleteProgramError,
     ProgramParser,
     ReceivedText,
     ReceptionPhase,
@@ -110,7 +110,7 @@ def test_false_percent_in_noise_before_the_program_is_ignored() -> None:
     ],
 )
 def test_program_name_is_found_in_the_header(head: bytes, first: bytes, name: str) -> None:
-    assert taken(head + b"\n" + first + b"\nM30\n%\n").name == name
+    assert taken(head + b"\n" + first + b"\nM30\n%\n").program_name == name
 
 
 @pytest.mark.parametrize(
@@ -135,7 +135,7 @@ def test_program_name_is_found_in_the_header(head: bytes, first: bytes, name: st
 def test_incomplete_program_is_rejected(
     stream: bytes, settings: TransferSettings, reason: str, values: list[str]
 ) -> None:
-    with raises_code(IncompleteError, "driver", *values) as told:
+    with raises_code(IncompleteProgramError, "driver", *values) as told:
         taken(stream, settings)
     assert told.value.reason == reason
 
@@ -144,7 +144,7 @@ def test_truncation_of_a_program_is_always_detected() -> None:
     """Wherever the line is cut: no part of a program passes for a whole one."""
     stream = framed(b"\r\n")
     for length in range(len(stream) - 2):
-        with pytest.raises(IncompleteError):
+        with pytest.raises(IncompleteProgramError):
             taken(stream[:length], chunk=7)
 
 
@@ -155,7 +155,7 @@ def test_every_flipped_bit_is_detected_with_parity() -> None:
             spoilt = stream[:at] + bytes((stream[at] ^ 1 << bit,)) + stream[at + 1 :]
             if spoilt[at] == 0:
                 continue
-            with pytest.raises(IncompleteError):
+            with pytest.raises(IncompleteProgramError):
                 taken(spoilt, SEVEN)
 
 

@@ -126,7 +126,7 @@ def test_closing_the_port_does_not_discard_unsent_data(far: FarEnd) -> None:
     """Closing at once after the last byte, a hundred times: the far end has all of it each time."""
     for _ in range(100):
         wire = SerialPort(LineSettings(far.port))
-        assert wire.send_available(b"%\n") == 2
+        assert wire.send_available_bytes(b"%\n") == 2
         wire.close()
         far.heard.clear()
         until(lambda: far.hear() != b"" and len(far.heard) >= 2, "the last %")

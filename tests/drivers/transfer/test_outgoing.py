@@ -19,7 +19,7 @@ LINE = LineSettings("bench")
         (TransferSettings(LINE), b"%\r\nG90\r\nM30\r\n%\r\n"),
         (TransferSettings(LINE, line_end="\n"), b"%\nG90\nM30\n%\n"),
         (TransferSettings(LINE, line_end="\r"), b"%\rG90\rM30\r%\r"),
-        (TransferSettings(LINE, line_end="\n", sends_dc_codes=True), b"\x12%\nG90\nM30\n%\n\x14"),
+        (TransferSettings(LINE, line_end="\n", has_dc_codes=True), b"\x12%\nG90\nM30\n%\n\x14"),
         (TransferSettings(LINE, line_end="\n", leader_nul_count=3), b"\0\0\0%\nG90\nM30\n%\n\0\0\0"),
     ],
 )

@@ -8,7 +8,7 @@ import pytest
 
 from core.ports import DriverError
 from drivers.serial_line import LineSettings, SerialLineError
-from drivers.transfer.program_framing import IncompleteError, TransferSettings, encode_program
+from drivers.transfer.program_framing import IncompleteProgramError, TransferSettings, encode_program
 from drivers.transfer.transfer_session import (
     ReceiveTransfer,
     SendTransfer,
@@ -71,8 +71,8 @@ class Satisfied(OtherSide):
 
     obeyed = True
 
-    def send_available(self, data: bytes) -> int:
-        taken = super().send_available(data)
+    def send_available_bytes(self, data: bytes) -> int:
+        taken = super().send_available_bytes(data)
         if b"\n%\n" in self.taken and self.holds[0] < 0.0:
             now = self.clock.now()
             self.holds = (now, 1e9) if self.obeyed else (1e8, 1e9)
@@ -82,7 +82,7 @@ class Satisfied(OtherSide):
 
 @pytest.mark.parametrize("obeyed", [True, False])
 def test_xoff_after_the_final_percent_ends_the_transfer(obeyed: bool) -> None:
-    settings = dataclasses.replace(SETTINGS, sends_dc_codes=True, leader_nul_count=200)
+    settings = dataclasses.replace(SETTINGS, has_dc_codes=True, leader_nul_count=200)
     data = encode_program(TEXT, settings)
     side = Satisfied(ManualClock())
     side.obeyed = obeyed
@@ -172,7 +172,7 @@ def test_data_received_before_a_program_is_reported(come: bytes, heard: str, wha
 
     def look() -> None:
         if side.clock.now() > 2.0 and not told:
-            told.append((job.progress.received_text, job.progress.wait_reason))
+            told.append((job.progress.leading_text, job.progress.wait_reason))
 
     side.before_listening = look
     assert job.receive_program().program_bytes == TEXT
@@ -199,7 +199,7 @@ def test_pause_after_a_line_does_not_end_the_program() -> None:
 
 def test_program_without_a_final_percent_is_rejected() -> None:
     side = OtherSide(ManualClock(), [(1.0, DATA[:-2])])
-    with raises_code(IncompleteError, "driver", "%", "201 lines") as told:
+    with raises_code(IncompleteProgramError, "driver", "%", "201 lines") as told:
         receiving(side).receive_program()
     assert told.value.reason == "no-end"
     assert 11.0 <= side.clock.now() < 11.2
@@ -211,10 +211,10 @@ def test_damaged_character_ends_reception_immediately() -> None:
     job = receiving(side)
 
     def spoil() -> None:
-        side.damaged_count = int(side.clock.now() >= 1.1)
+        side.damaged_character_count = int(side.clock.now() >= 1.1)
 
     side.before_listening = spoil
-    with raises_code(IncompleteError, "driver", "line 201") as told:
+    with raises_code(IncompleteProgramError, "driver", "line 201") as told:
         job.receive_program()
     assert told.value.reason == "damaged"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.extras.access.sign_in import PinSignIn, get_sign_in
+from app.extras.access.sign_in import PinSignIn, get_pin_sign_in
 from core.extras.access import pins
 from core.extras.access.pins import hash_pin
 from core.store.user_records import UserRow
@@ -18,7 +18,7 @@ class PinRoom(Room):
     @property
     def session(self) -> PinSignIn:
         """How people sign in here."""
-        return get_sign_in(self.access)
+        return get_pin_sign_in(self.access)
 
     def settle(self) -> None:
         """Until what was asked of workers and of the disk is there."""

@@ -75,7 +75,7 @@ def test_aborted_pin_check_counts_as_a_wrong_pin(
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr("core.extras.access.pins.matches_hash", ended)
+        patch.setattr("core.extras.access.pins.is_pin_correct", ended)
         for _ in range(3):
             assert say("offsets", "clear", "T", "--as", "ben", typed="0815")[0] != 0
             monkeypatch.setattr(time, "sleep", lambda _seconds: None)

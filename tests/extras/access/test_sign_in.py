@@ -17,10 +17,10 @@ from core.extras.access.pins import (
     PinError,
     PinHash,
     WrongPinCounter,
-    calculate_delay,
+    calculate_retry_delay,
     check_pin,
     hash_pin,
-    matches_hash,
+    is_pin_correct,
 )
 from core.store.store_file import STORE_FILE_NAME
 from core.store.user_records import UserRow
@@ -91,11 +91,24 @@ def test_wrong_pin_count_survives_a_restart(room: PinRoom) -> None:
         room.sign_in("BEN", "0815")
     room.settle()
     again = UserAccess(room.journal, read_time_s=lambda: 7.0)
-    assert PinSignIn(again).wrong_pins.get_remaining_delay(7.0) == 5.0
+    assert PinSignIn(again).wrong_pin_counter.get_remaining_delay(7.0) == 5.0
 
 
 def test_wrong_pin_delays_are_limited() -> None:
-    assert [calculate_delay(count) for count in range(12)] == [0, 0, 0, 5, 10, 20, 40, 80, 160, 300, 300, 300]
+    assert [calculate_retry_delay(count) for count in range(12)] == [
+        0,
+        0,
+        0,
+        5,
+        10,
+        20,
+        40,
+        80,
+        160,
+        300,
+        300,
+        300,
+    ]
     wrong = WrongPinCounter()
     for moment in (0.0, 1.0, 2.0):
         wrong.count_wrong_pin(moment)
@@ -118,8 +131,8 @@ def test_stored_pin_hash_uses_scrypt() -> None:
         PinHash(b"SodiumChloride", bytes((14, 8, 1)) + bytes.fromhex(old)),
         hash_pin("pleaseletmein", b"SodiumChloride"),
     ):
-        assert matches_hash("pleaseletmein", kept)
-        assert not matches_hash("pleaseletmeIn", kept)
+        assert is_pin_correct("pleaseletmein", kept)
+        assert not is_pin_correct("pleaseletmeIn", kept)
     assert hash_pin("4711") != hash_pin("4711")  # each has a salt of its own
 
 
@@ -131,7 +144,7 @@ def test_pin_check_has_the_required_scrypt_cost() -> None:
 
 @pytest.mark.parametrize("damage", [b"", b"\x04\x08", bytes(31), bytes(34), bytes(40)])
 def test_hash_of_another_length_matches_no_pin(damage: bytes) -> None:
-    assert not matches_hash("4711", PinHash(b"salt", damage))
+    assert not is_pin_correct("4711", PinHash(b"salt", damage))
 
 
 def test_old_hash_is_upgraded_when_its_pin_is_entered(room: PinRoom, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -146,7 +159,7 @@ def test_old_hash_is_upgraded_when_its_pin_is_entered(room: PinRoom, monkeypatch
     assert now is not None
     assert (room.access.user_name, room.access.user_list.find_user("BEN")) == ("BEN", now)
     assert now.hash[:3] == bytes((5, 8, 1))
-    assert matches_hash(PINS["BEN"], PinHash(now.salt, now.hash))
+    assert is_pin_correct(PINS["BEN"], PinHash(now.salt, now.hash))
     assert {row for row in old if row.name != "BEN"} < set(room.store.people.read_users().rows)
 
 
@@ -180,7 +193,7 @@ def test_level_times_out_after_a_warning(room: PinRoom) -> None:
     room.at += 1.0
     room.run(1)
     assert shows(room.desk.prompt_notice, "desk.level-ends", seconds=30)
-    room.access.note_activity()
+    room.access.record_activity()
     room.at += 599.0
     room.run(1)
     assert room.access.user_name == "ANNA"
@@ -207,7 +220,7 @@ def test_levels_return_with_a_store_that_was_missing_at_startup(room: PinRoom, t
     room.journal._store, room.journal._folder = store, folder
     room.at += 1.0
     room.run(1)
-    assert shows(again.find_refusal(ProtectedChange.PEOPLE), "screen.level-needed", level="SERVICE")
+    assert shows(again.find_refusal_reason(ProtectedChange.PEOPLE), "screen.level-needed", level="SERVICE")
     assert [row.name for row in again.user_list.rows] == ["ANNA", "BEN", "CARLA"]
     again.close()
 
@@ -223,7 +236,7 @@ def test_unreadable_users_leave_the_strictest_level(room: PinRoom, tmp_path: Pat
     room.journal._store, store = None, room.journal._store
     room.journal._folder = damaged_home(tmp_path)
     room.access.reload()
-    may = {act for act in ProtectedChange if not room.access.find_refusal(act)}
+    may = {act for act in ProtectedChange if not room.access.find_refusal_reason(act)}
     assert may == OPERATORS
     reset = room.find(AccessLevelsFunction).service_reset
     assert reset.find_start_refusal(room.desk.read_snapshot()) == wording("desk.press-e-stop-first")
@@ -231,7 +244,7 @@ def test_unreadable_users_leave_the_strictest_level(room: PinRoom, tmp_path: Pat
     room.session.worker.wait_for_results(LIMIT)
     room.at += 2.0
     room.run(1)
-    assert [room.access.find_refusal(act) for act in ProtectedChange] == [""] * len(ProtectedChange)
+    assert [room.access.find_refusal_reason(act) for act in ProtectedChange] == [""] * len(ProtectedChange)
     room.journal._store = store
 
 
@@ -249,7 +262,7 @@ def test_first_user_has_service_level_and_enables_access_levels(room: PinRoom) -
     levels = room.find(AccessLevelsFunction)
     levels.make_function_keys()["F3"].action()
     typed(levels, "anna", "4711")
-    assert levels.make_table(room.desk.read_snapshot()).question == wording("desk.same-pin-again")
+    assert levels.make_table(room.desk.read_snapshot()).entry_prompt == wording("desk.same-pin-again")
     typed(levels, "4711")
     room.settle()
     assert [(row.name, row.level) for row in room.access.user_list.rows] == [("ANNA", 3)]
@@ -276,7 +289,7 @@ def test_different_pins_are_not_stored(room: PinRoom) -> None:
 def test_a_pin_is_not_shown(room: PinRoom) -> None:
     room.enter_people()
     levels = room.find(AccessLevelsFunction)
-    levels.execute_row()
+    levels.activate_selected_row()
     for sign in "4711":
         levels.handle_key(sign)
     assert levels.make_table(room.desk.read_snapshot()).text == "●●●●"
@@ -317,7 +330,7 @@ def test_ten_minutes_of_estop_reset_all_pins(room: PinRoom) -> None:
 
 def test_pin_reset_requires_estop_and_ends_with_it(room: PinRoom) -> None:
     room.enter_people()
-    room.find(AccessLevelsFunction).ask_pin_reset()
+    room.find(AccessLevelsFunction).ask_for_pin_reset()
     assert begins(room.desk.prompt_notice, "desk.e-stop-for-reset")
     pressed(room)
     room.at += 300.0
@@ -349,15 +362,15 @@ def test_change_begun_at_a_level_is_not_completed_after_sign_out(room: PinRoom) 
     assert programs is not None
     levels.make_function_keys()["F3"].action()
     typed(levels, "eve", "3", "1357")
-    programs.import_export.open_chooser((), None, is_export=False)
+    programs.program_transfer.open_chooser((), None, is_export=False)
     room.at += 600.0
     room.run(1)
     typed(levels, "1357")
     assert shows(room.desk.prompt_notice, "screen.level-needed", what="USERS AND PINS", level="SERVICE")
     room.desk.clear_prompt_line()
-    programs.import_export.worker.wait_for_results(LIMIT)
-    programs.import_export._carry((HOUSE / "setup.cfg",), HOUSE, replace=True)
+    programs.program_transfer.worker.wait_for_results(LIMIT)
+    programs.program_transfer._carry((HOUSE / "setup.cfg",), HOUSE, replace=True)
     assert shows(room.desk.prompt_notice, "screen.level-needed", what="PROGRAMS", level="SETUP")
-    assert not programs.import_export.worker.is_busy
+    assert not programs.program_transfer.worker.is_busy
     room.settle()
     assert room.access.user_list.find_user("EVE") is None

@@ -103,7 +103,7 @@ def _picture(
         return desk.read_snapshot().state is MachineState.IDLE
 
     stage.tick(over, 200.0)
-    scope.selected_keys = curves or scope.selected_keys
+    scope.selected_signal_keys = curves or scope.selected_signal_keys
     desk.settings_store.choose("language", language)
     window = MainWindow(ScreenTheme(DARK_PALETTE))
     window.resize(1024, 600)

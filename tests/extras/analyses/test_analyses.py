@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from app.extras.analyses.analyses import AnalysesModel, analyze_record, find_last_run
+from app.extras.analyses.analyses import AnalysesModel, analyze_record, find_last_program_run
 from app.extras.analyses.analysis_result import AnalysisKind
 from app.extras.analyses.drawing import scale_drawing
 from tests.scope.played_record import record_of, seconds
@@ -27,15 +27,15 @@ def turned_arc() -> object:
 
 def test_ball_bar_analysis_finds_the_arc_of_a_record() -> None:
     found = analyze_record(AnalysisKind.BALL_BAR, turned_arc(), 0, {})  # type: ignore[arg-type]
-    assert found.ball_bar is not None
+    assert found.ball_bar_result is not None
     assert found.selected_arc == (0, 1, 4)
-    assert found.ball_bar.radius_mm == pytest.approx(10.0, abs=1e-3)
-    assert found.ball_bar.backlash_mm == pytest.approx((0.0, 0.02), abs=3e-4)  # Z, X
+    assert found.ball_bar_result.radius_mm == pytest.approx(10.0, abs=1e-3)
+    assert found.ball_bar_result.backlash_mm == pytest.approx((0.0, 0.02), abs=3e-4)  # Z, X
 
 
 def test_path_error_is_assigned_to_its_program_line() -> None:
     found = analyze_record(AnalysisKind.PATH, turned_arc(), 0, {})  # type: ignore[arg-type]
-    assert [each.line for each in found.worst_deviations] == [4]
+    assert [each.line_number for each in found.worst_deviations] == [4]
     assert abs(found.worst_deviations[0].distance_mm) == pytest.approx(
         0.01, abs=1e-4
     )  # the play where X goes radially
@@ -75,25 +75,25 @@ def milled_arc() -> object:
 
 def test_mill_arc_is_found_in_the_xy_plane() -> None:
     found = analyze_record(AnalysisKind.BALL_BAR, milled_arc(), 0, {})  # type: ignore[arg-type]
-    assert found.ball_bar is not None
+    assert found.ball_bar_result is not None
     assert (found.axis_names, found.selected_arc) == (("X", "Y"), (0, 1, 4))
-    assert found.ball_bar.radius_mm == pytest.approx(10.0, abs=1e-3)
-    assert found.ball_bar.backlash_mm == pytest.approx((0.0, 0.02), abs=3e-4)
+    assert found.ball_bar_result.radius_mm == pytest.approx(10.0, abs=1e-3)
+    assert found.ball_bar_result.backlash_mm == pytest.approx((0.0, 0.02), abs=3e-4)
 
 
 def test_mill_path_error_is_spatial() -> None:
     """Where Y goes radially its play of .01 and the .004 of Z are at right angles: √(.01² + .004²)."""
     page = AnalysesModel(SimpleNamespace(metric=True))  # type: ignore[arg-type]
     page.result = found = analyze_record(AnalysisKind.PATH, milled_arc(), 0, {})  # type: ignore[arg-type]
-    assert [each.line for each in found.worst_deviations] == [4]
+    assert [each.line_number for each in found.worst_deviations] == [4]
     assert found.worst_deviations[0].distance_mm == pytest.approx(np.hypot(0.01, 0.004), abs=1e-4)
     sheet = page.make_table()
     assert sheet.column_heads[2:] == ("X", "Y", "Z")
     assert not any("radius" in note or "left" in note for note in sheet.notes)
     drawing = page.make_drawing()
     assert drawing.axis_labels == ("Y  {unit}", "", "X  {unit}")  # seen along Z, which stands
-    assert not drawing.is_inverted
-    assert drawing.command_points.shape[1] == 2
+    assert not drawing.is_vertical_axis_inverted
+    assert drawing.commanded_points.shape[1] == 2
     page.close()
 
 
@@ -102,23 +102,23 @@ def test_drawing_labels_its_axes_with_the_displayed_unit() -> None:
     page.result = analyze_record(AnalysisKind.BALL_BAR, turned_arc(), 0, {})  # type: ignore[arg-type]
     drawing = page.make_drawing()
     assert scale_drawing(drawing, 1.0).axis_labels == ("X  mm", "", "Z  mm")
-    assert scale_drawing(drawing, 1.0).is_inverted
+    assert scale_drawing(drawing, 1.0).is_vertical_axis_inverted
     assert scale_drawing(drawing, 1.0 / 25.4).axis_labels == ("X  in", "", "Z  in")
     page.close()
 
 
 def test_missing_data_is_reported() -> None:
     record = record_of(seconds(0.0, 3.0))
-    assert analyze_record(AnalysisKind.BALL_BAR, record, 0, {}).missing_reason == text("scope.no-arc")
+    assert analyze_record(AnalysisKind.BALL_BAR, record, 0, {}).unavailable_reason == text("scope.no-arc")
     still = record_of(seconds(0.0, 3.0), spindle_turns=np.full(3001, 7.0))
-    assert "does not turn" in analyze_record(AnalysisKind.THREAD, still, 0, {}).missing_reason
+    assert "does not turn" in analyze_record(AnalysisKind.THREAD, still, 0, {}).unavailable_reason
     assert (
         "a path needs two linear axes"
-        in analyze_record(AnalysisKind.PATH, record_of(seconds(0.0, 3.0), {"line"}), 0, {}).missing_reason
+        in analyze_record(AnalysisKind.PATH, record_of(seconds(0.0, 3.0), {"line"}), 0, {}).unavailable_reason
     )
     nothing = np.full(3001, np.nan)
     deaf = record_of(seconds(0.0, 3.0), spindle_turns=nothing)
-    assert "no spindle encoder count" in analyze_record(AnalysisKind.THREAD, deaf, 0, {}).missing_reason
+    assert "no spindle encoder count" in analyze_record(AnalysisKind.THREAD, deaf, 0, {}).unavailable_reason
 
 
 def test_live_samples_are_reduced_to_the_last_run() -> None:
@@ -126,12 +126,12 @@ def test_live_samples_are_reduced_to_the_last_run() -> None:
     line = np.where((times > 2.0) & (times < 5.0), 3.0, 0.0) + np.where(
         (times > 9.0) & (times < 15.0), 4.0, 0.0
     )
-    found = find_last_run(record_of(times, line=line))
+    found = find_last_program_run(record_of(times, line=line))
     assert (found.times_s[0], found.times_s[-1]) == pytest.approx((9.001, 14.999))
 
 
 def test_record_without_a_run_is_used_in_full() -> None:
     record = record_of(seconds(0.0, 2.0), line=np.zeros(2001))
-    assert len(find_last_run(record).times_s) == 2001
+    assert len(find_last_program_run(record).times_s) == 2001
     without = replace(record, values_by_channel={})
-    assert find_last_run(without) is without
+    assert find_last_program_run(without) is without

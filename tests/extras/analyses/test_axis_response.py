@@ -44,7 +44,9 @@ def test_the_last_move_is_found_with_its_lag() -> None:
     assert found.axis_letter == "Z"
     assert found.step_response.step_size_mm == pytest.approx(2.0)
     assert found.max_speed_mm_s == pytest.approx(20.0, rel=1e-3)
-    assert found.lag_s == pytest.approx(TAU, rel=0.05)  # less the two ends, where it builds up and goes
+    assert found.following_lag_s == pytest.approx(
+        TAU, rel=0.05
+    )  # less the two ends, where it builds up and goes
     assert np.abs(found.following_error).max() == pytest.approx(20.0 * TAU, rel=1e-3)
     assert found.step_response.overshoot_fraction == pytest.approx(0.0, abs=1e-6)
     # it is within the window of in position after τ·ln(error / window)
@@ -54,7 +56,7 @@ def test_the_last_move_is_found_with_its_lag() -> None:
 
 def test_predicted_error_doubles_at_twice_the_speed() -> None:
     found = find_last_move(moved(), DRIVES)  # type: ignore[arg-type]
-    assert np.abs(found.predict_error(2.0)).max() == pytest.approx(
+    assert np.abs(found.predict_following_error(2.0)).max() == pytest.approx(
         2.0 * np.abs(found.following_error).max(), rel=0.05
     )
 
@@ -72,7 +74,7 @@ def test_record_without_a_move_raises_an_error() -> None:
     record = record_of(times, X_demand=still, Z_demand=still)
     with raises_code(AnalysisError, "no-step"):
         find_last_move(record, DRIVES)
-    assert "Jog page" in analyze_record(AnalysisKind.AXIS_RESPONSE, record, 0, DRIVES).missing_reason
+    assert "Jog page" in analyze_record(AnalysisKind.AXIS_RESPONSE, record, 0, DRIVES).unavailable_reason
 
 
 def test_unfinished_move_is_not_a_step_response() -> None:

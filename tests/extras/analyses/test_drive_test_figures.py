@@ -13,18 +13,18 @@ from app.extras.analyses.analyses import analyze_record
 from app.extras.analyses.analysis_result import AnalysisKind
 from app.extras.analyses.drive_test_results import (
     TEST_PATH_KEY,
-    ResultsPart,
-    calculate_results,
+    ResultsSection,
+    calculate_test_results,
     describe_test_path,
-    encode_test_path,
     find_test_path,
+    format_test_path_json,
     make_results_table,
 )
 from core.executor.hand_motion.drive_test import AxisTestLimits, DriveTestMotion, Shape
 from core.extras.analyses.step_response import (
     analyze_sine,
     calculate_bandwidth,
-    find_narrowest_limit,
+    find_smallest_error_limit,
     find_speed_at_limit,
 )
 from core.records.record import AnalysisError, ScopeRecord
@@ -61,7 +61,7 @@ def played(path: DriveTestMotion, tau: float = TAU, lasts: float = 1.0) -> Scope
     for i in range(1, len(times)):  # exact for a demand that is straight between two samples
         actual[i] = decay * actual[i - 1] + (slope - decay) * demand[i - 1] + (1.0 - slope) * demand[i]
     record = record_of(times[::_FINE], Z_demand=demand[::_FINE], Z_actual=actual[::_FINE])
-    return dataclasses.replace(record, about={**record.about, TEST_PATH_KEY: encode_test_path(path)})
+    return dataclasses.replace(record, about={**record.about, TEST_PATH_KEY: format_test_path_json(path)})
 
 
 def test_played_test_path_is_read_back_from_its_record() -> None:
@@ -79,7 +79,7 @@ def test_other_records_have_no_test_path(told: str) -> None:
 
 def test_first_order_drive_step_matches_the_formula() -> None:
     """Braking by a until T leaves an error e, which goes with exp(−t/τ): in position after τ·ln(e/band)."""
-    found = calculate_results(played(STEP), STEP, DRIVES)
+    found = calculate_test_results(played(STEP), STEP, DRIVES)
     assert [each.step_size_mm for each in found.step_responses] == pytest.approx([0.5, -0.5])
     # speeding up and braking: e' = v − e/τ; solved from rest over the two halves of h = √(s/a)
     h, a = math.sqrt(0.5 / LIMITS.max_acceleration_mm_s2), LIMITS.max_acceleration_mm_s2
@@ -97,7 +97,7 @@ def test_first_order_drive_step_matches_the_formula() -> None:
 
 
 def test_a_ramp_lags_by_its_speed_times_the_time_constant() -> None:
-    found = calculate_results(played(RAMP), RAMP, DRIVES)
+    found = calculate_test_results(played(RAMP), RAMP, DRIVES)
     assert [each.lag_mm for each in found.ramp_responses] == pytest.approx(
         [-20.0 * TAU, 20.0 * TAU], rel=1e-3
     )
@@ -108,7 +108,7 @@ def test_a_ramp_lags_by_its_speed_times_the_time_constant() -> None:
 
 def test_sine_gain_phase_and_bandwidth_match_the_formula() -> None:
     """1/√(1+ω²τ²), arctan ωτ; 3 dB down at 1/2πτ = 39.8 Hz; never 90° late."""
-    found = calculate_results(played(SINE), SINE, DRIVES)
+    found = calculate_test_results(played(SINE), SINE, DRIVES)
     for each in found.sine_responses:
         omega = 2.0 * math.pi * each.frequency_hz * TAU
         assert each.gain == pytest.approx(1.0 / math.hypot(1.0, omega), rel=0.005)
@@ -122,16 +122,18 @@ def test_sine_gain_phase_and_bandwidth_match_the_formula() -> None:
 
 def test_analyses_page_recognizes_a_drive_test_record() -> None:
     found = analyze_record(AnalysisKind.AXIS_RESPONSE, played(RAMP), 0, DRIVES)
-    assert found.drive_test is not None
-    assert found.drive_test.test_path == RAMP
+    assert found.drive_test_results is not None
+    assert found.drive_test_results.test_path == RAMP
     assert describe_test_path(RAMP, True) == "Z−  RAMP  5.0000 mm, 20.000 mm/s"
     assert describe_test_path(SINE, True) == "Z+  SINE  0.5000 mm, 2, 10, 40, 80 Hz"
 
 
 def test_response_and_limit_parts_make_up_the_whole_table() -> None:
-    found = calculate_results(played(STEP), STEP, DRIVES)
+    found = calculate_test_results(played(STEP), STEP, DRIVES)
     whole, *parts = (
-        make_results_table("", found, True, part).rows for part in (ResultsPart.ALL, *ResultsPart) if part
+        make_results_table("", found, True, part).rows
+        for part in (ResultsSection.ALL, *ResultsSection)
+        if part
     )
     assert list(whole) == [*parts[0], *parts[1]]
 
@@ -142,19 +144,19 @@ def test_response_and_limit_parts_make_up_the_whole_table() -> None:
 @pytest.mark.parametrize("path", [STEP, RAMP, SINE])
 def test_released_drive_test_has_no_results(path: DriveTestMotion) -> None:
     with raises_code(AnalysisError, "test-broken-off"):
-        calculate_results(played(path, lasts=0.3), path, DRIVES)
+        calculate_test_results(played(path, lasts=0.3), path, DRIVES)
 
 
 def test_record_of_another_machine_is_rejected() -> None:
     path = dataclasses.replace(STEP, axis="Y")
     with raises_code(AnalysisError, "no-axis", "Y"):
-        calculate_results(played(STEP), path, DRIVES)
+        calculate_test_results(played(STEP), path, DRIVES)
 
 
 def test_step_within_the_in_position_band_is_rejected() -> None:
     path = dataclasses.replace(STEP, travel_mm=DRIVES["Z"].in_position_tolerance)
     with raises_code(AnalysisError, "step-too-small"):
-        calculate_results(played(path), path, DRIVES)
+        calculate_test_results(played(path), path, DRIVES)
 
 
 def test_record_without_positions_is_rejected() -> None:
@@ -162,7 +164,7 @@ def test_record_without_positions_is_rejected() -> None:
     none = np.full(len(record.times_s), np.nan)
     record = dataclasses.replace(record, values_by_channel={**record.values_by_channel, "Z actual": none})
     with raises_code(AnalysisError, "no-positions"):
-        calculate_results(record, STEP, DRIVES)
+        calculate_test_results(record, STEP, DRIVES)
 
 
 # --- windows and speeds -------------------------------------------------------------------------------------
@@ -172,9 +174,9 @@ def test_narrowest_limit_is_exceeded_just_for_the_trip_time() -> None:
     """A triangle of 1 mm that rises and falls 10 ms each is above w for 20·(1−w) ms: 5 ms at w = .75."""
     times = seconds(0.0, 1.0)
     error = np.maximum(0.0, 1.0 - np.abs(times - 0.5) / 0.010)
-    assert find_narrowest_limit(times, error, 0.005) == pytest.approx(0.75, abs=0.06)
-    assert find_narrowest_limit(times, -error, 0.0) == pytest.approx(1.0, abs=0.11)
-    assert find_narrowest_limit(times, 0.0 * error, 0.005) == 0.0
+    assert find_smallest_error_limit(times, error, 0.005) == pytest.approx(0.75, abs=0.06)
+    assert find_smallest_error_limit(times, -error, 0.0) == pytest.approx(1.0, abs=0.11)
+    assert find_smallest_error_limit(times, 0.0 * error, 0.005) == 0.0
 
 
 def test_lag_meets_the_growing_limit_at_the_calculated_speed() -> None:

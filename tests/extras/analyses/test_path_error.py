@@ -52,7 +52,7 @@ def test_the_worst_lines_come_first() -> None:
     measured[14, 0] = 10.05
     due = np.repeat([0, 1], 10)
     worst = find_worst_deviations(calculate_path_error(path, np.array([7, 8, 8]), measured, due, 1))
-    assert [each.line for each in worst] == [8, 7]
+    assert [each.line_number for each in worst] == [8, 7]
     assert worst[0].distance_mm == pytest.approx(-0.05)  # to the right of the way up
     assert worst[0].sample_index == 14
     assert worst[0].position == pytest.approx((10.0, x[4]))

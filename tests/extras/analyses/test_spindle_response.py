@@ -13,7 +13,7 @@ from app.compose.machine.machine_files import load_machine
 from app.extras.analyses.analyses import AnalysesModel, analyze_record
 from app.extras.analyses.analysis_result import AnalysisKind
 from app.extras.analyses.drawing import scale_drawing
-from app.extras.analyses.spindle_response import SpindleResponse, find_last_run_up
+from app.extras.analyses.spindle_response import SpindleResponse, find_last_speed_change
 from core.records.record import AnalysisError, FloatArray, ScopeRecord
 from tests.coded import raises_code
 from tests.scope.played_record import record_of, seconds
@@ -37,12 +37,12 @@ def turned(*changes: tuple[float, float], swing: float = 0.0) -> ScopeRecord:
 
 
 def found(record: ScopeRecord) -> SpindleResponse:
-    return find_last_run_up(record, MODEL)
+    return find_last_speed_change(record, MODEL)
 
 
 def test_first_order_lag_matches_the_formula() -> None:
     response = found(turned((1.0, 1000.0)))
-    assert MODEL.at_speed == pytest.approx(0.05)
+    assert MODEL.at_speed_tolerance == pytest.approx(0.05)
     step = response.step_responses[0]
     assert step.step_size_mm == 1000.0
     assert step.rise_time_s == pytest.approx(TAU * math.log(9.0), abs=0.002)
@@ -54,8 +54,8 @@ def test_first_order_lag_matches_the_formula() -> None:
 
 def test_speed_variation_is_measured() -> None:
     response = found(turned((1.0, 1000.0), swing=4.0))
-    assert response.variation_rpm == pytest.approx(8.0, abs=0.4)
-    assert response.mean_error_rpm == pytest.approx(0.0, abs=0.2)
+    assert response.speed_variation_rpm == pytest.approx(8.0, abs=0.4)
+    assert response.mean_speed_error_rpm == pytest.approx(0.0, abs=0.2)
 
 
 def test_speed_swing_wider_than_the_band_never_settles() -> None:
@@ -73,10 +73,10 @@ def test_last_acceleration_of_several_is_used_and_stops_are_ignored() -> None:
 def test_change_within_a_fixed_band_does_not_hide_the_run_up_before_it() -> None:
     """With a band of 1 %, 30 rpm exceed twice the band, 20.6 rpm, but not twice the band of 2 %, 41.2 rpm."""
     record = turned((1.0, 1000.0), (5.0, 1030.0))
-    response = find_last_run_up(record, replace(MODEL, at_speed=0.01))
+    response = find_last_speed_change(record, replace(MODEL, at_speed_tolerance=0.01))
     assert [step.step_size_mm for step in response.step_responses] == [1000.0] * 3
     record = turned((1.0, 1000.0), (5.0, 1060.0))  # more than 4 %
-    response = find_last_run_up(record, replace(MODEL, at_speed=0.01))
+    response = find_last_speed_change(record, replace(MODEL, at_speed_tolerance=0.01))
     assert [step.step_size_mm for step in response.step_responses] == [60.0] * 3
 
 
@@ -102,12 +102,16 @@ def test_missing_spindle_speed_is_reported() -> None:
         found(record_of(seconds(0.0, 12.0), spindle_speed=nothing))
     assert (
         "no spindle"
-        in analyze_record(AnalysisKind.SPINDLE_RESPONSE, turned((1.0, 500.0)), 0, {}).missing_reason
+        in analyze_record(AnalysisKind.SPINDLE_RESPONSE, turned((1.0, 500.0)), 0, {}).unavailable_reason
     )
 
 
 def test_spindle_response_has_a_table_and_a_drawing() -> None:
-    page = AnalysesModel(SimpleNamespace(metric=False), spindle=MODEL, kind=AnalysisKind.SPINDLE_RESPONSE)  # type: ignore[arg-type]
+    page = AnalysesModel(
+        SimpleNamespace(metric=False),  # type: ignore[arg-type]
+        spindle=MODEL,
+        analysis_kind=AnalysisKind.SPINDLE_RESPONSE,
+    )
     page.result = analyze_record(AnalysisKind.SPINDLE_RESPONSE, turned((1.0, 1000.0)), 0, {}, MODEL)
     rows = {row.cells[0]: row.cells[1] for row in page.make_table().rows}
     assert rows["SPEED"] == "0 → 1000 rpm"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.extras.analyses.thread_passes import ThreadAnalysis, analyze_thread, calculate_max_rpm
+from core.extras.analyses.thread_passes import ThreadAnalysis, analyze_thread, calculate_max_threading_rpm
 from core.records.record import AnalysisError
 from tests.coded import raises_code
 
@@ -90,7 +90,7 @@ def test_pass_with_a_jolt_counts_as_one_pass() -> None:
 
 
 def test_maximum_thread_rpm_follows_from_the_axis_speed() -> None:
-    assert calculate_max_rpm(-1.5, 42.0) == pytest.approx(1680.0)  # 42 mm/s are 28 leads a second
+    assert calculate_max_threading_rpm(-1.5, 42.0) == pytest.approx(1680.0)  # 42 mm/s are 28 leads a second
 
 
 def test_constant_feed_is_one_pass_and_its_lead_is_reported() -> None:

@@ -17,10 +17,12 @@ LINUXCNC = "G20G18G7G95\nT1M6\nG97S500M3\nG0X2Z.1\nF.01\n"
 def converted(text: str, control: str = "fanuc-a", **options: Any) -> Conversion:
     """Return the conversion of a complete program."""
     wanted = ConversionOptions(
-        SourceControl(control), has_comments=False, m_codes=frozenset({25, 26}), **options
+        SourceControl(control), writes_comments=False, m_codes=frozenset({25, 26}), **options
     )
     return convert_program(
-        text.splitlines(), wanted, ControlLimits(m_outputs={25: ("catcher", True), 26: ("catcher", False)})
+        text.splitlines(),
+        wanted,
+        ControlLimits(m_code_outputs={25: ("catcher", True), 26: ("catcher", False)}),
     )
 
 

@@ -16,7 +16,7 @@ from core.extras.drawings.drawing_placement import (
     find_contours,
     select_axis,
 )
-from core.extras.drawings.turning_contour import ToolReach, make_turning_contour
+from core.extras.drawings.turning_contour import ToolAngleLimits, make_turning_contour
 from tests.extras.drawings.hand import chain, dxf
 from tests.fuzz.fuzz_target import Target, scratch
 
@@ -34,7 +34,7 @@ def _drawing(ending: str) -> Target:
         drawing = read_drawing(path)
         view = DrawingPlacement(select_axis(drawing, ""), drawing.unit_mm or 1.0)
         for net in islice(find_contours(drawing, view), 4):
-            make_turning_contour(extract_profile(drawing, view, net, ContourSide.OUTSIDE), ToolReach())
+            make_turning_contour(extract_profile(drawing, view, net, ContourSide.OUTSIDE), ToolAngleLimits())
         return ()
 
     def pairs(data: bytes, chance: random.Random) -> bytes:

@@ -19,7 +19,7 @@ from core.extras.drawings.drawing_placement import (
     find_contours,
     select_axis,
 )
-from core.extras.drawings.profile_description import propose_fields
+from core.extras.drawings.profile_description import propose_program_fields
 from core.extras.drawings.profile_program import ProfileProgram, make_profile_program
 from core.extras.shapes.shape_fields import ProgramSettings, ShopData
 from core.interpreter.shared.job_setup import SecondaryOffset
@@ -69,7 +69,7 @@ def program(
 ) -> ProfileProgram:
     """The program of a profile; what is not typed is as it is proposed."""
     shapes = TOOLS if tools is None else tools
-    fields = propose_fields(chosen, typed, shapes, is_metric=metric, dialect=dialect)
+    fields = propose_program_fields(chosen, typed, shapes, is_metric=metric, dialect=dialect)
     setting = ProgramSettings(metric=metric, shop=ShopData(tools=shapes), dialect=dialect)
     return make_profile_program(chosen, fields, [], setting)
 

@@ -7,13 +7,13 @@ import signal
 import sys
 from pathlib import Path
 
-from core.extras.drawings.drawing_child import limit_process
+from core.extras.drawings.drawing_child import limit_process_resources
 
 
 def main() -> None:
     """Do it, within the limits of the arguments."""
     what = Path(sys.argv[1]).read_text(encoding="utf-8")
-    limit_process(int(sys.argv[2]), int(sys.argv[3]))
+    limit_process_resources(int(sys.argv[2]), int(sys.argv[3]))
     if what == "hang":
         signal.pause()
     elif what == "spin":

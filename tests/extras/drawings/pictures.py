@@ -11,7 +11,7 @@ from app.compose.runs.journal import Journal
 from app.desk.data_folder import find_data_folder
 from app.desk.desk import Desk
 from app.editor.editor_view import EditorPage
-from app.extras.drawings.drawing_form import AddedDrawingForm
+from app.extras.drawings.drawing_form import AdditionalDrawingForm
 from app.extras.shapes.shapes_view import ShapesView
 from app.screen.page_base import Page
 
@@ -37,8 +37,10 @@ def prepare(_desk: Desk, _journal: Journal, _folder: Path) -> None:
 def settle(page: Page | None, wait: Callable[[], None]) -> None:
     """Wait until a drawing has been read, and what was made of it proved."""
     if isinstance(page, EditorPage) and isinstance(page.editor_panel, ShapesView):
-        for each in page.editor_panel.model.added_forms if page.editor_panel.model.form is not None else ():
-            if isinstance(each, AddedDrawingForm):
+        for each in (
+            page.editor_panel.model.additional_forms if page.editor_panel.model.form is not None else ()
+        ):
+            if isinstance(each, AdditionalDrawingForm):
                 wait()
                 each.plan_worker.wait_for_results(LOADING)
                 wait()

@@ -12,7 +12,7 @@ import pytest
 from core.extras.drawings.drawing import MAX_DRAWING_BYTES, DrawingError
 from core.extras.drawings.drawing_file import read_drawing
 from core.extras.drawings.drawing_placement import ContourSide
-from core.extras.drawings.turning_contour import ToolReach, make_turning_contour
+from core.extras.drawings.turning_contour import ToolAngleLimits, make_turning_contour
 from tests.coded import raises_code
 from tests.extras.drawings.hand import Draw, chain, dxf, profile_of
 
@@ -99,13 +99,13 @@ def test_axis_without_a_line_number_is_rejected(tmp_path: Path, name: str) -> No
 def test_face_alone_has_nothing_to_turn(tmp_path: Path) -> None:
     chosen = profile_of(dxf(tmp_path / "x.dxf", chain((0, 0), (0, 4))), axis="Y 0")
     with raises_code(DrawingError, "nothing-to-turn"):
-        make_turning_contour(chosen, ToolReach())
+        make_turning_contour(chosen, ToolAngleLimits())
 
 
 def test_tool_leaning_into_a_shoulder_is_rejected(tmp_path: Path) -> None:
     chosen = profile_of(dxf(tmp_path / "x.dxf", chain((0, 0), (0, 4), (-8, 4), (-8, 6), (-12, 6), (-12, 0))))
     with raises_code(DrawingError, "too-steep", "72", "90"):
-        make_turning_contour(chosen, ToolReach(math.radians(70), math.radians(72.5)))
+        make_turning_contour(chosen, ToolAngleLimits(math.radians(70), math.radians(72.5)))
 
 
 # --- files
@@ -229,7 +229,7 @@ def test_entity_of_an_unknown_kind_is_omitted_and_counted(tmp_path: Path) -> Non
     path.write_text("\n".join(lines.split()) + "\n")
     drawing = read_drawing(path)
     assert len(drawing.elements) == 1
-    assert drawing.omitted_counts == {"OWNKIND": 1}
+    assert drawing.omitted_object_counts == {"OWNKIND": 1}
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import pytest
 
 from core.extras.drawings.drawing_file import read_drawing
 from core.extras.drawings.drawing_placement import ContourSide, find_axes
-from core.extras.drawings.turning_contour import calculate_tool_reach
+from core.extras.drawings.turning_contour import calculate_tool_angle_limits
 from tests.extras.drawings.hand import BLADE, RIGHT, SLIM, chain, dxf, profile_of, program, radii
 
 NEAR = 0.01  # mm of a radius
@@ -25,7 +25,7 @@ def test_ball_is_followed_down_to_the_slope_of_the_tool(tmp_path: Path) -> None:
         space.add_arc((-15, 6), 5, 90, 180)
         space.add_line((-20, 6), (-30, 6))
 
-    a = calculate_tool_reach(SLIM, ContourSide.OUTSIDE).max_falling_angle_rad - math.radians(2.0)
+    a = calculate_tool_angle_limits(SLIM, ContourSide.OUTSIDE).max_falling_angle_rad - math.radians(2.0)
     made = program(profile_of(dxf(tmp_path / "ball.dxf", draw)), {1: SLIM})
     turn = -15.0 - 5.0 * math.sin(a)
 
@@ -103,4 +103,4 @@ def test_svg_editor_metadata_is_not_counted_as_omitted(tmp_path: Path) -> None:
         '<svg xmlns="http://www.w3.org/2000/svg" xmlns:e="urn:e" width="9mm" height="9mm" viewBox="0 0 9 9">'
     )
     path.write_text(f'{head}<e:view zoom="3"/><metadata/><path d="M0 0H5"/><text>A</text></svg>')
-    assert read_drawing(path).omitted_counts == {"text": 1}
+    assert read_drawing(path).omitted_object_counts == {"text": 1}

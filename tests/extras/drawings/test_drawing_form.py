@@ -9,12 +9,12 @@ from typing import Any
 
 import pytest
 
-from app.desk.background_work import AbandonedError, ProgressCallback
-from app.extras.drawings.drawing_form import AddedDrawingForm, DrawingForm
+from app.desk.background_work import ProgressCallback, WorkAbandonedError
+from app.extras.drawings.drawing_form import AdditionalDrawingForm, DrawingForm
 from app.extras.drawings.drawing_plan import DrawingPlanner
-from app.extras.drawings.drawings_setup import run_trial
+from app.extras.drawings.drawings_setup import run_drawing_trial
 from app.extras.shapes.shapes_model import ShapesModel
-from app.screen.screen_theme import use_language
+from app.screen.screen_theme import set_language
 from core.extras.drawings.drawing import Drawing
 from core.extras.drawings.drawing_file import read_drawing
 from core.extras.shapes.shape_fields import ProgramSettings, ShopData
@@ -32,14 +32,14 @@ class Desk:
         shop = ShopData(tools=TOOLS)
         self.shapes = ShapesModel(lambda: shop, ProgramSettings(metric=metric))
         self.shapes.shop_data = shop
-        self.drawing = AddedDrawingForm(
+        self.drawing = AdditionalDrawingForm(
             lambda: {path.name: path for path in sorted(folder.glob("*.*"))},
-            lambda text, plan, watch: run_trial(machine(), lambda: TOOLS, text, plan, watch),
+            lambda text, plan, watch: run_drawing_trial(machine(), lambda: TOOLS, text, plan, watch),
         )
-        self.shapes.added_forms = (self.drawing,)
+        self.shapes.additional_forms = (self.drawing,)
 
     def open(self, text: str = "") -> DrawingForm:
-        assert self.shapes.open_for_text("x.nc", text, 1) == ""
+        assert self.shapes.open_program_text("x.nc", text, 1) == ""
         self.shapes.worker.wait_for_results(60.0)
         while self.shapes.form is not None:  # that of the piece at the cursor
             self.shapes.handle_escape()
@@ -68,8 +68,8 @@ def desk(tmp_path: Path) -> Any:
 def test_unit_and_layer_are_translated_to_spanish_but_layer_names_are_not(desk: Desk, tmp_path: Path) -> None:
     dxf(tmp_path / "step.dxf", chain(*STEP))
     form = desk.open()
-    unit, layer = (next(each for each in form.fields if each.word == word) for word in ("DUNIT", "LAYER"))
-    use_language("es")
+    unit, layer = (next(each for each in form.fields if each.name == word) for word in ("DUNIT", "LAYER"))
+    set_language("es")
     try:
         assert form.get_display_text(layer) == "TODAS"
         form.entered_texts = {"DUNIT": "INCH", "LAYER": "OUTSIDE"}
@@ -78,7 +78,7 @@ def test_unit_and_layer_are_translated_to_spanish_but_layer_names_are_not(desk: 
         form.entered_texts = {"LAYER": "NO COUNT is on"}
         assert form.get_display_text(layer) == "NO COUNT is on"
     finally:
-        use_language("en")
+        set_language("en")
 
 
 def test_drawing_becomes_shapes_that_can_be_reopened(desk: Desk, tmp_path: Path) -> None:
@@ -88,8 +88,8 @@ def test_drawing_becomes_shapes_that_can_be_reopened(desk: Desk, tmp_path: Path)
     assert form.remarks[0] == "secondary offset 1 must have X -.8 (diameter), Z -.4, R .4 mm"
     assert any("remains in the corner at Z -9.975" in each for each in form.remarks)
     desk.shapes.write_form()
-    assert [each.filled_shape.shape.name for each in desk.shapes.pieces] == ["HEAD", "FACE", "TURN"]
-    assert all(each.edited_line < 0 for each in desk.shapes.pieces)
+    assert [each.shape_instance.shape.name for each in desk.shapes.shape_pieces] == ["HEAD", "FACE", "TURN"]
+    assert all(each.edited_line < 0 for each in desk.shapes.shape_pieces)
     assert "X12\n" in desk.shapes.text
 
 
@@ -104,16 +104,16 @@ def test_contour_and_axis_are_picked_with_the_pointer(desk: Desk, tmp_path: Path
     desk.shapes.handle_touch((-3.0, 14.0))
     desk.settle()
     assert form.get_value_text(form.shape.fields[3]) == "2"
-    desk.shapes.select_touched("CONTOUR 1")  # the number that stands on it
+    desk.shapes.select_touched_field("CONTOUR 1")  # the number that stands on it
     desk.settle()
     assert form.filled_shape.get_text("CONTOUR") == "1"
-    form.select_word("AXIS")
+    form.select_field_by_name("AXIS")
     desk.shapes.handle_touch((20.0, -3.1))  # the line of no other end, drawn last
     desk.settle()
     assert form.filled_shape.get_text("AXIS") == "LINE 10"
-    assert form.plan is not None
-    assert form.plan.profile is not None
-    assert max(each.bounding_box[1] for each in form.plan.profile.elements) == pytest.approx(
+    assert form.drawing_plan is not None
+    assert form.drawing_plan.profile is not None
+    assert max(each.bounding_box[1] for each in form.drawing_plan.profile.elements) == pytest.approx(
         9.0
     )  # 6 above Y 0
 
@@ -122,10 +122,10 @@ def test_contour_and_side_are_picked_with_keys(desk: Desk, tmp_path: Path) -> No
     """Down to the side of the face, Right: the face is at the left."""
     dxf(tmp_path / "step.dxf", chain(*STEP))
     form = desk.open()
-    form.select_word("FRONT")
+    form.select_field_by_name("FRONT")
     desk.strike("Right")
     assert form.filled_shape.get_text("FRONT") == "LEFT"
-    form.select_word("ROUGH")
+    form.select_field_by_name("ROUGH")
     desk.strike("0")
     assert not any("G75" in line for line in form.program_lines)
 
@@ -134,11 +134,11 @@ def test_contour_and_side_are_picked_with_keys(desk: Desk, tmp_path: Path) -> No
 def test_unknown_contour_number_is_an_error_of_its_field(desk: Desk, tmp_path: Path, number: str) -> None:
     dxf(tmp_path / "step.dxf", chain(*STEP))
     form = desk.open()
-    desk.shapes.select_touched(f"CONTOUR {number}")
+    desk.shapes.select_touched_field(f"CONTOUR {number}")
     desk.settle()
     assert "has 1 contours: choose 1 to 1." in form.error_texts["CONTOUR"]
     assert form.filled_shape.get_text("CONTOUR") == number
-    form.show_trial(None, ())
+    form.show_trial_result(None, ())
     assert not form.program_lines
 
 
@@ -153,13 +153,13 @@ def test_error_is_shown_at_its_field(desk: Desk, tmp_path: Path) -> None:
     (tmp_path / "b.dxf").write_text("no drawing")
     form = desk.open()
     assert form.error_texts["DUNIT"] == text("shapes.no-unit", file="a.dxf")
-    form.select_word("DUNIT")
+    form.select_field_by_name("DUNIT")
     desk.strike("M")
     assert not form.error_texts
-    form.select_word("SIDE")
+    form.select_field_by_name("SIDE")
     desk.strike("Right")
     assert "no bore" in form.error_texts["CONTOUR"]
-    form.select_word("FILE")
+    form.select_field_by_name("FILE")
     desk.strike("Right")
     assert "damaged" in form.error_texts["FILE"]
     desk.shapes.write_form()
@@ -169,7 +169,7 @@ def test_error_is_shown_at_its_field(desk: Desk, tmp_path: Path) -> None:
 def test_drawing_that_gives_an_invalid_program_is_not_written(desk: Desk, tmp_path: Path) -> None:
     dxf(tmp_path / "a.dxf", chain(*STEP))
     form = desk.open()
-    form.select_word("FROM")
+    form.select_field_by_name("FROM")
     desk.strike("5")
     assert re.search(pattern("shapes.outside-stock", stock="5"), form.current_error)
     assert not form.program_lines
@@ -190,7 +190,7 @@ class Reading:
         try:
             while not self.free.wait(0.01):
                 watch(7.4)
-        except AbandonedError:
+        except WorkAbandonedError:
             self.canceled.set()
             raise
         return read_drawing(path)
@@ -202,7 +202,7 @@ def reading(desk: Desk, tmp_path: Path) -> Reading:
     dxf(tmp_path / "a.dxf", chain(*STEP))
     found = Reading()
     desk.drawing.planner = DrawingPlanner(found)
-    desk.shapes.open_for_text("x.nc", "", 1)
+    desk.shapes.open_program_text("x.nc", "", 1)
     desk.shapes.handle_key("x")
     assert found.begun.wait(60.0)
     return found
@@ -226,7 +226,7 @@ def test_reading_can_be_canceled_and_restarted(desk: Desk, reading: Reading, how
     if how == "Esc":
         assert shapes.handle_escape()
     else:
-        shapes.function_keys()[6].action()
+        shapes.make_function_keys()[6].action()
     assert reading.canceled.wait(60.0)
     desk.settle()
     assert isinstance(shapes.form, DrawingForm)
@@ -235,11 +235,11 @@ def test_reading_can_be_canceled_and_restarted(desk: Desk, reading: Reading, how
     shapes.write_form()
     assert shapes.text == ""  # there is nothing to write
     reading.free.set()
-    shapes.function_keys()[6].action()
+    shapes.make_function_keys()[6].action()
     desk.settle()
     assert not shapes.form.error_texts
     assert shapes.form.program_lines
-    assert shapes.function_keys().get(6) is None
+    assert shapes.make_function_keys().get(6) is None
 
 
 def test_closing_the_page_cancels_the_reading(desk: Desk, reading: Reading) -> None:

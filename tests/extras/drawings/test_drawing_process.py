@@ -19,7 +19,7 @@ from core.extras.drawings.drawing import (
     encode_error,
 )
 from core.extras.drawings.drawing_file import read_drawing
-from core.extras.drawings.drawing_process import ReadingLimits, read_in_process
+from core.extras.drawings.drawing_process import ReadingLimits, read_drawing_in_process
 from core.geometry.lines_and_arcs import Arc, Line
 from tests.coded import raises_code
 from tests.extras.drawings.hand import chain, dxf
@@ -46,7 +46,7 @@ def test_drawing_read_in_a_process_is_identical(tmp_path: Path) -> None:
     path = dxf(tmp_path / "part.dxf", chain(*BULGED))
     here = read_drawing(path)
     assert any(isinstance(each.element, Arc) for each in here.elements)
-    assert read_in_process(path) == here
+    assert read_drawing_in_process(path) == here
 
 
 def test_every_element_kind_survives_encoding() -> None:
@@ -63,9 +63,9 @@ def test_every_element_kind_survives_encoding() -> None:
 
 def test_error_is_passed_on_with_its_code(tmp_path: Path) -> None:
     with raises_code(DrawingError, "damaged", "part.dxf"):
-        read_in_process(drawing(tmp_path, "no drawing"))
+        read_drawing_in_process(drawing(tmp_path, "no drawing"))
     with raises_code(DrawingError, "unreadable", "none.svg"):
-        read_in_process(tmp_path / "none.svg")
+        read_drawing_in_process(tmp_path / "none.svg")
     with raises_code(DrawingError, "some-code", "why"):
         decode_drawing(encode_error(DrawingError("why", "some-code")))
 
@@ -75,7 +75,7 @@ def test_current_folder_is_not_on_the_import_path(tmp_path: Path, monkeypatch: p
     path = dxf(tmp_path / "part.dxf", chain(*BULGED))
     (tmp_path / "struct.py").write_text("raise SystemExit(0)\n")
     monkeypatch.chdir(tmp_path)
-    assert read_in_process(Path(path.name)) == read_drawing(path)
+    assert read_drawing_in_process(Path(path.name)) == read_drawing(path)
 
 
 # --- its limits
@@ -84,7 +84,7 @@ def test_current_folder_is_not_on_the_import_path(tmp_path: Path, monkeypatch: p
 @pytest.mark.usefixtures("hostile")
 def test_slow_drawing_process_times_out(tmp_path: Path) -> None:
     with raises_code(DrawingError, "too-slow", "part.dxf"):
-        read_in_process(drawing(tmp_path, "hang"), limits=ReadingLimits(timeout_s=0.0))
+        read_drawing_in_process(drawing(tmp_path, "hang"), limits=ReadingLimits(timeout_s=0.0))
 
 
 @linux
@@ -95,14 +95,14 @@ def test_slow_drawing_process_times_out(tmp_path: Path) -> None:
 )
 def test_excessive_resource_use_raises_one_error(what: str, code: str, tmp_path: Path) -> None:
     with raises_code(DrawingError, code, "part.dxf"):
-        read_in_process(drawing(tmp_path, what), limits=ReadingLimits(processor_time_s=1))
+        read_drawing_in_process(drawing(tmp_path, what), limits=ReadingLimits(processor_time_s=1))
 
 
 @linux
 def test_memory_limit_covers_imported_libraries(tmp_path: Path) -> None:
     path = dxf(tmp_path / "part.dxf", chain(*BULGED))
     with raises_code(DrawingError, "out-of-memory", "part.dxf"):
-        read_in_process(path, limits=ReadingLimits(memory_bytes=24 * 1024**2))
+        read_drawing_in_process(path, limits=ReadingLimits(memory_bytes=24 * 1024**2))
 
 
 def test_memory_error_in_a_library_raises_out_of_memory(
@@ -113,7 +113,7 @@ def test_memory_error_in_a_library_raises_out_of_memory(
 
     monkeypatch.setattr("core.extras.drawings.dxf_reader.read_dxf", hungry)
     with raises_code(DrawingError, "out-of-memory", "part.dxf"):
-        decode_drawing(drawing_child.read_and_encode(drawing(tmp_path, "0\n")))
+        decode_drawing(drawing_child.read_and_encode_drawing(drawing(tmp_path, "0\n")))
 
 
 def test_process_start_failure_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -122,7 +122,7 @@ def test_process_start_failure_is_reported(tmp_path: Path, monkeypatch: pytest.M
 
     monkeypatch.setattr(subprocess, "Popen", refused)
     with raises_code(DrawingError, "unreadable", "part.dxf"):
-        read_in_process(drawing(tmp_path, "x"))
+        read_drawing_in_process(drawing(tmp_path, "x"))
 
 
 # --- canceled
@@ -148,7 +148,7 @@ def test_caller_can_cancel_and_the_process_ends(tmp_path: Path, monkeypatch: pyt
 
     monkeypatch.setattr(subprocess, "Popen", start)
     with pytest.raises(CanceledError):
-        read_in_process(drawing(tmp_path, "hang"), cancel)
+        read_drawing_in_process(drawing(tmp_path, "hang"), cancel)
     assert asked == sorted(asked)
     assert started[0].returncode == -9
 
@@ -159,7 +159,7 @@ def test_caller_can_cancel_and_the_process_ends(tmp_path: Path, monkeypatch: pyt
 @pytest.mark.usefixtures("hostile")
 def test_library_output_is_suppressed(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     with raises_code(DrawingError, "out-of-memory"):
-        read_in_process(drawing(tmp_path, "print"))
+        read_drawing_in_process(drawing(tmp_path, "print"))
     assert capfd.readouterr() == ("", "")
 
 

@@ -12,7 +12,7 @@ import svgelements
 from core.extras.drawings import dxf_reader
 from core.extras.drawings.drawing import MAX_ELEMENTS, DrawingError
 from core.extras.drawings.drawing_file import read_drawing
-from core.extras.drawings.reader_tools import BlockContent, check_expansion
+from core.extras.drawings.reader_tools import BlockContent, check_block_expansion
 
 LINE = "0\nLINE\n8\n0\n10\n0\n20\n0\n11\n1\n21\n1\n"
 
@@ -119,10 +119,10 @@ def test_element_limit_is_exact(tmp_path: Path) -> None:
     def content(entities: int) -> Any:
         return lambda key: BlockContent(0, [(100, "A")]) if not key else BlockContent(1 + entities, [])
 
-    check_expansion("x.dxf", "", content(499))
+    check_block_expansion("x.dxf", "", content(499))
     with pytest.raises(DrawingError):
-        check_expansion("x.dxf", "", content(500))
-    check_expansion("x.svg", "", content(500), remaining_count=100)
+        check_block_expansion("x.dxf", "", content(500))
+    check_block_expansion("x.svg", "", content(500), remaining_count=100)
 
 
 @pytest.mark.parametrize(

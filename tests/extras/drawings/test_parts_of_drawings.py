@@ -12,7 +12,7 @@ import pytest
 from app.extras.drawings.profile_trial import TrialStock, run_profile_trial
 from core.extras.drawings.drawing_placement import ContourSide, FaceEnd, ZeroPosition
 from core.extras.drawings.profile_description import is_nose_fillet
-from core.extras.shapes.contour import resolve_points
+from core.extras.shapes.contour import resolve_contour_points
 from core.language.source import Dialect
 from tests.extras.drawings.hand import BLADE, SLIM, chain, dxf, profile_of, program, radii, text_of
 from tests.extras.shapes.hand import machine
@@ -235,7 +235,7 @@ def test_cone_falling_from_the_face_is_roughed_along_the_face(
     assert trial.comparison is not None
     assert not [each for each in trial.comparison.deviations if not is_nose_fillet(each, made.nose_radius_mm)]
     assert trial.comparison.worst_deviation_mm < 0.02
-    contour = resolve_points(made.shapes[-1][0].contour_points)
+    contour = resolve_contour_points(made.shapes[-1][0].contour_points)
     assert contour[:3] == [(0.0, 4.0), (0.0, 10.0), (-20.0, 4.0)]
 
 

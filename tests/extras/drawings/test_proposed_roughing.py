@@ -20,8 +20,8 @@ def test_drawing_form_shows_the_roughing_depth_of_its_program(tmp_path: Path) ->
     path = dxf(tmp_path / "x.dxf", chain(*points))
     now = ProgramSettings(metric=True, material="STEEL", bar=1.0, shop=ShopData(tools={1: CNMG}))
     plan = planned(PlanRequest(path, {}, (), now))
-    assert plan.proposals["ROUGH"] == pytest.approx(1.0)
+    assert plan.proposed_values["ROUGH"] == pytest.approx(1.0)
     assert plan.program is not None
     assert any(line.startswith("G75I1U") for line in plan.program.lines)
     plan = planned(PlanRequest(path, {"ROUGH": 7.0}, (), now))
-    assert "ROUGH" in plan.errors  # CNMG 12 takes 6.448 mm
+    assert "ROUGH" in plan.field_errors  # CNMG 12 takes 6.448 mm

@@ -14,7 +14,7 @@ from core.extras.drawings.drawing_placement import ContourProfile, ContourSide
 from core.extras.drawings.profile_description import convert_to_json, describe_program
 from core.extras.drawings.profile_program import ProfileProgram
 from core.extras.shapes.shape_fields import ProgramSettings, ShopData
-from core.extras.shapes.shape_pieces import find_pieces
+from core.extras.shapes.shape_pieces import find_program_shapes
 from core.language.source import Dialect
 from core.tool_edges import TIP_DIRECTIONS
 from tests.coded import recorded_refusals
@@ -59,8 +59,8 @@ def test_a_shaft_is_faced_roughed_finished_and_grooved(tmp_path: Path) -> None:
     text = text_of(made).splitlines()
     assert text[0].startswith("G54 G18 G90 G95 G710 DIAMON ; HEAD ")
     assert {"G42", "CONTOUR_1:", "CONTOUR_1_END:"} <= set(text)
-    found = find_pieces(text, ShopData(tools=TOOLS), ProgramSettings(dialect=OURS))
-    assert [(each.filled_shape.shape.name, each.edited_line) for each in found] == [
+    found = find_program_shapes(text, ShopData(tools=TOOLS), ProgramSettings(dialect=OURS))
+    assert [(each.shape_instance.shape.name, each.edited_line) for each in found] == [
         ("HEAD", -1), ("FACE", -1), ("TURN", -1), ("GROOVE", -1)
     ]  # fmt: skip
 

@@ -7,10 +7,16 @@ from pathlib import Path
 
 import pytest
 
-from app.desk.background_work import AbandonedError
+from app.desk.background_work import WorkAbandonedError
 from app.extras.drawings.drawing_plan import DrawingPlanner, PlanRequest
 from core.extras.drawings.contour_tracing import find_element_groups, trace_outer_side
-from core.extras.drawings.drawing import Drawing, DrawingError, DrawnElement, check_work_limit, limit_work
+from core.extras.drawings.drawing import (
+    Drawing,
+    DrawingError,
+    DrawnElement,
+    check_processor_time,
+    limit_processor_time,
+)
 from core.extras.drawings.drawing_file import read_drawing
 from core.extras.drawings.drawing_placement import (
     ContourSide,
@@ -40,7 +46,7 @@ def test_contour_search_stops_at_the_work_limit() -> None:
     drawing = beside_each_other(50)
     view = DrawingPlacement(select_axis(drawing, ""), 1.0)
     known = find_contours(drawing, view)
-    with limit_work(nothing, 0.0), raises_code(DrawingError, "too-slow", "part.dxf"):
+    with limit_processor_time(nothing, 0.0), raises_code(DrawingError, "too-slow", "part.dxf"):
         find_contours(drawing, view)
     assert find_contours(drawing, view) == known  # the limit is over
     assert len(known) > 40
@@ -50,7 +56,7 @@ def test_profile_extraction_stops_at_the_work_limit(tmp_path: Path) -> None:
     drawing = read_drawing(dxf(tmp_path / "part.dxf", chain(*STEP)))
     view = DrawingPlacement(select_axis(drawing, ""), 1.0)
     net = find_contours(drawing, view)[0]
-    with limit_work(nothing, 0.0), raises_code(DrawingError, "too-slow", "part.dxf"):
+    with limit_processor_time(nothing, 0.0), raises_code(DrawingError, "too-slow", "part.dxf"):
         extract_profile(drawing, view, net, ContourSide.OUTSIDE)
 
 
@@ -58,12 +64,12 @@ def test_outdated_plan_is_canceled_during_calculation(tmp_path: Path) -> None:
     path = dxf(tmp_path / "part.dxf", chain(*STEP))
 
     def overtaken(_seconds: float) -> None:
-        raise AbandonedError
+        raise WorkAbandonedError
 
     planner = DrawingPlanner(lambda path, _watch: read_drawing(path))
-    with pytest.raises(AbandonedError):
+    with pytest.raises(WorkAbandonedError):
         planner.make_plan(PlanRequest(path, {}, (), ProgramSettings(metric=True)), overtaken)
-    check_work_limit()  # it watches nothing more
+    check_processor_time()  # it watches nothing more
 
 
 def test_first_crossing_along_the_contour_is_reported() -> None:

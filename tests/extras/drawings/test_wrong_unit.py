@@ -23,8 +23,8 @@ def trouble(path: Path, travel: tuple[float, float] = TRAVEL, **typed: str) -> s
     """What the form of the screen reports at the field of the unit; other faults are not expected."""
     setting = ProgramSettings(metric=True, shop=ShopData(travel_mm=travel))
     plan = planned(PlanRequest(path, typed, (), setting))
-    assert set(plan.errors) <= {"DUNIT"}
-    return plan.errors.get("DUNIT", "")
+    assert set(plan.field_errors) <= {"DUNIT"}
+    return plan.field_errors.get("DUNIT", "")
 
 
 @pytest.mark.parametrize(

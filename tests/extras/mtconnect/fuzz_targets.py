@@ -13,10 +13,10 @@ from app.extras.mtconnect.driver.agent_links import (
     make_values_line,
     replace_separators,
 )
-from app.extras.mtconnect.driver.mtconnect_items import Category, DataItem
+from app.extras.mtconnect.driver.mtconnect_items import DataItem, DataItemCategory
 from tests.fuzz.fuzz_target import Target
 
-_ITEM = DataItem("block", Category.EVENT, "BLOCK")
+_ITEM = DataItem("block", DataItemCategory.EVENT, "BLOCK")
 
 
 def _shdr(data: bytes) -> Iterable[str]:
@@ -29,7 +29,7 @@ def _shdr(data: bytes) -> Iterable[str]:
         if line.count("\n") != 1 or line.count("|") != 4 or "--multiline--" in line:
             raise AssertionError(f"two values have not stayed two: {line!r}")
         line.encode("utf-8")
-        replace_separators(ActiveCondition("FAULT", text, text).text)
+        replace_separators(ActiveCondition("FAULT", text, text).condition_text)
     ours, theirs = socket.socketpair()
     with ours, theirs:
         ours.setblocking(False)

@@ -58,10 +58,13 @@ def test_conditions_are_set_and_cleared_individually(bench: Bench) -> None:
     one, other = ActiveCondition("FAULT", "101", "X: over current"), ActiveCondition("FAULT", "102", "X lags")
     bench.conditions["Xservo"] = (one, other)
     bench.look()
-    assert agent.active["Xservo"] == {"101": ("FAULT", one.text), "102": ("FAULT", other.text)}
+    assert agent.active["Xservo"] == {
+        "101": ("FAULT", one.condition_text),
+        "102": ("FAULT", other.condition_text),
+    }
     bench.conditions["Xservo"] = (other,)
     bench.look()
-    assert agent.active["Xservo"] == {"102": ("FAULT", other.text)}
+    assert agent.active["Xservo"] == {"102": ("FAULT", other.condition_text)}
     late = bench.agent()  # one that comes now
     assert late.active["Xservo"] == agent.active["Xservo"]
     bench.conditions["Xservo"] = ()

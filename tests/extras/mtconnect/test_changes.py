@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-from app.extras.mtconnect.driver.agent_links import ActiveCondition, ItemValue, MachineReport, SentState
+from app.extras.mtconnect.driver.agent_links import (
+    ActiveCondition,
+    ItemValue,
+    MachineReport,
+    SentMachineState,
+)
 from tests.extras.mtconnect.bench import lathe
 
 A, B = "2026-01-01T00:00:00.000Z", "2026-01-01T00:00:00.100Z"
@@ -12,14 +17,14 @@ A, B = "2026-01-01T00:00:00.000Z", "2026-01-01T00:00:00.100Z"
 
 def told_after(*values: dict[str, ItemValue]) -> str:
     """What the last of these reports makes."""
-    told, said = SentState(tuple(lathe().iterate_items())), ""
+    told, said = SentMachineState(tuple(lathe().iterate_items())), ""
     for each in values:
-        said = told.report_changes(MachineReport(each, {}), A)
+        said = told.make_change_lines(MachineReport(each, {}), A)
     return said
 
 
 def test_initial_state_is_entirely_unavailable() -> None:
-    lines = SentState(tuple(lathe().iterate_items())).make_complete_state(A).splitlines()
+    lines = SentMachineState(tuple(lathe().iterate_items())).make_complete_state_lines(A).splitlines()
     values, *conditions = (line.split("|") for line in lines)
     assert set(values[2::2]) == {"UNAVAILABLE"}
     assert {parts[2] for parts in conditions} == {"UNAVAILABLE"}
@@ -58,11 +63,11 @@ def test_slow_drift_is_sent_when_it_leaves_the_band() -> None:
 
 
 def test_item_missing_from_a_report_becomes_unavailable() -> None:
-    told = SentState(tuple(lathe().iterate_items()))
-    told.report_changes(
+    told = SentMachineState(tuple(lathe().iterate_items()))
+    told.make_change_lines(
         MachineReport({"Xabs": 1.0}, {"Xservo": (ActiveCondition("FAULT", "101", "tripped"),)}), A
     )
-    lines = told.report_changes(MachineReport({"avail": "UNAVAILABLE"}, {}), B).splitlines()
+    lines = told.make_change_lines(MachineReport({"avail": "UNAVAILABLE"}, {}), B).splitlines()
     assert lines == [f"{B}|Xabs|UNAVAILABLE", f"{B}|Xservo|UNAVAILABLE||||"]
 
 
@@ -71,8 +76,10 @@ def test_unknown_item_keys_are_not_sent() -> None:
 
 
 def test_new_text_of_the_same_fault_replaces_the_old_text() -> None:
-    told = SentState(tuple(lathe().iterate_items()))
-    told.report_changes(MachineReport({}, {"system": (ActiveCondition("WARNING", "hold", "ONE"),)}), A)
-    said = told.report_changes(MachineReport({}, {"system": (ActiveCondition("WARNING", "hold", "TWO"),)}), B)
+    told = SentMachineState(tuple(lathe().iterate_items()))
+    told.make_change_lines(MachineReport({}, {"system": (ActiveCondition("WARNING", "hold", "ONE"),)}), A)
+    said = told.make_change_lines(
+        MachineReport({}, {"system": (ActiveCondition("WARNING", "hold", "TWO"),)}), B
+    )
     assert said == f"{B}|system|WARNING|hold|||TWO\n"
-    assert told.make_complete_state(B).count("hold") == 1
+    assert told.make_complete_state_lines(B).count("hold") == 1

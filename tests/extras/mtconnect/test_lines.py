@@ -11,18 +11,18 @@ from app.extras.mtconnect.driver.agent_links import (
     ActiveCondition,
     format_utc_time,
     format_value,
-    make_active_line,
-    make_cleared_line,
-    make_pong,
-    make_unknown_line,
+    make_active_condition_line,
+    make_cleared_condition_line,
+    make_pong_reply,
+    make_unknown_condition_line,
     make_values_line,
     replace_separators,
 )
-from app.extras.mtconnect.driver.mtconnect_items import Category, DataItem
+from app.extras.mtconnect.driver.mtconnect_items import DataItem, DataItemCategory
 from tests.extras.mtconnect.agent import tokens
 
 AT = "2026-11-21T22:17:39.000Z"
-PLACE = DataItem("Xabs", Category.SAMPLE, "POSITION", units="MILLIMETER", decimal_places=4)
+PLACE = DataItem("Xabs", DataItemCategory.SAMPLE, "POSITION", units="MILLIMETER", decimal_places=4)
 
 
 @pytest.mark.parametrize(
@@ -72,10 +72,10 @@ def test_values_are_formatted_as_text(value: str | float | None, told: str) -> N
 def test_lines_have_the_shdr_format() -> None:
     assert make_values_line(AT, {"execution": "ACTIVE", "line": "12"}) == f"{AT}|execution|ACTIVE|line|12\n"
     fault = ActiveCondition("FAULT", "102", "X lags | 0.2\nmm")
-    assert make_active_line(AT, "Xservo", fault) == f"{AT}|Xservo|FAULT|102|||X lags / 0.2 mm\n"
-    assert make_cleared_line(AT, "Xservo", "102") == f"{AT}|Xservo|NORMAL|102|||\n"
-    assert make_cleared_line(AT, "Xservo") == f"{AT}|Xservo|NORMAL||||\n"
-    assert make_unknown_line(AT, "Xservo") == f"{AT}|Xservo|UNAVAILABLE||||\n"
+    assert make_active_condition_line(AT, "Xservo", fault) == f"{AT}|Xservo|FAULT|102|||X lags / 0.2 mm\n"
+    assert make_cleared_condition_line(AT, "Xservo", "102") == f"{AT}|Xservo|NORMAL|102|||\n"
+    assert make_cleared_condition_line(AT, "Xservo") == f"{AT}|Xservo|NORMAL||||\n"
+    assert make_unknown_condition_line(AT, "Xservo") == f"{AT}|Xservo|UNAVAILABLE||||\n"
 
 
 def test_times_are_utc_with_z() -> None:
@@ -93,4 +93,4 @@ def test_times_are_utc_with_z() -> None:
 )
 def test_pong_interval_is_accepted_by_the_agent(seconds: float, said: bytes) -> None:
     """It refuses 0, and half an hour itself."""
-    assert make_pong(seconds) == said
+    assert make_pong_reply(seconds) == said

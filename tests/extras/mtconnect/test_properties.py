@@ -9,12 +9,12 @@ from app.extras.mtconnect.driver.agent_links import (
     ActiveCondition,
     ItemValue,
     MachineReport,
-    SentState,
+    SentMachineState,
     make_values_line,
     replace_separators,
 )
 from app.extras.mtconnect.driver.mtconnect_adapter import make_devices_xml
-from app.extras.mtconnect.driver.mtconnect_items import Category
+from app.extras.mtconnect.driver.mtconnect_items import DataItemCategory
 from drivers.wakeups import ManualClock
 from tests.extras.mtconnect.agent import FakeAgent, tokens
 from tests.extras.mtconnect.bench import BEGIN, lathe
@@ -46,9 +46,9 @@ def test_two_values_in_a_line_remain_separate(one: str, other: str) -> None:
 
 def values() -> st.SearchStrategy[MachineReport]:
     """Reports with some of the items, sometimes the same again."""
-    samples = [item.key for item in ITEMS if item.category is Category.SAMPLE]
-    events = [item.key for item in ITEMS if item.category is Category.EVENT]
-    conditions = [item.key for item in ITEMS if item.category is Category.CONDITION]
+    samples = [item.key for item in ITEMS if item.category is DataItemCategory.SAMPLE]
+    events = [item.key for item in ITEMS if item.category is DataItemCategory.EVENT]
+    conditions = [item.key for item in ITEMS if item.category is DataItemCategory.CONDITION]
     number: st.SearchStrategy[ItemValue] = st.one_of(st.none(), st.floats(-1e4, 1e4), st.just(0.0))
     text: st.SearchStrategy[ItemValue] = st.one_of(st.none(), TEXTS)
     active = st.builds(
@@ -69,14 +69,14 @@ def test_late_agent_gets_the_same_state_as_the_others(
     reports: list[MachineReport], data: st.DataObject
 ) -> None:
     comes = data.draw(st.integers(0, len(reports) - 1))
-    told = SentState(ITEMS)
+    told = SentMachineState(ITEMS)
     early, late = (FakeAgent(MODEL, ManualClock()) for _ in range(2))
-    hear(early, told.make_complete_state(AT))
+    hear(early, told.make_complete_state_lines(AT))
     for i, report in enumerate(reports):
-        said = told.report_changes(report, AT)
+        said = told.make_change_lines(report, AT)
         hear(early, said)
         if i == comes:
-            hear(late, told.make_complete_state(AT))
+            hear(late, told.make_complete_state_lines(AT))
         elif i > comes:
             hear(late, said)
     assert early.values == late.values
@@ -84,11 +84,14 @@ def test_late_agent_gets_the_same_state_as_the_others(
     assert (early.bad, late.bad, early.unknown, late.unknown) == ([], [], [], [])
     last = reports[-1]
     for key, active in early.active.items():
-        now = last.conditions.get(key)
+        now = last.active_conditions.get(key)
         wanted = (
             None
             if now is None
-            else {each.native_code: (each.condition_level, replace_separators(each.text)) for each in now}
+            else {
+                each.native_code: (each.condition_level, replace_separators(each.condition_text))
+                for each in now
+            }
         )
         assert active == wanted
 

@@ -17,7 +17,7 @@ import pytest
 import resources
 from app.compose.machine.machine_files import load_machine, load_named_machine
 from app.compose.screen_desk import build_desk
-from app.extras.mtconnect.adapter_setup import make_adapter, make_device, make_device_model
+from app.extras.mtconnect.adapter_setup import make_adapter, make_device_component, make_devices_document
 from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable
 from core.executor.commands import CycleStart, FeedHold, Reset, SetSwitch
 from core.executor.snapshot import MachineState, Snapshot
@@ -46,7 +46,7 @@ class Floor:
         self.rig = Rig(machine=with_model(LATHE))
         self.adapter = make_adapter(self.rig.machine, MODEL, lambda: self.rig.shot)
         self.adapter.open()
-        self.agent = FakeAgent(make_device_model(self.rig.machine, datetime.now(UTC)), self.rig.clock)
+        self.agent = FakeAgent(make_devices_document(self.rig.machine, datetime.now(UTC)), self.rig.clock)
         self.agent.connect(self.adapter.address)
         self.history("execution")
         self.rig.watch.append(lambda _: self.see())
@@ -150,7 +150,7 @@ def test_estop_is_reported(floor: Floor) -> None:
 def test_reports_of_each_shipped_machine_match_its_device_model(name: str) -> None:
     """A key that the model has and nobody ever tells would stay UNAVAILABLE for ever."""
     machine = load_named_machine(str(Path(resources.__file__).parent / "machines" / name))
-    kinds = kinds_of(make_device_model(with_model(machine), datetime.now(UTC)))
+    kinds = kinds_of(make_devices_document(with_model(machine), datetime.now(UTC)))
     snapshot = Snapshot(
         t=1.0,
         axes=tuple(axis.name for axis in machine.axes),
@@ -159,10 +159,10 @@ def test_reports_of_each_shipped_machine_match_its_device_model(name: str) -> No
     )
     adapter = make_adapter(machine, MODEL, lambda: snapshot)
     report = adapter._report()
-    told = set(report.values) - ({"chuck", "chuckil"} if machine.kind == "mill" else set())
+    told = set(report.item_values) - ({"chuck", "chuckil"} if machine.kind == "mill" else set())
     assert told == {key for key, kind in kinds.items() if kind != "CONDITION"}
-    assert set(report.conditions) == {key for key, kind in kinds.items() if kind == "CONDITION"}
-    assert make_device(machine, "GT75").name == "GT75"
+    assert set(report.active_conditions) == {key for key, kind in kinds.items() if kind == "CONDITION"}
+    assert make_device_component(machine, "GT75").name == "GT75"
 
 
 def machine_file(folder: Path, port: int, **changes: str) -> Path:

@@ -7,7 +7,7 @@ from functools import partial
 
 from app.compose.machine.machine_files import load_machine
 from app.compose.program_proving import create_thumbnail_drawer, get_samples_folder
-from app.compose.stored_offsets import create_setup_with_offsets, read_offsets
+from app.compose.stored_offsets import create_setup_with_offsets, read_offsets_file
 from app.desk.stored_part import load_stored_part
 from app.extras.office.office_pictures import encode_png
 from app.extras.office.office_setup import PICTURE_SIZE
@@ -37,7 +37,7 @@ OTHERS = (
 def served() -> Iterator[tuple[str, str, tuple[int, int]]]:
     """Yield the file of the picture, the address of the page, and the size of the browser in pixels."""
     machine = load_machine(None)
-    setup = create_setup_with_offsets(machine, read_offsets(get_samples_folder() / "offsets.toml"))
+    setup = create_setup_with_offsets(machine, read_offsets_file(get_samples_folder() / "offsets.toml"))
     job = make_job(load_source(get_samples_folder() / "bushing.nc"), setup)
     draw = create_thumbnail_drawer(
         machine, dict, partial(load_stored_part, lambda _key: None), size_px=PICTURE_SIZE

@@ -10,7 +10,11 @@ from http.server import BaseHTTPRequestHandler, HTTPServer
 import pytest
 
 from app.compose.machine.machine_files import parse_machine
-from app.extras.office.other_machines import make_current_address, parse_streams, read_agent_status
+from app.extras.office.other_machines import (
+    make_current_state_address,
+    parse_mtconnect_streams,
+    read_agent_status,
+)
 from core.extras.office.shop_network_tables import StatusPageTable
 from core.table_schema import MachineFileError
 from resources import read_machine_file
@@ -54,7 +58,7 @@ def streams(**told: str) -> bytes:
 
 @pytest.mark.parametrize("version", ["1.3", "2.5"])
 def test_running_machine_is_parsed(version: str) -> None:
-    found, trouble = parse_streams(streams(version=version))
+    found, trouble = parse_mtconnect_streams(streams(version=version))
     assert found == {"machine": "MILL4", "state": "RUNNING", "program": "O4711", "line": 88, "made": 57}
     assert trouble == ""
 
@@ -71,24 +75,29 @@ def test_running_machine_is_parsed(version: str) -> None:
     ],
 )
 def test_machine_state_is_parsed(told: dict[str, str], state: str) -> None:
-    found, _ = parse_streams(streams(**told))
+    found, _ = parse_mtconnect_streams(streams(**told))
     assert found is not None
     assert found["state"] == state
 
 
 def test_alarm_text_is_parsed() -> None:
-    found, trouble = parse_streams(streams(condition=FAULT.format("X servo\n  excess error &lt;x&gt;")))
+    found, trouble = parse_mtconnect_streams(
+        streams(condition=FAULT.format("X servo\n  excess error &lt;x&gt;"))
+    )
     assert found is not None
     assert (found["state"], trouble) == ("ALARM", "X servo excess error <x>")
 
 
 def test_unavailable_machine_has_no_status() -> None:
-    assert parse_streams(streams(available="UNAVAILABLE")) == (None, text("shopfloor.agent-hears-nothing"))
+    assert parse_mtconnect_streams(streams(available="UNAVAILABLE")) == (
+        None,
+        text("shopfloor.agent-hears-nothing"),
+    )
 
 
 @pytest.mark.parametrize("count", ["UNAVAILABLE", "-3", "1e9", "", "9" * 4000, "٣"])
 def test_invalid_count_is_omitted(count: str) -> None:
-    found, _ = parse_streams(streams(count=count))
+    found, _ = parse_mtconnect_streams(streams(count=count))
     assert found is not None
     assert "made" not in found
 
@@ -106,7 +115,7 @@ def test_invalid_count_is_omitted(count: str) -> None:
 )
 def test_invalid_agent_response_raises_value_error(data: bytes) -> None:
     with pytest.raises(ValueError, match=r".*"):
-        parse_streams(data)
+        parse_mtconnect_streams(data)
 
 
 # --- asked over the wire ----------------------------------------------------------------------------
@@ -154,7 +163,7 @@ def test_server_that_is_not_an_agent_is_reported() -> None:
 
 
 def test_current_state_address_is_derived_from_the_machine_address() -> None:
-    assert make_current_address("http://shop-pc:5000/MILL4/") == "http://shop-pc:5000/MILL4/current"
+    assert make_current_state_address("http://shop-pc:5000/MILL4/") == "http://shop-pc:5000/MILL4/current"
 
 
 # --- in the machine file ----------------------------------------------------------------------------

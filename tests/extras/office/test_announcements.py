@@ -29,7 +29,7 @@ from app.extras.office import mqtt_broker
 from app.extras.office.announcements import MAX_QUEUED, Announcement, Announcer, find_events
 from app.extras.office.mqtt_broker import MqttReceiver
 from app.extras.office.other_machines import read_turndesk_status
-from app.extras.office.timed_http import DeliveryErrorLog, find_cause
+from app.extras.office.timed_http import DeliveryErrorLog, describe_connection_error
 from app.extras.office.web_hook import WebhookReceiver, post_json
 from app.shopfloor.status_file import StatusDocument
 from core.extras.office.shop_network_tables import AnnounceTable
@@ -43,7 +43,7 @@ RUNNING: StatusDocument = {**READY, "state": "RUNNING"}
 
 
 def told(before: StatusDocument, now: StatusDocument) -> list[tuple[str, str]]:
-    return [(each.kind, each.text) for each in find_events(before, now)]
+    return [(each.event_kind, each.text) for each in find_events(before, now)]
 
 
 # --- what has happened ------------------------------------------------------------------------------
@@ -105,7 +105,7 @@ class Heard:
         self.states.append(str(status["state"]))
 
     def send_announcement(self, announcement: Announcement) -> None:
-        self.events.append(announcement.kind)
+        self.events.append(announcement.event_kind)
 
     def close(self) -> None:
         self.events.append("closed")
@@ -366,11 +366,11 @@ def test_invalid_host_response_is_reported_as_the_cause(answer: bytes, scheme: s
         with pytest.raises((OSError, HTTPException)) as raised:
             post_json(f"{scheme}://127.0.0.1:{far.port}/", b"{}")
         assert read_turndesk_status(f"{scheme}://127.0.0.1:{far.port}/").error_text == text(why)
-    assert find_cause(raised.value) == text(why)
+    assert describe_connection_error(raised.value) == text(why)
 
 
 def test_invalid_certificate_is_reported_as_the_cause() -> None:
-    assert find_cause(URLError(not_trusted())) == text(
+    assert describe_connection_error(URLError(not_trusted())) == text(
         "shopfloor.bad-certificate", why="self-signed certificate"
     )
 

@@ -24,20 +24,20 @@ from app.compose.backends.machine_check import check_machine
 from app.compose.machine.machine_files import load_machine, parse_machine
 from app.extras.office import other_machines
 from app.extras.office.office_pictures import HIGH, encode_png, make_alarm_svg
-from app.extras.office.office_setup import MAX_LISTED_STOPS, AlarmPicture, PartPicture, StatusSource
+from app.extras.office.office_setup import MAX_LISTED_STOPS, AlarmChart, PartPicture, StatusSource
 from app.extras.office.other_machines import OtherMachines, make_status_address, read_turndesk_status
 from app.extras.office.page_connections import MAX_CONNECTIONS, MAX_CONNECTIONS_PER_HOST, REQUEST_DEADLINE_S
 from app.extras.office.page_server import StatusPageServer, open_listening_socket
 from app.extras.office.status_page import OtherMachine, StatusPage
 from app.programs.program_rows import Thumbnail
-from app.screen.screen_theme import use_language
+from app.screen.screen_theme import set_language
 from app.shopfloor.machine_reading import MachineReader
 from app.shopfloor.status_file import StatusDocument
 from core.executor.snapshot import MachineState, Snapshot
 from core.extras.office.shop_network_tables import StatusPageTable, parse_broker_address
 from core.ports import DriverError
 from core.records.record import ScopeRecord, list_machine_channels
-from core.store.production.part_cycles import StopRow
+from core.store.production.part_cycles import ProductionStopRow
 from core.table_schema import MachineFileError
 from resources import read_machine_file
 from tests.coded import raises_code
@@ -247,11 +247,11 @@ def test_events_of_today_are_shown_without_a_date() -> None:
 
 
 def test_page_uses_the_screen_language() -> None:
-    use_language("es")
+    set_language("es")
     try:
         body, told = get(page(status={**STATUS, "stop": "GUARD OPEN"}))[2], get(page(), "/status.json")[2]
     finally:
-        use_language("en")
+        set_language("en")
     assert '<html lang="es">' in body
     assert ">EN MARCHA<" in body
     assert f">{text_in_spanish('shopfloor.time-remaining')}<" in body
@@ -277,7 +277,9 @@ def test_status_json_equals_the_status() -> None:
 
 def looking(**snapshot: Any) -> StatusDocument:
     reader = MachineReader(LATHE, lambda: 0.0)
-    stops = [StopRow(str(i), "", "pin.nc", f"2026-11-23T08:0{i}:00Z", 10.0 + i, "H") for i in range(9)]
+    stops = [
+        ProductionStopRow(str(i), "", "pin.nc", f"2026-11-23T08:0{i}:00Z", 10.0 + i, "H") for i in range(9)
+    ]
     now = datetime(2026, 11, 23, 9, tzinfo=UTC)
     shot = Snapshot(**snapshot)
     return StatusSource(
@@ -464,9 +466,9 @@ def test_status_address_is_derived_from_the_page_address() -> None:
 def test_other_machines_are_polled_only_while_the_page_is_viewed() -> None:
     heard = OtherMachine("lathe2", {"state": "READY"})
     asking = OtherMachines(("http://lathe2:8317",), lambda _address: heard)
-    assert (asking.read_states()[0].state, asking.read_states()[0].error_text) == ("…", "")
+    assert (asking.read_machine_states()[0].state, asking.read_machine_states()[0].error_text) == ("…", "")
     asking.start()
-    while asking.read_states()[0].status_document != heard.status_document:
+    while asking.read_machine_states()[0].status_document != heard.status_document:
         pass
     asking.close()
 
@@ -498,12 +500,12 @@ def test_hung_machine_does_not_delay_the_others() -> None:
         return healthy
 
     asking = OtherMachines(("http://lathe2:8317", "http://lathe3:8317"), ask)
-    asking.read_states()
+    asking.read_machine_states()
     asking.start()
     try:
-        while asking.read_states()[1].status_document is not healthy.status_document:
+        while asking.read_machine_states()[1].status_document is not healthy.status_document:
             pass
-        assert asking.read_states()[0].state == "…"
+        assert asking.read_machine_states()[0].state == "…"
     finally:
         hangs.set()
         asking.close()
@@ -512,12 +514,12 @@ def test_hung_machine_does_not_delay_the_others() -> None:
 def test_outdated_status_is_not_shown_as_current() -> None:
     now = [0.0]
     asking = OtherMachines(("http://lathe2:8317",), lambda _address: OtherMachine("lathe2"), lambda: now[0])
-    asking.read_states()
+    asking.read_machine_states()
     asking._heard["http://lathe2:8317"] = 0.0, OtherMachine("lathe2", {"state": "RUNNING"})
     now[0] = 10.0
-    assert asking.read_states()[0].status_document == {"state": "RUNNING"}
+    assert asking.read_machine_states()[0].status_document == {"state": "RUNNING"}
     now[0] = 10.5
-    assert (asking.read_states()[0].status_document, asking.read_states()[0].error_text) == (
+    assert (asking.read_machine_states()[0].status_document, asking.read_machine_states()[0].error_text) == (
         None,
         text("shopfloor.silent-for", age=10),
     )
@@ -526,9 +528,9 @@ def test_outdated_status_is_not_shown_as_current() -> None:
 def test_machine_that_never_responds_is_reported_after_a_delay() -> None:
     now = [100.0]
     asking = OtherMachines(("http://lathe2:8317",), lambda _address: OtherMachine("lathe2"), lambda: now[0])
-    assert asking.read_states()[0].state == "…"
+    assert asking.read_machine_states()[0].state == "…"
     now[0] = 110.5
-    assert (asking.read_states()[0].state, asking.read_states()[0].error_text) == (
+    assert (asking.read_machine_states()[0].state, asking.read_machine_states()[0].error_text) == (
         text("shopfloor.no-answer-shown"),
         text("shopfloor.silent-for", age=10),
     )
@@ -548,15 +550,15 @@ def test_machine_that_dies_retains_its_name(monkeypatch: pytest.MonkeyPatch) -> 
         return OtherMachine("lathe2", error_text="Connection refused")
 
     asking = OtherMachines(("http://lathe2:8317",), ask)
-    asking.read_states()
+    asking.read_machine_states()
     asking.start()
-    while asking.read_states()[0].status_document is None:
+    while asking.read_machine_states()[0].status_document is None:
         pass
     dies.set()
-    while asking.read_states()[0].status_document is not None:
+    while asking.read_machine_states()[0].status_document is not None:
         pass
     asking.close()
-    shown = get(page(others=tuple(asking.read_states())))[2]
+    shown = get(page(others=tuple(asking.read_machine_states())))[2]
     assert "<h2>LATHE 2 (lathe2:8317)</h2>" in shown
     assert "Connection refused" in shown
 
@@ -564,10 +566,13 @@ def test_machine_that_dies_retains_its_name(monkeypatch: pytest.MonkeyPatch) -> 
 def test_machines_are_not_reported_dead_after_a_polling_pause() -> None:
     now = [0.0]
     asking = OtherMachines(("http://lathe2:8317",), lambda _address: OtherMachine("lathe2"), lambda: now[0])
-    asking.read_states()
+    asking.read_machine_states()
     asking._heard["http://lathe2:8317"] = 0.0, OtherMachine("lathe2", {"state": "RUNNING"})
     now[0] = 30_000.0
-    assert (asking.read_states()[0].status_document, asking.read_states()[0].state) == (None, "…")
+    assert (asking.read_machine_states()[0].status_document, asking.read_machine_states()[0].state) == (
+        None,
+        "…",
+    )
 
 
 def test_port_in_use_is_reported() -> None:
@@ -609,14 +614,14 @@ def test_part_picture_is_not_drawn_while_a_part_is_made() -> None:
 
     picture = PartPicture(lambda: job, lambda: not runs[0], draw)
     picture.update()
-    assert (picture.get_png(), drawn) == (b"", [])
+    assert (picture.get_part_png(), drawn) == (b"", [])
     runs[0] = False
     picture.update()
     picture.update()
-    assert picture.get_png().startswith(b"\x89PNG")
+    assert picture.get_part_png().startswith(b"\x89PNG")
     assert drawn == [1]
     job.digest = "b"
-    assert picture.get_png() == b""  # of another program
+    assert picture.get_part_png() == b""  # of another program
 
 
 def test_encoded_png_can_be_read_by_qt() -> None:
@@ -656,6 +661,6 @@ def test_a_record_without_samples_is_not_drawn() -> None:
 
 def test_a_record_that_is_damaged_is_not_drawn(tmp_path: Path) -> None:
     (tmp_path / "20261123-alarm102.scope").write_bytes(b"PK damaged")
-    drawing = AlarmPicture(tmp_path, lambda: True)
+    drawing = AlarmChart(tmp_path, lambda: True)
     drawing.update()
-    assert drawing.get_svg() == b""
+    assert drawing.get_alarm_svg() == b""

@@ -12,14 +12,14 @@ from app.extras.office.office_setup import StatusSource
 from app.shopfloor.machine_reading import MachineReader
 from app.shopfloor.status_file import StatusDocument
 from core.executor.snapshot import Snapshot
-from core.store.production.part_cycles import StopRow
+from core.store.production.part_cycles import ProductionStopRow
 from tests.cli.json_output import declared_alone
 from tests.shopfloor.test_json_keys import shots
 
 
 def office(snapshot: Snapshot) -> StatusDocument:
     reader = MachineReader(load_shipped_machine("gt75"), lambda: 0.0)
-    stops = [StopRow("s", "", "pin.nc", "2026-11-23T08:00:00Z", 10.0, "FEED HOLD")]
+    stops = [ProductionStopRow("s", "", "pin.nc", "2026-11-23T08:00:00Z", 10.0, "FEED HOLD")]
     now = datetime(2026, 11, 23, 9, tzinfo=UTC)
     return StatusSource(
         "GT-75", reader, lambda: snapshot, lambda _: 42.0, lambda: stops, lambda: now

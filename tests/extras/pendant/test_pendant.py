@@ -410,7 +410,7 @@ def test_stick_with_unknown_range_is_never_pressed(ranges: dict[int, AxisRange])
     said = Said("REL_DIAL", ranges)
     for value in (1, 255, -32768):
         said.tell(ABS, ABS_HAT0X, value)
-        assert said.buttons.pressed_names == set()
+        assert said.buttons.pressed_button_names == set()
 
 
 def test_stick_is_pressed_to_one_side_until_it_returns() -> None:
@@ -418,7 +418,7 @@ def test_stick_is_pressed_to_one_side_until_it_returns() -> None:
     seen = []
     for value in (140, 190, 140, 105, 10):
         said.tell(ABS, ABS_HAT0X, value)
-        seen.append(set(said.buttons.pressed_names))
+        seen.append(set(said.buttons.pressed_button_names))
     assert seen == [set(), {"jog_z_plus"}, {"jog_z_plus"}, set(), {"jog_z_minus"}]
 
 
@@ -426,9 +426,9 @@ def test_late_report_of_a_pressed_button_changes_nothing() -> None:
     said = Said("REL_DIAL", {})
     said.tell(KEY, BTN_A, 1)
     said.tell(KEY, BTN_A, 1, ago=5.0)
-    assert said.buttons.pressed_names == {"jog_x_plus"}
-    said.buttons.release_all()
-    assert said.buttons.pressed_names == set()
+    assert said.buttons.pressed_button_names == {"jog_x_plus"}
+    said.buttons.release_all_buttons()
+    assert said.buttons.pressed_button_names == set()
 
 
 # --- the reader ---------------------------------------------------------------------------------------------

@@ -12,7 +12,7 @@ import pytest
 from app.extras.pendant.driver.input_devices import (
     DeviceEntry,
     KernelDevice,
-    list_devices,
+    list_input_devices,
     select_device_nodes,
 )
 from app.extras.pendant.driver.pendant_table import (
@@ -63,13 +63,13 @@ def in_sysfs(
 
 
 def test_missing_sysfs_folder_lists_no_devices() -> None:
-    assert list_devices(Path("/nowhere")) == []
+    assert list_input_devices(Path("/nowhere")) == []
 
 
 def test_capability_words_are_64_bits_with_the_highest_first(tmp_path: Path) -> None:
     in_sysfs(tmp_path, "event3", "Shop Pendant", key="3000000000000 0 0 0 0", rel="80")
     in_sysfs(tmp_path, "event4", "Mouse", bus="0005")
-    first, second = list_devices(tmp_path)
+    first, second = list_input_devices(tmp_path)
     assert (first.name, first.numbers, first.stem) == ("Shop Pendant", "0b33:0030", "usb-1.2")
     assert first.able == {(KEY, 0x130), (KEY, 0x131), (REL, 7)}  # 4 words of 64, then bits 48 and 49
     assert second.bluetooth
@@ -79,7 +79,7 @@ def test_device_unplugged_while_listing_is_omitted(tmp_path: Path) -> None:
     in_sysfs(tmp_path, "event3", "Shop Pendant")
     (tmp_path / "event4" / "device").mkdir(parents=True)  # without its name
     (tmp_path / "event5").mkdir()
-    assert [each.node for each in list_devices(tmp_path)] == ["event3"]
+    assert [each.node for each in list_input_devices(tmp_path)] == ["event3"]
 
 
 @pytest.mark.parametrize("device", ["Shop Pendant", "shop pendant", "0B33:0030"])

@@ -109,7 +109,7 @@ def test_pendant_table_without_button_assignments_is_rejected() -> None:
 
 def test_missing_pendant_fails_its_row_in_machine_check(monkeypatch: pytest.MonkeyPatch) -> None:
     """``machine check`` names it, and what to do; the machine answers all the same."""
-    monkeypatch.setattr("app.extras.pendant.pendant_setup.list_devices", list)
+    monkeypatch.setattr("app.extras.pendant.pendant_setup.list_input_devices", list)
     answers = check_machine(parse_machine(text(), "test"))
     rows = {each.name: each for each in answers.rows}
     assert (rows["pendant"].at, rows["pendant"].state) == ("0b33:0030", "no answer")

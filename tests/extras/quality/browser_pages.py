@@ -12,7 +12,7 @@ from app.extras.quality.shift_results import Shift, calculate_shift_results
 from core.store.event_log import add_events
 from core.store.production import measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
-from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.production.part_cycles import CycleRow, ProductionStopRow
 from core.store.production.tool_lives import ToolLifeRow
 from core.store.store import Store
 from core.store.store_rows import EventRow, format_utc
@@ -71,7 +71,9 @@ def _fill(store: Store) -> None:
             store.write(partial(part_cycles.save_cycle, row=made)).result()
             at = end + timedelta(seconds=3)
         if run.stop:
-            stop = StopRow(f"{at:%H%M%S}", "", run.program, format_utc(at), run.stood, run.stop, run.line)
+            stop = ProductionStopRow(
+                f"{at:%H%M%S}", "", run.program, format_utc(at), run.stood, run.stop, run.line
+            )
             store.write(partial(part_cycles.save_stop, row=stop)).result()
         if run.stop == "E-STOP":
             alarm = EventRow(format_utc(at), "alarm", ALARM, run.line)
@@ -84,5 +86,5 @@ def _fill(store: Store) -> None:
         size = 22.225 + off * 0.00254
         row = ReadingRow(0, kept, 10 * number, size, "in", read, "gauge", "micrometer")
         store.write(partial(measured_parts.add_reading, row=row)).result()
-    store.write(partial(tool_lives.save_limits, row=ToolLifeRow(1, 200, 0.0, 0.9, True))).result()
-    store.write(lambda c: tool_lives.save_use(c, 1, 184, 4020.0)).result()
+    store.write(partial(tool_lives.save_tool_life_limits, row=ToolLifeRow(1, 200, 0.0, 0.9, True))).result()
+    store.write(lambda c: tool_lives.save_insert_use(c, 1, 184, 4020.0)).result()

@@ -51,6 +51,6 @@ def test_points_without_scatter_violate_no_rule() -> None:
 
 def test_each_rule_has_its_own_text() -> None:
     assert len({words for words, _ in CONTROL_RULES.values()}) == 8
-    assert find_rule_violations(ControlChart(np.asarray([4.0]), 0, -3, 3))[0].text == (
+    assert find_rule_violations(ControlChart(np.asarray([4.0]), 0, -3, 3))[0].rule_text == (
         "one point beyond a control limit"
     )

@@ -12,7 +12,7 @@ import pytest
 
 from core.store.production import measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
-from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.production.part_cycles import CycleRow, ProductionStopRow
 from core.store.production.tool_lives import ToolLifeRow
 from core.store.store import Store
 from tests.cli.conftest import Turndesk
@@ -31,9 +31,9 @@ def made(home: Path) -> Path:
             store.runs.add_parts("peg.nc")
             reading = ReadingRow(0, of, part, 12.69 if part % 2 else 12.71, "in", "2026", "gauge", "mic")
             store.write(partial(measured_parts.add_reading, row=reading)).result(60)
-        stop = StopRow("s", "c1", "peg.nc", "2026-01-01T00:00:30Z", 4.0, "FEED HOLD", 7)
+        stop = ProductionStopRow("s", "c1", "peg.nc", "2026-01-01T00:00:30Z", 4.0, "FEED HOLD", 7)
         store.write(lambda c: part_cycles.save_stop(c, stop)).result(60)
-        store.write(lambda c: tool_lives.save_limits(c, ToolLifeRow(1, 50))).result(60)
+        store.write(lambda c: tool_lives.save_tool_life_limits(c, ToolLifeRow(1, 50))).result(60)
         store.offsets.tool_offsets.change_row(1, "wear", {"x": 0.0, "z": 0.0, "wear_x": -0.01}).result(60)
         store.runs.add_parts("ring.nc").result(60)
     return home

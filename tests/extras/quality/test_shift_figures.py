@@ -19,13 +19,13 @@ from app.extras.quality.shift_results import (
     ShiftTimesError,
     calculate_shift_results,
     find_shift,
-    make_period,
+    make_report_period,
     parse_local_time,
 )
 from core.store.event_log import add_events
 from core.store.production import measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
-from core.store.production.part_cycles import CycleRow, StopRow
+from core.store.production.part_cycles import CycleRow, ProductionStopRow
 from core.store.production.tool_lives import ToolLifeRow
 from core.store.store import Store
 from core.store.store_rows import EventRow
@@ -66,10 +66,10 @@ ROWS = (
     cycle("c3", "13:40:00", "14:20:00", 2400.0, 1),  # over the end: a part of the next shift, 20 min of this
 )
 STOPS = (
-    StopRow("s0", "", "pin.nc", f"{DAY}07:10:00.000Z", 600.0, "BETWEEN CYCLES"),
-    StopRow("s1", "p2", "pin.nc", f"{DAY}07:30:00.000Z", 300.0, "FEED HOLD", 12),
-    StopRow("s2", "", "cap.nc", f"{DAY}13:30:00.000Z", 3600.0, "BETWEEN CYCLES"),  # 30 min of it
-    StopRow("s3", "", "cap.nc", f"{DAY}03:00:00.000Z", 60.0, "FEED HOLD"),  # of the night before
+    ProductionStopRow("s0", "", "pin.nc", f"{DAY}07:10:00.000Z", 600.0, "BETWEEN CYCLES"),
+    ProductionStopRow("s1", "p2", "pin.nc", f"{DAY}07:30:00.000Z", 300.0, "FEED HOLD", 12),
+    ProductionStopRow("s2", "", "cap.nc", f"{DAY}13:30:00.000Z", 3600.0, "BETWEEN CYCLES"),  # 30 min of it
+    ProductionStopRow("s3", "", "cap.nc", f"{DAY}03:00:00.000Z", 60.0, "FEED HOLD"),  # of the night before
 )
 
 
@@ -92,8 +92,8 @@ def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Store]:
         for at, size in (("06:30", 10.05), ("07:00", 10.051), ("15:00", 11.0)):
             reading = ReadingRow(0, number, 8, size, "mm", f"{DAY}{at}:00.000Z", "typed", "")
             store.write(partial(measured_parts.add_reading, row=reading)).result()
-        store.write(lambda c: tool_lives.save_limits(c, ToolLifeRow(1, 50))).result()
-        store.write(lambda c: tool_lives.save_use(c, 1, 20, 60.0)).result()
+        store.write(lambda c: tool_lives.save_tool_life_limits(c, ToolLifeRow(1, 50))).result()
+        store.write(lambda c: tool_lives.save_insert_use(c, 1, 20, 60.0)).result()
         yield store
 
 
@@ -103,7 +103,7 @@ def figures(store: Store, shift: Shift = EIGHT) -> ShiftResults:
 
 def test_shift_counts_the_parts_finished_in_it(store: Store) -> None:
     found = figures(store)
-    assert [(p.program, p.part_count, dict(p.incomplete_cycles)) for p in found.program_results] == [
+    assert [(p.program_name, p.part_count, dict(p.incomplete_cycles)) for p in found.program_results] == [
         ("pin.nc", 3, {}),
         ("cap.nc", 0, {"GIVEN UP": 1, "CUT OFF": 1}),
     ]
@@ -120,7 +120,7 @@ def test_availability_and_stops_match_hand_calculation(store: Store) -> None:
         ("BETWEEN CYCLES", 2, 2400.0),
         ("FEED HOLD", 1, 300.0),
     ]
-    assert (found.stopped_s, found.unrecorded_s) == (2700.0, 28_800.0 - 7_800.0 - 2_700.0)
+    assert (found.total_stop_time_s, found.unrecorded_time_s) == (2700.0, 28_800.0 - 7_800.0 - 2_700.0)
 
 
 def test_alarms_bad_readings_and_tool_lives_are_listed(store: Store) -> None:
@@ -148,7 +148,7 @@ def test_empty_shift_is_reported_as_empty(store: Store) -> None:
         (),
         ("No part was started in this period.",),
     )
-    assert found.unrecorded_s == 28_800.0
+    assert found.unrecorded_time_s == 28_800.0
     assert "none" in make_shift_html(found, "", "now", is_metric=False)
 
 
@@ -196,7 +196,7 @@ def test_current_and_previous_shifts_are_found() -> None:
 )
 def test_invalid_shift_times_are_rejected(first: str, last: str, code: str, value: str) -> None:
     with raises_code(ShiftTimesError, code, value):
-        make_period(first, last)
+        make_report_period(first, last)
 
 
 def test_names_are_escaped_on_the_page(store: Store) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from app.desk.arithmetic import EntryError
+from app.desk.arithmetic import InvalidEntryError
 from app.extras.quality.charts_and_trends import TrendsSection
 from core.extras.quality.control_charts import QualityError
 from core.extras.quality.production_stops import (
@@ -58,12 +58,12 @@ def test_availability_counts_overlapping_stops_once() -> None:
     found = calculate_availability(
         TimeSpan(100, 200), [TimeSpan(0, 110), TimeSpan(130, 150), TimeSpan(140, 160), TimeSpan(190, 250)]
     )
-    assert (found.planned_s, found.producing_s, found.producing_share) == (100, 50, 0.5)
+    assert (found.planned_s, found.producing_s, found.producing_fraction) == (100, 50, 0.5)
 
 
 def test_shift_without_production_has_zero_share() -> None:
-    assert calculate_availability(TimeSpan(0, 10), []).producing_share == 0.0
-    assert calculate_availability(TimeSpan(0, 10), [TimeSpan(10, 20)]).producing_share == 0.0
+    assert calculate_availability(TimeSpan(0, 10), []).producing_fraction == 0.0
+    assert calculate_availability(TimeSpan(0, 10), [TimeSpan(10, 20)]).producing_fraction == 0.0
 
 
 @pytest.mark.parametrize("shift", [TimeSpan(10, 10), TimeSpan(10, 0)])
@@ -82,7 +82,7 @@ def test_clock_set_back_is_rejected() -> None:
 @pytest.mark.parametrize("text", ["²-14", "6-²", "①-14", "25-3", "6-25", "6", "-", "6-14-20", "6.5-14"])
 def test_invalid_shift_hours_are_rejected(text: str) -> None:
     untouched: Any = None
-    with pytest.raises(EntryError):
+    with pytest.raises(InvalidEntryError):
         TrendsSection.accept_entry(untouched, text)
 
 

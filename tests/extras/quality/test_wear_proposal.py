@@ -23,7 +23,7 @@ TENTH = 0.0001 * IN
 SPIGOT = MeasuredFeature(
     "SPIGOT", FeatureKind.DIAMETER, 0.5 * IN, -0.001 * IN, 0.001 * IN, CorrectingOffset.TOOL, 3
 )
-FULL = CorrectionRule(step_share=1.0)
+FULL = CorrectionRule(step_fraction=1.0)
 
 
 def inches(*sizes: float) -> list[float]:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import pytest
 
 from app.cli.proofs import proof_work
-from app.cli.proofs.proof_work import VersionMismatchError, prove_pickled
+from app.cli.proofs.proof_work import VersionMismatchError, prove_pickled_program
 from core.language.source import ProgramSource
 from tests.benchmarks.bench_folder import program
 from tests.cli.conftest import Turndesk, home, offsets, turndesk
@@ -121,4 +121,4 @@ def test_jobs_and_scheduler_options_are_mutually_exclusive(turndesk: Turndesk, p
 def test_worker_with_another_turndesk_version_is_rejected(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(proof_work, "get_code_hash", lambda: "another")
     with pytest.raises(VersionMismatchError):
-        prove_pickled(b"", "ours", ProgramSource("a.nc", "M30\n"))
+        prove_pickled_program(b"", "ours", ProgramSource("a.nc", "M30\n"))

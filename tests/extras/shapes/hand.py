@@ -5,16 +5,16 @@ from __future__ import annotations
 from functools import cache
 
 from app.compose.machine.machine_files import load_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from app.extras.shapes.shapes_model import ShapesModel
 from core.extras.shapes.shape_fields import ShopData
-from core.interpreter.shared.job_setup import SecondaryOffset, Setup, ToolOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, SecondaryOffset, ToolOffset
 from core.language.diagnostics import Severity
 from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
-from core.part.stock_spec import parse_specification
+from core.part.stock_spec import parse_stock_specification
 from core.part.tool_shape import ToolShape
-from core.proving.part_proof import prove_with_part
+from core.proving.part_proof import prove_program_and_part
 from core.proving.program_tools import PartSettings
 from core.proving.proof_report import PartReport, ProofReport
 
@@ -40,7 +40,7 @@ class Programmer:
         """Shift+F3 in the editor: two keys."""
         self.strokes += 2
         self.shapes.read_shop_data = lambda: self.shop
-        said = self.shapes.open_for_text("x.nc", text, line)
+        said = self.shapes.open_program_text("x.nc", text, line)
         self.shapes.worker.wait_for_results(60.0)
         return said
 
@@ -64,7 +64,7 @@ class Programmer:
     def word(self) -> str:
         """Of the marked field."""
         assert self.shapes.form is not None
-        return self.shapes.form.selected_word
+        return self.shapes.form.selected_field_name
 
     @property
     def troubles(self) -> dict[str, str]:
@@ -73,10 +73,12 @@ class Programmer:
         return self.shapes.form.error_texts
 
 
-def setup_of(offsets: dict[int, SecondaryOffset] | None = None, *, strict: bool = False) -> Setup:
+def setup_of(offsets: dict[int, SecondaryOffset] | None = None, *, strict: bool = False) -> InterpreterSetup:
     """All tools are touched off at one place."""
     places = {n: ToolOffset(12.7, -76.2) for n in range(1, 33)}
-    return create_setup(machine(), tool_offsets=places, secondary_offsets=offsets or {}, is_strict=strict)
+    return create_power_up_setup(
+        machine(), tool_offsets=places, secondary_offsets=offsets or {}, is_strict=strict
+    )
 
 
 def proved(
@@ -86,8 +88,8 @@ def proved(
     stock: str = "",
 ) -> tuple[ProofReport, PartReport]:
     """The program and its part on the shipped machine, as the desk proves them, notes as errors too."""
-    setting = PartSettings(stock=parse_specification(stock) if stock else None, shapes=tools or {})
-    report, part = prove_with_part(
+    setting = PartSettings(stock=parse_stock_specification(stock) if stock else None, shapes=tools or {})
+    report, part = prove_program_and_part(
         ProgramSource("x.nc", text), setup_of(offsets, strict=True), machine(), setting
     )
     assert part is not None

@@ -9,7 +9,7 @@ import pytest
 
 from app.extras.shapes.shapes_model import ShapesModel
 from core.extras.shapes.calculators import SPEED_CALCULATOR, TAPER_CALCULATOR, THREAD_CALCULATOR, solve_taper
-from core.extras.shapes.editor_shape import FilledShape, fill_shape
+from core.extras.shapes.editor_shape import ShapeInstance, make_shape_instance
 from core.extras.shapes.shape_fields import FieldValue, ProgramSettings, ShopData
 from core.extras.shapes.threads.tapping import TAPPING_SHAPE, find_tap_drill
 from core.part.tool_shape import ToolKind, ToolShape
@@ -25,8 +25,8 @@ TAPER: dict[str, FieldValue] = {
 }
 
 
-def said(one: FilledShape, setting: ProgramSettings) -> list[str]:
-    return [each.text for each in one.find_errors(setting)]
+def said(one: ShapeInstance, setting: ProgramSettings) -> list[str]:
+    return [each.message for each in one.find_errors(setting)]
 
 
 @pytest.mark.parametrize("three", list(itertools.combinations(TAPER, 3)))
@@ -37,7 +37,7 @@ def test_three_taper_values_give_the_fourth(three: tuple[str, ...]) -> None:
 
 def test_taper_is_written_with_its_notes() -> None:
     """.5 to 1. over 1.: slope sqrt(1 + .0625), 1 : 2 on the diameter."""
-    one = fill_shape(TAPER_CALCULATOR, {"SMALL": 0.5, "LARGE": 1.0, "LONG": 1.0}, INCH)
+    one = make_shape_instance(TAPER_CALCULATOR, {"SMALL": 0.5, "LARGE": 1.0, "LONG": 1.0}, INCH)
     assert not said(one, INCH)
     assert one.make_lines(INCH) == ["X.5Z0", "X1Z-1"]
     assert TAPER_CALCULATOR.make_notes(one, INCH) == (
@@ -50,11 +50,11 @@ def test_taper_is_written_with_its_notes() -> None:
 def test_impossible_triangle_is_rejected() -> None:
     assert (
         wording("shapes.value-missing", label="LENGTH")
-        in said(fill_shape(TAPER_CALCULATOR, {"SMALL": 0.5, "LARGE": 1.0}, INCH), INCH)[0]
+        in said(make_shape_instance(TAPER_CALCULATOR, {"SMALL": 0.5, "LARGE": 1.0}, INCH), INCH)[0]
     )
-    four = fill_shape(TAPER_CALCULATOR, {**TAPER, "ANGLE": 20.0}, INCH)
+    four = make_shape_instance(TAPER_CALCULATOR, {**TAPER, "ANGLE": 20.0}, INCH)
     assert said(four, INCH) == [wording("shapes.no-taper", angle=14.04)]
-    through = fill_shape(TAPER_CALCULATOR, {"LARGE": 0.5, "LONG": 1.0, "ANGLE": 30.0}, INCH)
+    through = make_shape_instance(TAPER_CALCULATOR, {"LARGE": 0.5, "LONG": 1.0, "ANGLE": 30.0}, INCH)
     assert "crosses the spindle centerline" in said(through, INCH)[0]
 
 
@@ -67,7 +67,7 @@ def test_impossible_triangle_is_rejected() -> None:
     ],
 )
 def test_speed_is_calculated(typed: dict[str, FieldValue], rpm: float, setting: ProgramSettings) -> None:
-    one = fill_shape(SPEED_CALCULATOR, typed, setting)
+    one = make_shape_instance(SPEED_CALCULATOR, typed, setting)
     assert one.get_number("RPM") == rpm
     assert not said(one, setting)
 
@@ -80,7 +80,7 @@ def test_speed_calculator_notes_the_roughing_depth(work: str, depth: str) -> Non
     typed: dict[str, FieldValue] = {"MATERIAL": "STEEL", "WORK": work, "DIA": 0.5}
     words = [
         each
-        for each in SPEED_CALCULATOR.make_notes(fill_shape(SPEED_CALCULATOR, typed, INCH), INCH)
+        for each in SPEED_CALCULATOR.make_notes(make_shape_instance(SPEED_CALCULATOR, typed, INCH), INCH)
         if "rough" in each
     ]
     assert words == ([f"roughing passes {depth.removeprefix('0')} deep per side"] if depth else [])
@@ -88,17 +88,21 @@ def test_speed_calculator_notes_the_roughing_depth(work: str, depth: str) -> Non
 
 def test_feed_per_minute_and_per_rev_are_converted() -> None:
     """1000 rpm at .005 are 5 in/min; 6 in/min are .006."""
-    one = fill_shape(SPEED_CALCULATOR, {"DIA": 1.0, "RPM": 1000.0, "FEED": 0.005}, INCH)
+    one = make_shape_instance(SPEED_CALCULATOR, {"DIA": 1.0, "RPM": 1000.0, "FEED": 0.005}, INCH)
     assert one.get_number("RATE") == 5.0
     assert one.make_lines(INCH) == ["M03S1000", "G95F.005"]
     assert one.get_number("SURF") == pytest.approx(1000 * math.pi / 12, abs=0.05)
     assert (
-        fill_shape(SPEED_CALCULATOR, {"DIA": 1.0, "RPM": 1000.0, "RATE": 6.0}, INCH).get_number("FEED")
+        make_shape_instance(SPEED_CALCULATOR, {"DIA": 1.0, "RPM": 1000.0, "RATE": 6.0}, INCH).get_number(
+            "FEED"
+        )
         == 0.006
     )
-    torn = fill_shape(SPEED_CALCULATOR, {"DIA": 1.0, "RPM": 1000.0, "FEED": 0.005, "RATE": 9.0}, INCH)
+    torn = make_shape_instance(
+        SPEED_CALCULATOR, {"DIA": 1.0, "RPM": 1000.0, "FEED": 0.005, "RATE": 9.0}, INCH
+    )
     assert said(torn, INCH) == ["1000 rpm at 0.005 per revolution is 5 per minute: clear one of the values."]
-    fast = fill_shape(SPEED_CALCULATOR, {"DIA": 1.0, "RPM": 5000.0}, INCH)
+    fast = make_shape_instance(SPEED_CALCULATOR, {"DIA": 1.0, "RPM": 5000.0}, INCH)
     assert "more than the 3500 rpm" in said(fast, INCH)[0]
 
 
@@ -106,7 +110,7 @@ def test_thread_passes_follow_the_square_root_rule() -> None:
     """Depth h in n passes: the first h / sqrt(n), pass k at I sqrt(k); either of I and n gives the other."""
     own: dict[str, FieldValue] = {"PITCH": 0.05, "CREST": 0.5, "ROOT": 0.44, "LONG": 1.0}
     own["SERIES"] = next(c for c in THREAD_CALCULATOR.fields[0].choices if "OWN" in c.upper())
-    one = fill_shape(THREAD_CALCULATOR, {**own, "PASSES": 9.0}, INCH)
+    one = make_shape_instance(THREAD_CALCULATOR, {**own, "PASSES": 9.0}, INCH)
     assert one.get_number("FIRST") == pytest.approx(0.01)
     assert one.make_lines(INCH) == ["G33X.44Z-1I.02K.05C"]
     told = THREAD_CALCULATOR.make_notes(one, INCH)
@@ -116,10 +120,10 @@ def test_thread_passes_follow_the_square_root_rule() -> None:
     )
     places = [f"{0.5 - 0.02 * math.sqrt(k):.4f}".rstrip("0").lstrip("0") for k in range(1, 10)]
     assert told[2] == wording("shapes.x-of-passes", positions=" ".join(places))
-    assert fill_shape(THREAD_CALCULATOR, {**own, "FIRST": 0.01}, INCH).get_number("PASSES") == pytest.approx(
-        9.0
-    )
-    torn = fill_shape(THREAD_CALCULATOR, {**own, "FIRST": 0.01, "PASSES": 4.0}, INCH)
+    assert make_shape_instance(THREAD_CALCULATOR, {**own, "FIRST": 0.01}, INCH).get_number(
+        "PASSES"
+    ) == pytest.approx(9.0)
+    torn = make_shape_instance(THREAD_CALCULATOR, {**own, "FIRST": 0.01, "PASSES": 4.0}, INCH)
     assert wording("shapes.first-pass-given", count=4, depth=".015") == said(torn, INCH)[0]
 
 
@@ -128,7 +132,7 @@ def test_thread_passes_follow_the_square_root_rule() -> None:
 
 def written(keys: str, text: str = "") -> str:
     shapes = ShapesModel(shop_data=ShopData())
-    assert shapes.open_for_text("x.nc", text, len(text.splitlines()), lists_helpers=True) == ""
+    assert shapes.open_program_text("x.nc", text, len(text.splitlines()), lists_helpers=True) == ""
     shapes.worker.wait_for_results(60.0)
     for key in keys:
         assert shapes.handle_key(key), (key, shapes.prompt_text())
@@ -162,7 +166,7 @@ def test_a_shape_is_not_opened_from_the_calculators() -> None:
         "G90G94F300G72(HEAD INCH UNIT DIAMETER WORDS STEEL MATERIAL ON COOLANT 1 CLEAR 300 RAPID)\nM08\nM30\n"
     )
     shapes = ShapesModel(shop_data=ShopData())
-    shapes.open_for_text("x.nc", head, 1, lists_helpers=True)
+    shapes.open_program_text("x.nc", head, 1, lists_helpers=True)
     assert shapes.is_list_shown
     assert not shapes.listed_pieces
     assert not shapes.accepts_key("x")
@@ -182,18 +186,18 @@ def test_tap_enters_and_leaves_at_its_pitch() -> None:
     assert lines == ["T4", "G00X0Z1", "Z.15", "G95F.05Z-.45", "M04", "G04F.5", "Z.15", "G00Z1", "M30"]
     report, _ = proved(text, {4: tap}, stock="tube:1:.2:2")
     assert not bad(report)
-    assert [each.edited_line for each in hand.shapes.pieces] == [-1, -1]
+    assert [each.edited_line for each in hand.shapes.shape_pieces] == [-1, -1]
 
 
 def test_tap_hole_diameter_matches_iso_limits() -> None:
     """M10: minor diameter of 6H from 8.376 to 8.676 (ISO 965-1); G 1/2: from 18.631 to 19.172 (ISO 228-1)."""
-    one = fill_shape(TAPPING_SHAPE, {"SERIES": "M", "SIZE": "M10", "DEEP": 12.0}, MM)
+    one = make_shape_instance(TAPPING_SHAPE, {"SERIES": "M", "SIZE": "M10", "DEEP": 12.0}, MM)
     assert TAPPING_SHAPE.make_notes(one, MM) == (
         wording("shapes.hole-before-tapping", size="8.53", smallest="8.38", largest="8.68"),
         "tap drill: 8.5 mm",
     )
     assert one.get_number("PITCH") == 1.5
-    pipe = fill_shape(TAPPING_SHAPE, {"SERIES": "BSP", "SIZE": "1/2", "DEEP": 15.0}, MM)
+    pipe = make_shape_instance(TAPPING_SHAPE, {"SERIES": "BSP", "SIZE": "1/2", "DEEP": 15.0}, MM)
     limits = {"smallest": "18.63", "largest": "19.17"}
     assert TAPPING_SHAPE.make_notes(pipe, MM)[0] == wording(
         "shapes.hole-before-tapping", size="18.9", **limits
@@ -235,17 +239,17 @@ DRILLS = {
 def test_tap_drill_matches_the_charts(series: str, size: str) -> None:
     setting = MM if series.startswith("M") else INCH
     told = TAPPING_SHAPE.make_notes(
-        fill_shape(TAPPING_SHAPE, {"SERIES": series, "SIZE": size, "DEEP": 1.0}, setting), setting
+        make_shape_instance(TAPPING_SHAPE, {"SERIES": series, "SIZE": size, "DEEP": 1.0}, setting), setting
     )[1]
     assert told.removeprefix("tap drill: ").split(" mm")[0].split(",")[0] == DRILLS[series][size]
 
 
 def test_tap_drill_in_the_other_unit_shows_its_size() -> None:
     inch = TAPPING_SHAPE.make_notes(
-        fill_shape(TAPPING_SHAPE, {"SERIES": "M", "SIZE": "M6", "DEEP": 0.5}, INCH), INCH
+        make_shape_instance(TAPPING_SHAPE, {"SERIES": "M", "SIZE": "M6", "DEEP": 0.5}, INCH), INCH
     )
     metric = TAPPING_SHAPE.make_notes(
-        fill_shape(TAPPING_SHAPE, {"SERIES": "UNC", "SIZE": "1/4", "DEEP": 12.0}, MM), MM
+        make_shape_instance(TAPPING_SHAPE, {"SERIES": "UNC", "SIZE": "1/4", "DEEP": 12.0}, MM), MM
     )
     assert (inch[1], metric[1]) == ("tap drill: 5 mm, .1969", "tap drill: #7, 5.105")
 
@@ -282,5 +286,5 @@ def test_invalid_tapping_is_rejected(typed: dict[str, FieldValue], says: str) ->
         "PITCH": 0.05,
         "RPM": 500.0,
     }
-    one = fill_shape(TAPPING_SHAPE, {**base, **typed}, setting)
+    one = make_shape_instance(TAPPING_SHAPE, {**base, **typed}, setting)
     assert any(says in text for text in said(one, setting)), said(one, setting)

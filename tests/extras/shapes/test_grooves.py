@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from core.extras.shapes.editor_shape import fill_shape
+from core.extras.shapes.editor_shape import make_shape_instance
 from core.extras.shapes.shape_fields import FieldValue, ShopData
-from core.extras.shapes.shape_pieces import find_settings, insert_shape
+from core.extras.shapes.shape_pieces import find_active_settings, insert_shape
 from core.extras.shapes.shape_table import SHAPES_BY_KEY
 from core.part.tool_shape import ToolKind, ToolShape
 from tests.extras.shapes.hand import proved
@@ -23,8 +23,8 @@ def made(tool: ToolShape, **typed: FieldValue) -> str:
     """The program of one groove, in mm."""
     shop, text, behind = ShopData(tools={1: tool}), [""], 0
     for key, words in (("N", METRIC), ("G", {"T": 1.0, "WIDE": 2.0, **typed})):
-        setting = find_settings(text, behind, shop)
-        one = fill_shape(SHAPES_BY_KEY[key], words, setting)
+        setting = find_active_settings(text, behind, shop)
+        one = make_shape_instance(SHAPES_BY_KEY[key], words, setting)
         assert not one.find_errors(setting)
         text, behind = insert_shape(text, behind, one, setting)
     return "\n".join(text) + "\n"

@@ -5,14 +5,14 @@ from __future__ import annotations
 import pytest
 
 from core.extras.shapes.contour import ContourPoint
-from core.extras.shapes.editor_shape import FilledShape, fill_shape
+from core.extras.shapes.editor_shape import ShapeInstance, make_shape_instance
 from core.extras.shapes.shape_fields import FieldValue, ProgramSettings, ShopData
 from core.extras.shapes.shape_pieces import (
-    ShapePiece,
-    find_pieces,
-    find_settings,
+    ProgramShape,
+    find_active_settings,
+    find_program_shapes,
     insert_shape,
-    rewrite_pieces,
+    rewrite_program_shapes,
 )
 from core.extras.shapes.shape_table import SHAPES_BY_KEY
 from core.part.tool_shape import ToolKind, ToolShape
@@ -125,15 +125,15 @@ def written(steps: list[Step], **head: FieldValue) -> list[str]:
     text: list[str] = []
     behind = 0
     for key, typed, rows in [("N", head, ()), *steps]:
-        setting = find_settings(text, behind, SHOP)
-        one = fill_shape(SHAPES_BY_KEY[key], typed, setting, rows)
+        setting = find_active_settings(text, behind, SHOP)
+        one = make_shape_instance(SHAPES_BY_KEY[key], typed, setting, rows)
         assert not one.find_errors(setting), one.find_errors(setting)
         text, behind = insert_shape(text, behind, one, setting)
     return text
 
 
-def only(text: list[str], name: str) -> ShapePiece:
-    (found,) = [each for each in find_pieces(text, SHOP) if each.filled_shape.shape.name == name]
+def only(text: list[str], name: str) -> ProgramShape:
+    (found,) = [each for each in find_program_shapes(text, SHOP) if each.shape_instance.shape.name == name]
     return found
 
 
@@ -143,15 +143,15 @@ def test_every_written_shape_proves_and_is_recognized_again(name: str) -> None:
     text = written(STEPS[name])
     report, _ = proved("\n".join(text) + "\n")
     assert not bad(report), (bad(report), text)
-    found = find_pieces(text, SHOP)
-    assert [each.filled_shape.shape.name for each in found] == [
+    found = find_program_shapes(text, SHOP)
+    assert [each.shape_instance.shape.name for each in found] == [
         "HEAD",
         *(SHAPES_BY_KEY[key].name for key, _, _ in STEPS[name]),
     ]
-    assert all(each.edited_line < 0 and not each.adopted_fields for each in found)
+    assert all(each.edited_line < 0 and not each.adopted_field_names for each in found)
     for piece, (_, typed, rows) in zip(found[1:], STEPS[name], strict=True):
-        assert {word: piece.filled_shape.values[word] for word in typed} == typed
-        assert len(piece.filled_shape.contour_points) == len(rows)
+        assert {word: piece.shape_instance.field_values[word] for word in typed} == typed
+        assert len(piece.shape_instance.contour_points) == len(rows)
 
 
 @pytest.mark.parametrize("head", [{"WORDS": "RADIUS"}, {"UNIT": "METRIC"}])
@@ -166,7 +166,7 @@ def test_shapes_in_other_modes_are_recognized(head: dict[str, FieldValue]) -> No
     text = written([("P", typed, ())], **head)
     report, _ = proved("\n".join(text) + "\n")
     assert not bad(report)
-    assert only(text, "PART OFF").filled_shape.values["FROM"] == pytest.approx(0.75 * scale)
+    assert only(text, "PART OFF").shape_instance.field_values["FROM"] == pytest.approx(0.75 * scale)
 
 
 def changed(text: list[str], before: str, after: str) -> list[str]:
@@ -177,7 +177,7 @@ def changed(text: list[str], before: str, after: str) -> list[str]:
 def test_manually_changed_feed_is_adopted() -> None:
     text = changed(written(STEPS["thread"][:1]), "G95F.003Z0", "G95F.002Z0")
     piece = only(text, "TURN")
-    assert (piece.edited_line, piece.adopted_fields, piece.filled_shape.values["FEED"]) == (
+    assert (piece.edited_line, piece.adopted_field_names, piece.shape_instance.field_values["FEED"]) == (
         -1,
         ("FEED",),
         0.002,
@@ -191,14 +191,17 @@ def test_manually_changed_depth_and_speed_are_adopted() -> None:
     text = changed(changed(text, speed, "M03S900"), hole, hole.replace("Z-.6", "Z-.65"))
     piece = only(text, "DRILL")
     assert piece.edited_line == -1
-    assert (piece.filled_shape.values["RPM"], piece.filled_shape.values["DEEP"]) == (900.0, 0.65)
+    assert (piece.shape_instance.field_values["RPM"], piece.shape_instance.field_values["DEEP"]) == (
+        900.0,
+        0.65,
+    )
 
 
 def test_manually_changed_points_are_adopted() -> None:
     text = changed(written([("T", {"FROM": 0.5}, PROFILE[:3])]), "Z-.5", "Z-.55")
     piece = only(text, "TURN")
     assert piece.edited_line == -1
-    assert piece.filled_shape.contour_points[2] == ContourPoint(z=-0.55)
+    assert piece.shape_instance.contour_points[2] == ContourPoint(z=-0.55)
 
 
 def test_manually_inserted_line_is_reported_and_not_adopted() -> None:
@@ -219,41 +222,47 @@ def test_lines_between_shapes_stay() -> None:
     text = written(STEPS["thread"])
     second = only(text, "THREAD")
     text[second.first_line : second.first_line] = ["M01(LOOK AT THE DIAMETER)"]
-    found = find_pieces(text, SHOP)
+    found = find_program_shapes(text, SHOP)
     assert [each.edited_line for each in found] == [-1, -1, -1]
-    again, _ = insert_shape(text, 0, found[1].filled_shape, found[1].settings, found[1])
+    again, _ = insert_shape(text, 0, found[1].shape_instance, found[1].settings, found[1])
     assert again == text
 
 
 def test_unrelated_comments_are_not_shapes() -> None:
-    assert not find_pieces(["G90G94F300(HEAD OF THE LINE)", "T1(DRILL)", "T2(FACE 1 TWO)", "M30"], SHOP)
+    assert not find_program_shapes(
+        ["G90G94F300(HEAD OF THE LINE)", "T1(DRILL)", "T2(FACE 1 TWO)", "M30"], SHOP
+    )
 
 
 def test_unit_change_converts_written_shapes() -> None:
     """A drill of .25 in is one of 6.35 mm: no figure keeps its digits under another unit."""
     text = written([("D", {"DIA": 0.25, "DEEP": 0.6, "FEED": 0.004}, ())])
-    before = find_pieces(text, SHOP)
-    head = fill_shape(SHAPES_BY_KEY["N"], {"UNIT": "METRIC"}, find_settings(text, 0, SHOP))
+    before = find_program_shapes(text, SHOP)
+    head = make_shape_instance(SHAPES_BY_KEY["N"], {"UNIT": "METRIC"}, find_active_settings(text, 0, SHOP))
     text, _ = insert_shape(text, 0, head, before[0].settings, before[0])
-    text, stay = rewrite_pieces(text, SHOP, before)
-    drill = only(text, "DRILL").filled_shape
+    text, stay = rewrite_program_shapes(text, SHOP, before)
+    drill = only(text, "DRILL").shape_instance
     assert not stay
-    assert (drill.values["DIA"], drill.values["DEEP"], drill.values["FEED"]) == (6.35, 15.24, 0.1016)
+    assert (drill.field_values["DIA"], drill.field_values["DEEP"], drill.field_values["FEED"]) == (
+        6.35,
+        15.24,
+        0.1016,
+    )
     assert not bad(proved("\n".join(text) + "\n")[0])
 
 
 def test_edited_shape_is_left_and_counted_on_unit_change() -> None:
     text = written([("D", {"DIA": 0.25, "DEEP": 0.6}, ())])
     text.insert(-2, "G04F1")
-    before = find_pieces(text, SHOP)
-    again, stay = rewrite_pieces(text, SHOP, before)
+    before = find_program_shapes(text, SHOP)
+    again, stay = rewrite_program_shapes(text, SHOP, before)
     assert (again, stay) == (text, 1)
 
 
 def refused(key: str, typed: dict[str, FieldValue], rows: tuple[ContourPoint, ...] = ()) -> dict[str, str]:
-    setting = find_settings(written([]), 1, SHOP)
-    one: FilledShape = fill_shape(SHAPES_BY_KEY[key], typed, setting, rows)
-    return {each.field_word: each.text for each in one.find_errors(setting)}
+    setting = find_active_settings(written([]), 1, SHOP)
+    one: ShapeInstance = make_shape_instance(SHAPES_BY_KEY[key], typed, setting, rows)
+    return {each.field_name: each.message for each in one.find_errors(setting)}
 
 
 @pytest.mark.parametrize(
@@ -318,21 +327,24 @@ def test_invalid_contour_is_rejected_at_its_point(rows: tuple[ContourPoint, ...]
 def test_unsuitable_tool_is_rejected_and_not_proposed() -> None:
     sheets = {1: ToolShape(ToolKind.TURNING, insert="CNMG432"), 3: ToolShape(ToolKind.DRILL, diameter=6.35)}
     setting = ProgramSettings(shop=ShopData(tools=sheets))
-    thread = fill_shape(SHAPES_BY_KEY["R"], {"SIZE": "1/2", "LONG": 0.5}, setting)
+    thread = make_shape_instance(SHAPES_BY_KEY["R"], {"SIZE": "1/2", "LONG": 0.5}, setting)
     assert (thread.get_number("T"), thread.find_errors(setting)) == (2.0, [])
-    drill = fill_shape(SHAPES_BY_KEY["D"], {"DEEP": 0.5}, setting)
+    drill = make_shape_instance(SHAPES_BY_KEY["D"], {"DEEP": 0.5}, setting)
     assert (drill.get_number("T"), drill.get_number("DIA")) == (3.0, 0.25)
-    wrong = fill_shape(SHAPES_BY_KEY["R"], {"SIZE": "1/2", "LONG": 0.5, "T": 3.0}, setting)
-    assert "T" in {each.field_word for each in wrong.find_errors(setting)}
+    wrong = make_shape_instance(SHAPES_BY_KEY["R"], {"SIZE": "1/2", "LONG": 0.5, "T": 3.0}, setting)
+    assert "T" in {each.field_name for each in wrong.find_errors(setting)}
 
 
 def test_boring_tool_is_proposed_for_a_bore() -> None:
     sheets = {1: ToolShape(ToolKind.TURNING), 2: ToolShape(ToolKind.BORING), 3: ToolShape(ToolKind.THREADING)}
     setting = ProgramSettings(shop=ShopData(tools=sheets))
-    assert fill_shape(SHAPES_BY_KEY["T"], {}, setting).get_number("T") == 1.0
-    assert fill_shape(SHAPES_BY_KEY["T"], {"SIDE": "BORE"}, setting).get_number("T") == 2.0
-    assert fill_shape(SHAPES_BY_KEY["R"], {"SIZE": "1/2"}, setting).get_number("T") == 3.0
-    assert fill_shape(SHAPES_BY_KEY["R"], {"SIZE": "1/2", "SIDE": "BORE"}, setting).get_number("T") == 4.0
+    assert make_shape_instance(SHAPES_BY_KEY["T"], {}, setting).get_number("T") == 1.0
+    assert make_shape_instance(SHAPES_BY_KEY["T"], {"SIDE": "BORE"}, setting).get_number("T") == 2.0
+    assert make_shape_instance(SHAPES_BY_KEY["R"], {"SIZE": "1/2"}, setting).get_number("T") == 3.0
+    assert (
+        make_shape_instance(SHAPES_BY_KEY["R"], {"SIZE": "1/2", "SIDE": "BORE"}, setting).get_number("T")
+        == 4.0
+    )
 
 
 @pytest.mark.parametrize(
@@ -357,16 +369,16 @@ def test_operation_beyond_the_tool_is_rejected(
     key: str, typed: dict[str, FieldValue], sheet: ToolShape, word: str
 ) -> None:
     setting = ProgramSettings(shop=ShopData(tools={1: sheet}))
-    said = fill_shape(SHAPES_BY_KEY[key], typed, setting).find_errors(setting)
-    assert [each.field_word for each in said] == [word], said
+    said = make_shape_instance(SHAPES_BY_KEY[key], typed, setting).find_errors(setting)
+    assert [each.field_name for each in said] == [word], said
 
 
 def test_nose_compensation_in_a_bar_loop_is_refused() -> None:
     text = written(STEPS["bar loop"][:1])
-    setting = find_settings(text, len(text) - 1, SHOP)
+    setting = find_active_settings(text, len(text) - 1, SHOP)
     assert setting.is_subroutine
-    one = fill_shape(SHAPES_BY_KEY["T"], {"COMP": 1.0}, setting, PROFILE[:3])
-    assert [each.field_word for each in one.find_errors(setting)] == ["COMP"]
+    one = make_shape_instance(SHAPES_BY_KEY["T"], {"COMP": 1.0}, setting, PROFILE[:3])
+    assert [each.field_name for each in one.find_errors(setting)] == ["COMP"]
 
 
 DRILLED = "T1(DRILL 0P25 DIA 0P5 DEEP 0 PECK 0P004 FEED 1200 RPM)"

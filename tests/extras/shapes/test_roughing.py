@@ -12,12 +12,12 @@ from app.extras.shapes.shapes_setup import make_shop_data
 from core.extras.shapes.contour import ContourPoint
 from core.extras.shapes.cutting_data import (
     CUTTING_DATA,
-    find_max_depth,
+    find_max_cutting_depth,
     propose_facing_depth,
     propose_finish_allowance,
     propose_roughing_depth,
 )
-from core.extras.shapes.editor_shape import FilledShape, fill_shape
+from core.extras.shapes.editor_shape import ShapeInstance, make_shape_instance
 from core.extras.shapes.shape_fields import FieldValue, ProgramSettings, ShopData
 from core.extras.shapes.shape_table import CALCULATORS_BY_DIALECT, SHAPES_BY_DIALECT
 from core.language.source import Dialect
@@ -47,14 +47,14 @@ def one(
     rows: tuple[ContourPoint, ...] = (),
     *,
     helper: bool = False,
-) -> FilledShape:
-    return fill_shape(
+) -> ShapeInstance:
+    return make_shape_instance(
         (CALCULATORS_BY_DIALECT if helper else SHAPES_BY_DIALECT)[now.dialect][key], typed, now, rows
     )
 
 
-def refused(made: FilledShape, now: ProgramSettings) -> list[str]:
-    return [each.field_word for each in made.find_errors(now)]
+def refused(made: ShapeInstance, now: ProgramSettings) -> list[str]:
+    return [each.field_name for each in made.find_errors(now)]
 
 
 # --- the most that an insert takes; C 12 has a circle of 12.7 mm and an edge of 12.7 / sin 80 = 12.896 mm
@@ -73,7 +73,7 @@ def refused(made: FilledShape, now: ProgramSettings) -> list[str]:
     ],
 )
 def test_maximum_depth_depends_on_the_insert(insert: str, most: float) -> None:
-    assert find_max_depth(setting(tools={1: turning(insert)}, metric=True), 1) == pytest.approx(
+    assert find_max_cutting_depth(setting(tools={1: turning(insert)}, metric=True), 1) == pytest.approx(
         most, abs=1e-3
     )
 
@@ -139,7 +139,7 @@ def test_every_material_has_a_conservative_depth(material: str, metric: bool) ->
     now = setting(material, {1: CNMG}, metric=metric)
     depth = propose_roughing_depth(now, 1, 8.0 if metric else 0.3)
     assert 0.5 <= depth * now.mm <= 1.6
-    assert depth < find_max_depth(now, 1)
+    assert depth < find_max_cutting_depth(now, 1)
     assert 0.0 < propose_finish_allowance(now, depth) < depth
 
 
@@ -285,7 +285,7 @@ def test_a_depth_of_zero_is_reported_at_its_field() -> None:
     programmer = Programmer().strike("n↓↓↓1§t.5⏎z-.5⏎.7⏎z-1.1")
     form = programmer.shapes.form
     assert form is not None
-    form.select_word("ROUGH")
+    form.select_field_by_name("ROUGH")
     programmer.strike("0")
     assert list(programmer.troubles) == ["ROUGH"]
     programmer.strike("⌫")  # the proposal applies again

@@ -21,7 +21,7 @@ HEAD = "G54 G18 G90 G95 G710 DIAMON\n"
 def written(keys: str, text: str = "", name: str = "x.mpf", shop: ShopData = SHOP) -> tuple[str, str]:
     """The text with what one calculator or template writes before its end; and what is told instead."""
     shapes = ShapesModel(lambda: shop, ProgramSettings(metric=True), shop_data=shop)
-    assert shapes.open_for_text(name, text, max(1, len(text.splitlines())), lists_helpers=True) == ""
+    assert shapes.open_program_text(name, text, max(1, len(text.splitlines())), lists_helpers=True) == ""
     shapes.worker.wait_for_results(60.0)
     strike(shapes, keys)
     said = "" if shapes.form is None else shapes.prompt_text()

@@ -9,10 +9,10 @@ from math import atan2, degrees, hypot
 import pytest
 
 from app.compose.machine.machine_files import load_shipped_machine
-from app.compose.machine.machine_setup import create_setup
-from core.extras.shapes.editor_shape import fill_shape
+from app.compose.machine.machine_setup import create_power_up_setup
+from core.extras.shapes.editor_shape import make_shape_instance
 from core.extras.shapes.shape_fields import FieldValue, ProgramSettings, ShopData
-from core.extras.shapes.shape_pieces import find_pieces, find_settings, insert_shape
+from core.extras.shapes.shape_pieces import find_active_settings, find_program_shapes, insert_shape
 from core.extras.shapes.shape_table import SINUMERIK_SHAPES
 from core.interpreter.dialects import SharedProgram
 from core.interpreter.shared.actions import ColletSwitch, OutputSwitch
@@ -28,8 +28,8 @@ from tests.extras.shapes.test_pieces import written as omniturn
 from tests.sinumerik.lathe import LINEAR
 
 LIVE = load_shipped_machine("sinumerik-live")
-BARS = replace(LIVE, m_codes={68: ("collet", True), 69: ("collet", False)})
-SHOP = ShopData(max_acceleration_mm_s2=3000.0, max_c_rpm=400.0, chuck_codes=(69, 68))
+BARS = replace(LIVE, m_code_outputs={68: ("collet", True), 69: ("collet", False)})
+SHOP = ShopData(max_acceleration_mm_s2=3000.0, max_c_axis_rpm=400.0, chuck_codes=(69, 68))
 NEW = ProgramSettings(dialect=Dialect.SINUMERIK)
 
 Typed = dict[str, FieldValue]
@@ -44,8 +44,8 @@ def written(*steps: tuple[str, Typed], shop: ShopData = SHOP, **head: FieldValue
     """The program of these shapes, in mm, head first."""
     text, behind = list[str](), 0
     for key, typed in [("N", {"UNIT": "METRIC", **head}), *steps]:
-        setting = find_settings(text, behind, shop, NEW)
-        one = fill_shape(SINUMERIK_SHAPES[key], typed, setting)
+        setting = find_active_settings(text, behind, shop, NEW)
+        one = make_shape_instance(SINUMERIK_SHAPES[key], typed, setting)
         assert not one.find_errors(setting), one.find_errors(setting)
         text, behind = insert_shape(text, behind, one, setting)
     return text
@@ -58,7 +58,7 @@ def source(text: list[str]) -> ProgramSource:
 def blocks(text: list[str], machine: Machine = LIVE) -> list[Block]:
     """Of a program that is proved without an error."""
     tools = {n: ToolOffset(50.0, 100.0, 0.0, 3) for n in range(1, 10)}
-    around = create_setup(machine, tool_offsets=tools, secondary_offsets={})
+    around = create_power_up_setup(machine, tool_offsets=tools, secondary_offsets={})
     report = prove(source(text), around, machine)
     assert not report.errors, [each.format_one_line("x") for each in report.diagnostics]
     return list(SharedProgram(source(text)).start_pass(around).generate_blocks())
@@ -87,13 +87,13 @@ def cuts(text: list[str]) -> list[Block]:
 def test_live_shape_is_proved_and_reopened_from_its_text(key: str, typed: Typed, head: Typed) -> None:
     text = written((key, typed), shop=SHOP, **head)
     blocks(text)
-    piece = find_pieces(text, SHOP, NEW)[-1]
-    assert (piece.filled_shape.shape.name, piece.edited_line, piece.adopted_fields) == (
+    piece = find_program_shapes(text, SHOP, NEW)[-1]
+    assert (piece.shape_instance.shape.name, piece.edited_line, piece.adopted_field_names) == (
         SINUMERIK_SHAPES[key].name,
         -1,
         (),
     )
-    assert {word: piece.filled_shape.values[word] for word in typed} == typed
+    assert {word: piece.shape_instance.field_values[word] for word in typed} == typed
 
 
 # --- taps
@@ -131,7 +131,7 @@ def test_cross_holes_are_at_their_angles() -> None:
 
 
 def test_c_axis_is_written_with_its_configured_name() -> None:
-    named = replace(SHOP, third_axis="A1")
+    named = replace(SHOP, third_axis_name="A1")
     assert "G0 A1=27.5" in written(("C", CROSS), shop=named)
     assert "G0 C27.5" in written(("C", CROSS))
 
@@ -213,15 +213,17 @@ def test_a_bar_loop_makes_its_parts(feeds: str) -> None:
     faced = [each.mz for each in made if each.kind is BlockKind.FEED and each.x < 0]
     step = 0.0 if feeds == "EACH PART" else -22.0
     assert faced == pytest.approx([faced[0] + k * step for k in range(3)])
-    names = [(piece.filled_shape.shape.name, piece.edited_line) for piece in find_pieces(text, SHOP, NEW)]
+    names = [
+        (piece.shape_instance.shape.name, piece.edited_line) for piece in find_program_shapes(text, SHOP, NEW)
+    ]
     assert names == [("HEAD", -1), ("BAR LOOP", -1), ("FACE", -1)]
 
 
 def test_contour_in_a_sinumerik_bar_loop_may_be_compensated() -> None:
     text = written(("L", LOOP))
-    setting = find_settings(text, len(text) - 1, SHOP, NEW)
+    setting = find_active_settings(text, len(text) - 1, SHOP, NEW)
     assert setting.is_subroutine
-    one = fill_shape(
+    one = make_shape_instance(
         SINUMERIK_SHAPES["A"], {"SMALL": 8.0, "LONG": 5.0, "LARGE": 9.0, "FROM": 20.0, "COMP": 1.0}, setting
     )
     assert not one.find_errors(setting)
@@ -237,7 +239,7 @@ def test_chuck_code_obeys_the_collet_interlocks(text: str, found: str) -> None:
     )
     report = prove(
         source(["G54 G18 G90", *text.split("\n"), "M30"]),
-        create_setup(held, tool_offsets={}, secondary_offsets={}),
+        create_power_up_setup(held, tool_offsets={}, secondary_offsets={}),
         held,
     )
     assert [each.code for each in report.errors] == [found]
@@ -256,13 +258,13 @@ def test_chuck_codes_open_and_close_the_collet() -> None:
 @pytest.mark.parametrize(
     ("key", "typed", "shop", "word"),
     [
-        ("O", {**TAP, "HOLDER": "RIGID"}, replace(SHOP, has_spindle_as_c=False), "HOLDER"),
+        ("O", {**TAP, "HOLDER": "RIGID"}, replace(SHOP, is_spindle_c_axis=False), "HOLDER"),
         ("O", {**TAP, "HOLDER": "RIGID", "RPM": 500.0}, SHOP, "RPM"),
         ("O", {**TAP, "SERIES": "NPT", "SIZE": "1/4"}, SHOP, "SERIES"),
         ("C", CROSS, replace(SHOP, has_live_output=False), "T"),
-        ("C", CROSS, replace(SHOP, third_axis=""), "T"),
+        ("C", CROSS, replace(SHOP, third_axis_name=""), "T"),
         ("C", {**CROSS, "DEEP": 21.0}, SHOP, "DEEP"),
-        ("M", FACES, replace(SHOP, third_axis="Y"), "T"),
+        ("M", FACES, replace(SHOP, third_axis_name="Y"), "T"),
         ("M", {**FACES, "ACROSS": 20.0}, SHOP, "ACROSS"),
         ("S", {**SLOT, "DEEP": 11.0, "PASS": 1.0}, SHOP, "DEEP"),
         ("L", LOOP, replace(SHOP, chuck_codes=None), "FEEDS"),
@@ -271,21 +273,24 @@ def test_chuck_codes_open_and_close_the_collet() -> None:
 def test_operation_beyond_the_machine_is_rejected_at_its_field(
     key: str, typed: Typed, shop: ShopData, word: str
 ) -> None:
-    setting = find_settings(written(), 1, shop, NEW)
-    one = fill_shape(SINUMERIK_SHAPES[key], typed, setting)
-    assert [each.field_word for each in one.find_errors(setting)] == [word]
+    setting = find_active_settings(written(), 1, shop, NEW)
+    one = make_shape_instance(SINUMERIK_SHAPES[key], typed, setting)
+    assert [each.field_name for each in one.find_errors(setting)] == [word]
 
 
 def test_bar_loop_inside_another_is_rejected() -> None:
     text = written(("L", LOOP))
-    setting = find_settings(text, len(text) - 1, SHOP, NEW)
+    setting = find_active_settings(text, len(text) - 1, SHOP, NEW)
     assert [
-        each.field_word for each in fill_shape(SINUMERIK_SHAPES["L"], LOOP, setting).find_errors(setting)
+        each.field_name
+        for each in make_shape_instance(SINUMERIK_SHAPES["L"], LOOP, setting).find_errors(setting)
     ] == ["COUNT"]
 
 
 def test_lathe_without_a_live_tool_is_reported_in_the_proof() -> None:
     report = prove(
-        source(written(("C", CROSS))), create_setup(LINEAR, tool_offsets={}, secondary_offsets={}), LINEAR
+        source(written(("C", CROSS))),
+        create_power_up_setup(LINEAR, tool_offsets={}, secondary_offsets={}),
+        LINEAR,
     )
     assert any(each.severity is Severity.ERROR and each.code == "one-spindle" for each in report.diagnostics)

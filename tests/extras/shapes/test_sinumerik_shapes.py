@@ -8,22 +8,27 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from app.extras.shapes.shapes_model import ShapesModel
 from core.extras.shapes.contour import ContourPoint
-from core.extras.shapes.editor_shape import fill_shape
+from core.extras.shapes.editor_shape import make_shape_instance
 from core.extras.shapes.shape_fields import FieldValue, ProgramSettings, ShopData
-from core.extras.shapes.shape_pieces import find_pieces, find_settings, insert_shape, rewrite_pieces
+from core.extras.shapes.shape_pieces import (
+    find_active_settings,
+    find_program_shapes,
+    insert_shape,
+    rewrite_program_shapes,
+)
 from core.extras.shapes.shape_table import SHAPES_BY_DIALECT
 from core.interpreter.dialects import SharedProgram
 from core.interpreter.shared.elementary_blocks import BlockKind
-from core.interpreter.shared.job_setup import Setup, ToolOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset
 from core.language.source import Dialect, ProgramSource
-from core.part.stock_spec import parse_specification
+from core.part.stock_spec import parse_stock_specification
 from core.part.tool_shape import ToolKind, ToolShape
-from core.proving.part_proof import prove_with_part
+from core.proving.part_proof import prove_program_and_part
 from core.proving.program_tools import PartSettings
-from core.tool_edges import make_row_number
+from core.tool_edges import make_edge_row_number
 from tests.extras.shapes.hand import machine, setup_of
 from tests.sinumerik.lathe import LINEAR
 from tests.texts import text
@@ -83,8 +88,8 @@ def written(steps: list[Step], dialect: Dialect, **head: FieldValue) -> list[str
     """The program of these shapes in a language, head first, in mm."""
     text, behind, new = list[str](), 0, ProgramSettings(dialect=dialect)
     for key, typed, rows in [("N", {"UNIT": "METRIC", **head}, ()), *steps]:
-        setting = find_settings(text, behind, SHOP, new)
-        one = fill_shape(SHAPES_BY_DIALECT[dialect][key], typed, setting, rows)
+        setting = find_active_settings(text, behind, SHOP, new)
+        one = make_shape_instance(SHAPES_BY_DIALECT[dialect][key], typed, setting, rows)
         assert not one.find_errors(setting), one.find_errors(setting)
         text, behind = insert_shape(text, behind, one, setting)
     return text
@@ -94,12 +99,12 @@ def source(text: list[str], dialect: Dialect) -> ProgramSource:
     return ProgramSource("x.mpf" if dialect is OURS else "x.nc", "\n".join(text) + "\n", dialect)
 
 
-def setup_in(dialect: Dialect, nose: float = 0.0, *, right: bool = False) -> Setup:
+def setup_in(dialect: Dialect, nose: float = 0.0, *, right: bool = False) -> InterpreterSetup:
     """Tools at one place. In SINUMERIK D2 lies 2 mm from D1: to the face, of a ``right`` D1 to the chuck."""
     tools = {n: ToolOffset(50.0, 100.0, nose, 3) for n in range(1, 10)}
-    edges = {make_row_number(n, 2): ToolOffset(50.0, 102.0 if right else 98.0, nose, 4) for n in tools}
+    edges = {make_edge_row_number(n, 2): ToolOffset(50.0, 102.0 if right else 98.0, nose, 4) for n in tools}
     return (
-        create_setup(LINEAR, tool_offsets=tools | edges, secondary_offsets={})
+        create_power_up_setup(LINEAR, tool_offsets=tools | edges, secondary_offsets={})
         if dialect is OURS
         else setup_of()
     )
@@ -127,8 +132,8 @@ def metal(
 ) -> tuple[np.ndarray, list[str]]:
     """Outer and inner radii of the proved part by Z, and what the proof says against the program."""
     lathe = LINEAR if dialect is OURS else machine()
-    setting = PartSettings(stock=parse_specification("bar:30mm:60mm"), shapes=tools or {})
-    report, part = prove_with_part(
+    setting = PartSettings(stock=parse_stock_specification("bar:30mm:60mm"), shapes=tools or {})
+    report, part = prove_program_and_part(
         source(text, dialect), setup_in(dialect, nose, right=right), lathe, setting
     )
     assert part is not None
@@ -154,17 +159,17 @@ def test_shape_removes_the_same_stock_as_in_omniturn_and_is_recognized(name: str
     assert not said, ours
     assert mine.shape == there.shape
     assert np.quantile(np.abs(mine - there), 0.97) <= NEAR  # columns at a wall lie before or behind it
-    found = find_pieces(ours, SHOP, ProgramSettings(dialect=OURS))
-    assert [each.filled_shape.shape.name for each in found][1:] == [
+    found = find_program_shapes(ours, SHOP, ProgramSettings(dialect=OURS))
+    assert [each.shape_instance.shape.name for each in found][1:] == [
         SHAPES_BY_DIALECT[OURS][key].name for key, _, _ in STEPS[name]
     ]
     for piece, (_, typed, rows) in zip(found[1:], STEPS[name], strict=True):
-        assert (piece.edited_line, piece.adopted_fields, len(piece.filled_shape.contour_points)) == (
+        assert (piece.edited_line, piece.adopted_field_names, len(piece.shape_instance.contour_points)) == (
             -1,
             (),
             len(rows),
         )
-        assert {word: piece.filled_shape.values[word] for word in typed} == typed
+        assert {word: piece.shape_instance.field_values[word] for word in typed} == typed
 
 
 @pytest.mark.parametrize(
@@ -194,8 +199,12 @@ def test_groove_cycle_equals_its_lines(typed: dict[str, FieldValue]) -> None:
     there, _ = metal(written(steps, OURS), OURS, tools)
     assert not said, text
     assert np.quantile(np.abs(mine - there), 0.97) <= NEAR
-    piece = find_pieces(text, SHOP, ProgramSettings(dialect=OURS))[-1]
-    assert (piece.edited_line, piece.adopted_fields, piece.filled_shape.values["DN"]) == (-1, (), 2.0)
+    piece = find_program_shapes(text, SHOP, ProgramSettings(dialect=OURS))[-1]
+    assert (piece.edited_line, piece.adopted_field_names, piece.shape_instance.field_values["DN"]) == (
+        -1,
+        (),
+        2.0,
+    )
 
 
 @pytest.mark.parametrize(
@@ -203,10 +212,10 @@ def test_groove_cycle_equals_its_lines(typed: dict[str, FieldValue]) -> None:
     [({"DN": 1.0}, "DN"), ({"SIDE": "REAR"}, "SIDE"), ({"EDGE": 0.5}, "EDGE"), ({"CANGLE": 10.0}, "FANGLE")],
 )
 def test_groove_beyond_the_cycle_is_rejected(typed: dict[str, FieldValue], word: str) -> None:
-    setting = find_settings(written([], OURS), 1, SHOP, ProgramSettings(dialect=OURS))
+    setting = find_active_settings(written([], OURS), 1, SHOP, ProgramSettings(dialect=OURS))
     groove = {"TOP": 30.0, "BOTTOM": 20.0, "AT": 9.0, "WIDE": 2.0, "LONG": 8.0, "DN": 2.0, **typed}
-    one = fill_shape(SHAPES_BY_DIALECT[OURS]["G"], groove, setting)
-    assert [each.field_word for each in one.find_errors(setting)] == [word]
+    one = make_shape_instance(SHAPES_BY_DIALECT[OURS]["G"], groove, setting)
+    assert [each.field_name for each in one.find_errors(setting)] == [word]
 
 
 @pytest.mark.parametrize(
@@ -231,8 +240,8 @@ def test_thread_equals_the_omniturn_thread(typed: dict[str, FieldValue]) -> None
     assert (mine.x, mine.z, mine.feed) == pytest.approx((there.x, there.z, there.feed), abs=2 * NEAR)
     slopes = [(b.x - b.x0) / (b.z - b.z0) for b in last]
     assert slopes[0] == pytest.approx(slopes[1], abs=1e-3)
-    piece = find_pieces(ours, SHOP, ProgramSettings(dialect=OURS))[-1]
-    assert (piece.edited_line, piece.adopted_fields) == (-1, ())
+    piece = find_program_shapes(ours, SHOP, ProgramSettings(dialect=OURS))[-1]
+    assert (piece.edited_line, piece.adopted_field_names) == (-1, ())
 
 
 def test_generated_program_uses_one_move_per_line_and_cycle95() -> None:
@@ -267,8 +276,8 @@ def test_shapes_in_other_modes_are_recognized(head: dict[str, FieldValue]) -> No
     found, said = metal(text, OURS)
     assert not said
     assert found[0].min() == pytest.approx(10.0, abs=NEAR)
-    piece = find_pieces(text, SHOP, ProgramSettings(dialect=OURS))[-1]
-    assert (piece.edited_line, len(piece.filled_shape.contour_points)) == (-1, 3)
+    piece = find_program_shapes(text, SHOP, ProgramSettings(dialect=OURS))[-1]
+    assert (piece.edited_line, len(piece.shape_instance.contour_points)) == (-1, 3)
 
 
 def test_changed_value_is_adopted_and_inserted_line_is_reported() -> None:
@@ -276,25 +285,27 @@ def test_changed_value_is_adopted_and_inserted_line_is_reported() -> None:
     (at,) = [n for n, line in enumerate(text) if line.startswith("CYCLE81")]
     assert text[at] == "CYCLE81(2.5, 0, 1.25, -15)"
     text[at] = "CYCLE81(2.5, 0, 1.25, -16)"
-    piece = find_pieces(text, SHOP, ProgramSettings(dialect=OURS))[-1]
-    assert (piece.edited_line, piece.adopted_fields, piece.filled_shape.values["DEEP"]) == (
+    piece = find_program_shapes(text, SHOP, ProgramSettings(dialect=OURS))[-1]
+    assert (piece.edited_line, piece.adopted_field_names, piece.shape_instance.field_values["DEEP"]) == (
         -1,
         ("DEEP",),
         16.0,
     )
     text.insert(at, "G4 F1")
-    assert find_pieces(text, SHOP, ProgramSettings(dialect=OURS))[-1].edited_line == at
+    assert find_program_shapes(text, SHOP, ProgramSettings(dialect=OURS))[-1].edited_line == at
 
 
 def test_block_numbers_are_ignored_and_unit_change_converts() -> None:
     text = written([("D", {"DIA": 6.35, "DEEP": 12.7, "PECK": 0.0, "FEED": 0.1016}, ())], OURS)
     numbered = [f"N{10 * n} {line}" for n, line in enumerate(text, 1)]
-    before = find_pieces(numbered, SHOP, ProgramSettings(dialect=OURS))
+    before = find_program_shapes(numbered, SHOP, ProgramSettings(dialect=OURS))
     assert [each.edited_line for each in before] == [-1, -1]
     new = ProgramSettings(dialect=OURS)
-    head = fill_shape(SHAPES_BY_DIALECT[OURS]["N"], {"UNIT": "INCH"}, find_settings(text, 0, SHOP, new))
+    head = make_shape_instance(
+        SHAPES_BY_DIALECT[OURS]["N"], {"UNIT": "INCH"}, find_active_settings(text, 0, SHOP, new)
+    )
     text, _ = insert_shape(text, 0, head, before[0].settings, before[0])
-    text, stay = rewrite_pieces(text, SHOP, before)
+    text, stay = rewrite_program_shapes(text, SHOP, before)
     assert not stay
     assert "CYCLE81(0.1, 0, 0.05, -0.5)" in text
 
@@ -309,9 +320,9 @@ def test_block_numbers_are_ignored_and_unit_change_converts() -> None:
     ],
 )
 def test_invalid_value_is_rejected_at_its_field(key: str, typed: dict[str, FieldValue], word: str) -> None:
-    setting = find_settings(written([], OURS), 1, SHOP, ProgramSettings(dialect=OURS))
-    one = fill_shape(SHAPES_BY_DIALECT[OURS][key], typed, setting, PROFILE)
-    assert [each.field_word for each in one.find_errors(setting)] == [word]
+    setting = find_active_settings(written([], OURS), 1, SHOP, ProgramSettings(dialect=OURS))
+    one = make_shape_instance(SHAPES_BY_DIALECT[OURS][key], typed, setting, PROFILE)
+    assert [each.field_name for each in one.find_errors(setting)] == [word]
 
 
 @pytest.fixture
@@ -331,22 +342,22 @@ def strike(shapes: ShapesModel, keys: str) -> None:
 
 def test_the_forms_write_the_language_of_the_program(desk: ShapesModel) -> None:
     """Head and a hole by keys into a program whose name says SINUMERIK; the hole is opened again from it."""
-    assert desk.open_for_text("x.mpf", "M30\n", 1) == ""
+    assert desk.open_program_text("x.mpf", "M30\n", 1) == ""
     strike(desk, "n§d6⏎15§")
     lines = desk.text.splitlines()
     assert lines[0].startswith("G54 G18 G90 G95 G710 DIAMON ; HEAD ")
     assert lines[-3:] == ["G18", "G0 Z25", "M30"]
-    assert desk.open_for_text("x.mpf", desk.text, lines.index("CYCLE81(2.5, 0, 1.25, -15)") + 1) == ""
+    assert desk.open_program_text("x.mpf", desk.text, lines.index("CYCLE81(2.5, 0, 1.25, -15)") + 1) == ""
     assert desk.form is not None
     assert desk.form.filled_shape.get_number("DEEP") == 15.0
 
 
 def test_program_without_a_head_asks_for_one(desk: ShapesModel) -> None:
-    assert desk.open_for_text("x.mpf", "%_N_X_MPF\nM30\n", 1) == ""
+    assert desk.open_program_text("x.mpf", "%_N_X_MPF\nM30\n", 1) == ""
     strike(desk, "d")
-    assert (desk.form, "PRESS N" in desk.notice) == (None, True)
+    assert (desk.form, "PRESS N" in desk.notice_text) == (None, True)
 
 
 def test_unsupported_language_is_rejected(desk: ShapesModel) -> None:
     for helpers in (False, True):
-        assert desk.open_for_text("x.h", "", 1, lists_helpers=helpers) == text("shapes.other-language")
+        assert desk.open_program_text("x.h", "", 1, lists_helpers=helpers) == text("shapes.other-language")

@@ -10,7 +10,7 @@ import pytest
 from core.interpreter.dialects import SharedProgram
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.language.source import ProgramSource
-from core.part.stock_spec import parse_specification
+from core.part.stock_spec import parse_stock_specification
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving.part_history import PartHistory, StepCollector
 from core.proving.program_timeline import MotionSpan, RestSpan
@@ -61,7 +61,7 @@ PARTS = {
 
 def sections(text: str, made: Made) -> np.ndarray:
     """Radii of the metal by column of Z when the program has ended: inside and outside."""
-    setting = PartSettings(stock=parse_specification(made.stock), shapes=made.tools, step=STEP)
+    setting = PartSettings(stock=parse_stock_specification(made.stock), shapes=made.tools, step=STEP)
     gathered = StepCollector(setting)
 
     def see(span: MotionSpan | RestSpan) -> None:

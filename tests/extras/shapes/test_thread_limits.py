@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from core.extras.shapes.editor_shape import FilledShape, fill_shape
+from core.extras.shapes.editor_shape import ShapeInstance, make_shape_instance
 from core.extras.shapes.shape_fields import ProgramSettings, ShopData
 from core.extras.shapes.shape_table import SHAPES_BY_KEY
 from core.extras.shapes.threads.thread_series import (
@@ -177,19 +177,19 @@ def test_one_inch_differs_from_number_one() -> None:
     assert (inch.diameter, number.diameter) == (1.0, pytest.approx(0.073))
 
 
-def thread(typed: dict[str, float | str], *, metric: bool = False) -> FilledShape:
-    return fill_shape(SHAPES_BY_KEY["R"], typed, ProgramSettings(metric=metric))
+def thread(typed: dict[str, float | str], *, metric: bool = False) -> ShapeInstance:
+    return make_shape_instance(SHAPES_BY_KEY["R"], typed, ProgramSettings(metric=metric))
 
 
 def test_size_missing_from_the_series_is_rejected() -> None:
     one = thread({"SIZE": "7/13", "LONG": 0.5, "PITCH": 0.05, "CREST": 0.5, "ROOT": 0.4, "RPM": 300.0})
-    said = {each.field_word: each.text for each in one.find_errors(ProgramSettings())}
+    said = {each.field_name: each.message for each in one.find_errors(ProgramSettings())}
     assert said == {"SIZE": wording("shapes.no-such-size", series="UNC", size="7/13")}
 
 
 def test_tolerance_class_of_the_other_side_is_rejected() -> None:
     one = thread({"SIZE": "1/2", "LONG": 0.5, "CLASS": "2B"})
-    assert [each.text for each in one.find_errors(ProgramSettings())] == [
+    assert [each.message for each in one.find_errors(ProgramSettings())] == [
         wording("shapes.no-such-class", tolerance="2B", allowed="2A, 1A, 3A")
     ]
     assert list_tolerance_classes(ThreadSeries.UNC, is_inside=False) == ("2A", "1A", "3A")
@@ -204,12 +204,12 @@ def test_metric_thread_is_converted_in_an_inch_program() -> None:
 def test_thread_without_relief_is_rejected() -> None:
     one = thread({"SIZE": "1/2", "LONG": 0.5, "PULL": "NO"})
     (said,) = one.find_errors(ProgramSettings())
-    assert (said.field_word, said.text[:21]) == ("RELIEF", "Thread relief missing")
+    assert (said.field_name, said.message[:21]) == ("RELIEF", "Thread relief missing")
 
 
 def test_lead_too_fast_for_the_axis_is_rejected() -> None:
     one = thread({"SIZE": "1/2", "LONG": 0.5, "STARTS": 4.0, "RPM": 1000.0, "RUNUP": 0.5})
-    assert {each.field_word for each in one.find_errors(ProgramSettings())} == {"RPM"}
+    assert {each.field_name for each in one.find_errors(ProgramSettings())} == {"RPM"}
 
 
 def test_thread_deeper_than_its_flanks_is_rejected() -> None:
@@ -221,7 +221,7 @@ def test_thread_deeper_than_its_flanks_is_rejected() -> None:
         "LONG": 0.5,
         "RPM": 300.0,
     }
-    assert [each.field_word for each in thread(own).find_errors(ProgramSettings())] == ["ROOT"]
+    assert [each.field_name for each in thread(own).find_errors(ProgramSettings())] == ["ROOT"]
 
 
 FLANKS = [
@@ -254,8 +254,8 @@ def test_earlier_passes_stay_within_the_flank_of_the_last(
 def test_infeed_angle_flatter_than_the_flank_is_rejected(series: str, most: int) -> None:
     one = thread({"SERIES": series, "SIZE": "1/2", "LONG": 0.5, "INFEED": 29.0})
     (said,) = one.find_errors(ProgramSettings())
-    assert said.field_word == "INFEED"
-    assert said.text.endswith(f"so the first passes would cut into the flank. Enter {most} or less.")
+    assert said.field_name == "INFEED"
+    assert said.message.endswith(f"so the first passes would cut into the flank. Enter {most} or less.")
 
 
 def test_custom_thread_uses_the_angle_of_its_tool() -> None:
@@ -263,11 +263,11 @@ def test_custom_thread_uses_the_angle_of_its_tool() -> None:
     tool = ToolShape(ToolKind.THREADING, tip=8, point=30.0)
     setting = ProgramSettings(metric=True, shop=ShopData(tools={1: tool}))
     own: dict[str, float | str] = {"SERIES": "OWN", "PITCH": 3.0, "CREST": 20.0, "ROOT": 16.5, "LONG": 30.0}
-    one = fill_shape(SHAPES_BY_KEY["R"], own, setting)
+    one = make_shape_instance(SHAPES_BY_KEY["R"], own, setting)
     assert one.get_number("INFEED") == 14.0
     assert not one.find_errors(setting)
-    named = fill_shape(SHAPES_BY_KEY["R"], {"SERIES": "M", "SIZE": "M20", "LONG": 30.0}, setting)
-    assert [each.text for each in named.find_errors(setting)] == [
+    named = make_shape_instance(SHAPES_BY_KEY["R"], {"SERIES": "M", "SIZE": "M20", "LONG": 30.0}, setting)
+    assert [each.message for each in named.find_errors(setting)] == [
         wording("shapes.thread-angle", tool="T1", point=30, angle=60)
     ]
 

@@ -30,7 +30,7 @@ def prepare(desk: Desk, journal: Journal, folder: Path) -> None:
     made.synchronize()
     with Store.open(there) as store:
         other = ProgramSharing(SharedFolder(shop), "LATHE 2", "2" * 32, there / "programs", lambda: store)
-        for family in other.synchronize().programs.values():
+        for family in other.synchronize().versions_by_program.values():
             other.copy_version(family.newest_versions[0])
         better = there / "programs" / SHARED[0]
         better.write_bytes(better.read_bytes().replace(b"G95F.008", b"G95F.010"))

@@ -36,14 +36,14 @@ def folder_of(desk: ProgramSharing) -> Path:
 
 
 def family(desk: ProgramSharing, key: str = "part.nc") -> ProgramVersions:
-    return desk.last_result.programs[key]
+    return desk.last_result.versions_by_program[key]
 
 
 def together(*desks: ProgramSharing) -> None:
     """Each hears of what all others have."""
     for desk in (*desks, *desks):
         shared = desk.synchronize()
-        assert (shared.error_text, shared.unpublished_count) == ("", 0)
+        assert (shared.error_text, shared.unpublished_version_count) == ("", 0)
 
 
 def only(desk: ProgramSharing) -> SharedVersion:
@@ -58,15 +58,18 @@ def test_local_change_is_newer_elsewhere_until_copied(desk: MakeDesk) -> None:
     one, two = desk(1), desk(2)
     write(one, "G00 X1\n")
     together(one, two)
-    assert (family(two).state, (folder_of(two) / "PART.NC").exists()) == ("new", False)  # never unasked
+    assert (family(two).sharing_state, (folder_of(two) / "PART.NC").exists()) == (
+        "new",
+        False,
+    )  # never unasked
     two.copy_version(only(two))
     together(two, one)
-    assert (read(two), family(two).state, family(one).state) == ("G00 X1\n", "same", "same")
-    assert one.last_result.find_machines_with(family(one).local_version_id) == ("LATHE 1", "LATHE 2")
+    assert (read(two), family(two).sharing_state, family(one).sharing_state) == ("G00 X1\n", "same", "same")
+    assert one.last_result.find_machines_with_version(family(one).local_version_id) == ("LATHE 1", "LATHE 2")
     write(one, "G00 X2\n")
     together(one, two)
-    assert (family(two).state, read(two)) == ("newer", "G00 X1\n")
-    assert one.last_result.find_machines_with(family(one).local_version_id) == ("LATHE 1",)
+    assert (family(two).sharing_state, read(two)) == ("newer", "G00 X1\n")
+    assert one.last_result.find_machines_with_version(family(one).local_version_id) == ("LATHE 1",)
     two.copy_version(only(two))
     assert read(two) == "G00 X2\n"
 
@@ -82,19 +85,22 @@ def test_machines_apart_for_a_day_retain_both_versions_and_resolve_once(rig: Rig
         write(one, f"G00 X1{hour}\n")
         write(two, f"G00 X2{hour}\n")
         assert one.synchronize().error_text
-        assert (two.synchronize().unpublished_count, two.last_result.error_text.count("\n")) == (hour + 1, 0)
+        assert (two.synchronize().unpublished_version_count, two.last_result.error_text.count("\n")) == (
+            hour + 1,
+            0,
+        )
     rig.come_back()
     together(one, two)
-    assert (family(one).state, family(two).state) == ("both", "both")
+    assert (family(one).sharing_state, family(two).sharing_state) == ("both", "both")
     assert (read(one), read(two)) == ("G00 X12\n", "G00 X22\n")
     two.copy_version(only(two))
     together(two, one)
-    assert (read(two), family(two).state) == ("G00 X12\n", "same")
-    assert family(one).state == "newer"  # by lineage; the text is that of this desk
+    assert (read(two), family(two).sharing_state) == ("G00 X12\n", "same")
+    assert family(one).sharing_state == "newer"  # by lineage; the text is that of this desk
     one.copy_version(only(one))
     together(one, two)
-    assert (family(one).state, family(two).state, read(one)) == ("same", "same", "G00 X12\n")
-    kept = {one.read_text(each) for each in family(one).versions.values()}
+    assert (family(one).sharing_state, family(two).sharing_state, read(one)) == ("same", "same", "G00 X12\n")
+    kept = {one.read_version_text(each) for each in family(one).versions.values()}
     assert kept == {b"G00 X1\n", *(b"G00 X%d%d\n" % (d, hour) for d in (1, 2) for hour in range(3))}
 
 
@@ -112,7 +118,10 @@ def test_interrupted_publishing_loses_nothing(
             assert one.synchronize().error_text
     rig.mend()
     together(one, two)
-    found = {key: two.read_text(each.newest_versions[0]) for key, each in two.last_result.programs.items()}
+    found = {
+        key: two.read_version_text(each.newest_versions[0])
+        for key, each in two.last_result.versions_by_program.items()
+    }
     assert found == {"first.nc": b"G00 X0\n"} | {f"part{n}.nc": b"G00 X%d\n" % n for n in range(5)}
 
 
@@ -121,14 +130,14 @@ def test_interrupted_publishing_loses_nothing(
 
 def test_local_version_can_win_over_a_remote_change(desk_at_folder: MakeDesk) -> None:
     one, two = _both_changed(desk_at_folder)
-    one.resolve_with_local("part.nc")
+    one.resolve_with_local_version("part.nc")
     together(one, two)
-    assert (family(one).state, read(one)) == ("same", "ONE\n")
-    assert (family(two).state, read(two)) == ("newer", "TWO\n")
+    assert (family(one).sharing_state, read(one)) == ("same", "ONE\n")
+    assert (family(two).sharing_state, read(two)) == ("newer", "TWO\n")
     two.copy_version(only(two))
     assert read(two) == "ONE\n"
     with raises_code(VersionCopyError, "nothing-to-settle"):
-        one.resolve_with_local("part.nc")
+        one.resolve_with_local_version("part.nc")
 
 
 def _both_changed(desk: MakeDesk) -> tuple[ProgramSharing, ProgramSharing]:
@@ -139,7 +148,7 @@ def _both_changed(desk: MakeDesk) -> tuple[ProgramSharing, ProgramSharing]:
     write(one, "ONE\n")
     write(two, "TWO\n")
     together(one, two)
-    assert family(one).state == "both"
+    assert family(one).sharing_state == "both"
     return one, two
 
 
@@ -153,7 +162,7 @@ def test_wrong_clock_has_no_effect(desk_at_folder: MakeDesk, monkeypatch: pytest
     two.copy_version(only(two))
     write(two, "NEW\n")
     together(two, one)
-    assert (family(one).state, only(one).saved) == ("newer", "1999-01-01T00:00:00.000Z")
+    assert (family(one).sharing_state, only(one).saved) == ("newer", "1999-01-01T00:00:00.000Z")
     one.copy_version(only(one))
     assert read(one) == "NEW\n"
 
@@ -166,7 +175,7 @@ def test_returning_to_an_old_text_is_a_newer_version(desk_at_folder: MakeDesk) -
         two.copy_version(only(two))
     write(two, "A\n")
     together(two, one)
-    assert family(one).state == "newer"
+    assert family(one).sharing_state == "newer"
     one.copy_version(only(one))
     assert read(one) == "A\n"
 
@@ -176,7 +185,7 @@ def test_same_text_on_two_machines_is_one_version(desk_at_folder: MakeDesk) -> N
     write(one, "G00\n")
     write(two, "G00\n")  # brought on a stick
     together(one, two)
-    assert (family(two).state, len(family(two).versions)) == ("same", 1)
+    assert (family(two).sharing_state, len(family(two).versions)) == ("same", 1)
 
 
 def test_two_programs_of_the_same_name_are_both_retained(desk_at_folder: MakeDesk) -> None:
@@ -185,7 +194,7 @@ def test_two_programs_of_the_same_name_are_both_retained(desk_at_folder: MakeDes
     one.synchronize()
     write(two, "NUT\n")
     together(two, one)
-    assert (family(one).state, family(two).state) == ("both", "both")
+    assert (family(one).sharing_state, family(two).sharing_state) == ("both", "both")
     assert (read(one), read(two)) == ("BOLT\n", "NUT\n")
 
 
@@ -231,7 +240,7 @@ def test_local_file_with_a_name_windows_reserves_is_not_shared(desk_at_folder: M
     write(one, "G00\n", "NUL.nc")
     write(one, "G00\n")
     shared = one.synchronize()
-    assert (set(shared.rejected_files), set(shared.programs)) == ({"NUL.nc"}, {"part.nc"})
+    assert (set(shared.rejected_files), set(shared.versions_by_program)) == ({"NUL.nc"}, {"part.nc"})
 
 
 def test_locally_deleted_program_remains_on_the_others(desk_at_folder: MakeDesk) -> None:
@@ -241,8 +250,8 @@ def test_locally_deleted_program_remains_on_the_others(desk_at_folder: MakeDesk)
     two.copy_version(only(two))
     (folder_of(one) / "PART.NC").unlink()
     together(one, two)
-    assert (family(one).state, family(two).state, read(two)) == ("new", "same", "G00\n")
-    assert one.last_result.find_machines_with(family(two).local_version_id) == ("LATHE 2",)
+    assert (family(one).sharing_state, family(two).sharing_state, read(two)) == ("new", "same", "G00\n")
+    assert one.last_result.find_machines_with_version(family(two).local_version_id) == ("LATHE 2",)
 
 
 def test_file_being_written_is_skipped_until_settled(desk_at_folder: MakeDesk) -> None:
@@ -255,7 +264,10 @@ def test_file_being_written_is_skipped_until_settled(desk_at_folder: MakeDesk) -
     write(one, "G00\nG01 X1\n")
     one.synchronize(is_settled=True)
     one.synchronize(is_settled=True)
-    assert {one.read_text(each) for each in family(one).versions.values()} == {b"G00\n", b"G00\nG01 X1\n"}
+    assert {one.read_version_text(each) for each in family(one).versions.values()} == {
+        b"G00\n",
+        b"G00\nG01 X1\n",
+    }
 
 
 def test_two_machines_with_one_id_are_rejected_and_publish_nothing(desk_at_folder: MakeDesk) -> None:
@@ -265,7 +277,7 @@ def test_two_machines_with_one_id_are_rejected_and_publish_nothing(desk_at_folde
     two.machine_name = "lathe 1"
     write(two, "G01\n", "OTHER.NC")
     shared = two.synchronize()
-    assert (shared.unpublished_count, "--claim" in shared.error_text) == (1, True)
+    assert (shared.unpublished_version_count, "--claim" in shared.error_text) == (1, True)
     two.machine_id = one.machine_id  # claimed: that computer is gone
     assert two.synchronize().error_text == ""
 
@@ -283,7 +295,7 @@ def test_failed_write_leaves_everything_unchanged(
         with raises_code(VersionCopyError, "cannot-write", os.strerror(errno.ENOSPC)):
             two.copy_version(only(two))
     together(two, one)
-    assert (family(one).state, family(two).state, read(two)) == ("both", "both", "TWO\n")
+    assert (family(one).sharing_state, family(two).sharing_state, read(two)) == ("both", "both", "TWO\n")
     assert len(family(one).versions) == 3
 
 
@@ -309,7 +321,7 @@ def test_next_synchronization_recovers_from_a_power_cut_while_copying(
             two.copy_version(only(two))
     together(two, one)
     assert len(family(one).versions) == 2  # nothing was made up
-    assert (family(two).state, read(two)) == (("newer", "A\n") if before else ("same", "B\n"))
+    assert (family(two).sharing_state, read(two)) == (("newer", "A\n") if before else ("same", "B\n"))
 
 
 def test_version_without_its_text_is_not_copied(folder_rig: Rig, desk_at_folder: MakeDesk) -> None:
@@ -335,7 +347,7 @@ def test_version_removed_from_the_location_is_published_again(
     for file in (folder_rig.folder / "shop" / "versions").iterdir():
         file.unlink()
     together(one, two)
-    assert two.read_text(only(two)) == b"G00\n"
+    assert two.read_version_text(only(two)) == b"G00\n"
 
 
 def test_thousand_programs_synchronize_in_one_pass_each(
@@ -347,8 +359,11 @@ def test_thousand_programs_synchronize_in_one_pass_each(
         write(one, f"G00 X{number}\n", f"P{number:04d}.NC")
     one.synchronize()
     two.synchronize()
-    assert len(two.last_result.programs) == 1000
-    assert two.read_text(two.last_result.programs["p0999.nc"].newest_versions[0]) == b"G00 X999\n"
+    assert len(two.last_result.versions_by_program) == 1000
+    assert (
+        two.read_version_text(two.last_result.versions_by_program["p0999.nc"].newest_versions[0])
+        == b"G00 X999\n"
+    )
 
 
 def test_store_closed_by_a_restore_during_synchronization_is_reported(

@@ -54,7 +54,7 @@ def little_memory() -> Iterator[None]:
 def test_pipe_is_listed_as_foreign_and_does_not_block(place: SharedFolder, tmp_path: Path, name: str) -> None:
     os.mkfifo(tmp_path / name)
     found = in_time(lambda: place.read_contents({}))
-    assert found.foreign_items == (Path(name).name,)
+    assert found.foreign_item_names == (Path(name).name,)
     assert found.unknown_versions == (published(1).version,)
 
 
@@ -80,7 +80,7 @@ def test_a_file_of_gigabytes_is_not_read(place: SharedFolder, tmp_path: Path, na
     with (tmp_path / name).open("wb") as file:
         file.truncate(3 * 1024**3)
     with little_memory():
-        assert place.read_contents({}).foreign_items == (Path(name).name,)
+        assert place.read_contents({}).foreign_item_names == (Path(name).name,)
 
 
 def test_file_that_is_not_regular_is_rejected(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from typing import cast
 import pytest
 
 from app.extras.sharing import location_wait
-from app.extras.sharing.location_wait import wait_for_location
+from app.extras.sharing.location_wait import run_location_work
 from core.extras.sharing.shared_folder import MARKER_FILE_NAME, SharedFolder
 from core.extras.sharing.shared_location import SharedLocation, SharingError, SharingErrorCause
 from tests.coded import raises_code
@@ -35,13 +35,13 @@ def test_silent_location_is_reported_once_and_its_response_still_used(
         told.set()
 
     monkeypatch.setattr(location_wait, "_tell", tell_and_answer)
-    assert wait_for_location(cast("SharedLocation", Place()), lambda: told.wait(60.0), 0.0) is True
+    assert run_location_work(cast("SharedLocation", Place()), lambda: told.wait(60.0), 0.0) is True
     said = wording("cli.no-response", place="the database shop", seconds=0, until="")
     assert capsys.readouterr() == ("", f"turndesk: {said}\n")
 
 
 def test_timely_response_prints_nothing(capsys: pytest.CaptureFixture[str]) -> None:
-    assert wait_for_location(cast("SharedLocation", Place()), lambda: 7) == 7
+    assert run_location_work(cast("SharedLocation", Place()), lambda: 7) == 7
     assert capsys.readouterr() == ("", "")
 
 
@@ -50,7 +50,7 @@ def test_location_error_is_raised_in_the_caller() -> None:
         raise SharingErrorCause.FULL.make_error("the folder x")
 
     with raises_code(SharingError, "disk-full", "folder x"):
-        wait_for_location(cast("SharedLocation", Place()), refuse)
+        run_location_work(cast("SharedLocation", Place()), refuse)
 
 
 def test_ctrl_c_ends_the_wait(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -61,7 +61,7 @@ def test_ctrl_c_ends_the_wait(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(location_wait, "wait", press)
     with pytest.raises(KeyboardInterrupt):
-        wait_for_location(cast("SharedLocation", Place()), lambda: never.wait(60.0))
+        run_location_work(cast("SharedLocation", Place()), lambda: never.wait(60.0))
     never.set()
 
 
@@ -82,7 +82,7 @@ def test_hanging_folder_is_reported(
     touched = threading.Event()
     monkeypatch.setattr(subprocess.Popen, "wait", in_no_time)
     with raises_code(SharingError, "away", "300 s"):
-        wait_for_location(SharedFolder(tmp_path), touched.set)
+        run_location_work(SharedFolder(tmp_path), touched.set)
     assert (waits, touched.is_set()) == ([30.0, 270.0], False)
     until = wording("cli.stops-waiting", seconds=300)
     said = wording("cli.no-response", place=f"the folder {tmp_path}", seconds=30, until=until)

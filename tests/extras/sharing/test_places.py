@@ -70,7 +70,11 @@ def test_publishing_the_same_again_changes_nothing(rig: Rig) -> None:
     place.publish_versions([one], state(one))
     place.publish_versions([one], state(one))
     found = place.read_contents({})
-    assert (found.unknown_versions, found.foreign_items, len(found.machine_states)) == ((one.version,), (), 1)
+    assert (found.unknown_versions, found.foreign_item_names, len(found.machine_states)) == (
+        (one.version,),
+        (),
+        1,
+    )
 
 
 def test_machine_state_replaces_its_previous_state(rig: Rig) -> None:
@@ -117,7 +121,7 @@ def test_garbage_is_listed_and_hides_nothing(rig: Rig) -> None:
     place.publish_versions([one], state(one))
     rig.litter()
     found = place.read_contents({})
-    assert (found.unknown_versions, found.machine_states, len(found.foreign_items)) == (
+    assert (found.unknown_versions, found.machine_states, len(found.foreign_item_names)) == (
         (one.version,),
         (state(one),),
         3,
@@ -138,7 +142,7 @@ def test_interrupted_publishing_leaves_each_version_complete_or_absent(
     rig.mend()
     there = rig.place(2).read_contents({})
     assert first.version in there.unknown_versions  # what was acknowledged
-    assert (there.foreign_items, there.machine_states) == ((), (state(first),))
+    assert (there.foreign_item_names, there.machine_states) == ((), (state(first),))
     assert {each.id for each in there.unknown_versions} <= {each.version.id for each in (first, *more)}
     rig.place().publish_versions(more, state(*more))
     after = rig.place(2).read_contents({})
@@ -198,7 +202,7 @@ def test_system_error_is_reported_with_its_cause(
         assert cause_of(place.publish_versions, [published(1)], state())[0] is cause
     assert place.read_contents({}).stored_ids == frozenset()
     place.publish_versions([published(1)], state())
-    assert place.read_contents({}).foreign_items == ()
+    assert place.read_contents({}).foreign_item_names == ()
 
 
 def test_truncated_version_is_set_aside_and_published_again(folder_rig: Rig) -> None:
@@ -207,11 +211,11 @@ def test_truncated_version_is_set_aside_and_published_again(folder_rig: Rig) -> 
     (file,) = (folder_rig.folder / "shop" / "versions").iterdir()
     file.write_bytes(file.read_bytes()[:-3])
     assert place.read_contents({one.version.id: one.version}).stored_ids == frozenset()
-    assert place.read_contents({}).foreign_items == (file.name,)
+    assert place.read_contents({}).foreign_item_names == (file.name,)
     assert cause_of(place.read_text, one.version)[0] is SharingErrorCause.DAMAGED
     place.publish_versions([one], state(one))
     assert place.read_text(one.version) == one.program_text
-    assert place.read_contents({}).foreign_items == (
+    assert place.read_contents({}).foreign_item_names == (
         f"{file.name}.damaged",
     )  # what was there is not lost either
 

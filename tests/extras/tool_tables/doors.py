@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from core.extras.tool_tables.table_file import FORMATS, read_table
-from core.extras.tool_tables.tool_entry import ReadingOptions, ToolTable, ToolTableError
+from core.extras.tool_tables.table_file import FORMATS, read_tool_table
+from core.extras.tool_tables.tool_entry import TableReadingOptions, ToolTable, ToolTableError
 
 
 def _read(path: Path) -> ToolTable:
     word = next(word for word, each in FORMATS.items() if path.suffix in each.suffixes)
-    return read_table(path, word, ReadingOptions())
+    return read_tool_table(path, word, TableReadingOptions())
 
 
 DOORS = tuple(

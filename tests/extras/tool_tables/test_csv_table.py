@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from core.extras.tool_tables.csv_table import format_table
-from core.extras.tool_tables.tool_entry import ReadingOptions, ToolTableError
+from core.extras.tool_tables.tool_entry import TableReadingOptions, ToolTableError
 from tests.coded import raises_code
 from tests.extras.tool_tables.hand import table_of, tool_of
 
-RADIUS = ReadingOptions(unit="in", x_meaning="radius")
+RADIUS = TableReadingOptions(unit="in", x_meaning="radius")
 
 
 def test_headings_of_a_lathe_are_recognized(tmp_path: Path) -> None:
@@ -29,24 +29,24 @@ def test_headings_of_a_lathe_are_recognized(tmp_path: Path) -> None:
 
 def test_a_diameter_is_halved(tmp_path: Path) -> None:
     text = "T,X,Z\nT1,3,1\n"
-    assert tool_of(tmp_path, "a.csv", text, ReadingOptions("in", "diameter")).offset_values[
+    assert tool_of(tmp_path, "a.csv", text, TableReadingOptions("in", "diameter")).offset_values[
         "x"
     ] == pytest.approx(38.1)
     text = "T,X Dia (mm),Z (mm),Nose diameter (mm)\n1,30,10,0.8\n"
-    offset = tool_of(tmp_path, "a.csv", text, ReadingOptions()).offset_values
+    offset = tool_of(tmp_path, "a.csv", text, TableReadingOptions()).offset_values
     assert offset == {"x": 15.0, "z": 10.0, "nose_radius": 0.4}
 
 
 def test_columns_are_assigned(tmp_path: Path) -> None:
     columns = {"number": "pos", "x": "Dia", "z": "Length"}
     text = "Pos;Dia;Length;X\n7;76,2;-50,8;99\n"
-    tool = tool_of(tmp_path, "a.csv", text, ReadingOptions("mm", "", columns))
+    tool = tool_of(tmp_path, "a.csv", text, TableReadingOptions("mm", "", columns))
     assert (tool.tool_number, dict(tool.offset_values)) == (7, {"x": 38.1, "z": -50.8})
 
 
 def test_a_unit_in_the_heading_precedes_the_option(tmp_path: Path) -> None:
     text = "T,X radius [in],Z (mm)\n1,1,10\n"
-    assert dict(tool_of(tmp_path, "a.csv", text, ReadingOptions("mm")).offset_values) == {
+    assert dict(tool_of(tmp_path, "a.csv", text, TableReadingOptions("mm")).offset_values) == {
         "x": 25.4,
         "z": 10.0,
     }
@@ -105,12 +105,12 @@ def test_x_without_radius_or_diameter_is_rejected(tmp_path: Path) -> None:
 
 def test_missing_unit_is_rejected(tmp_path: Path) -> None:
     with raises_code(ToolTableError, "unit-missing", "--unit"):
-        table_of(tmp_path, "a.csv", "T,Z\n1,1\n", ReadingOptions())
+        table_of(tmp_path, "a.csv", "T,Z\n1,1\n", TableReadingOptions())
 
 
 def test_unknown_assigned_column_is_rejected(tmp_path: Path) -> None:
     with raises_code(ToolTableError, "unknown-column", "did you mean Diam"):
-        table_of(tmp_path, "a.csv", "T,Diam\n1,1\n", ReadingOptions("in", "", {"x": "Dia"}))
+        table_of(tmp_path, "a.csv", "T,Diam\n1,1\n", TableReadingOptions("in", "", {"x": "Dia"}))
 
 
 def test_binary_mach_table_is_rejected(tmp_path: Path) -> None:
@@ -138,7 +138,7 @@ def test_written_table_is_read_back_unchanged(tmp_path: Path) -> None:
     out = format_table(tools.values(), "mm")
     assert "\n1,38.1" in out
     assert ", =HYPERLINK" in out  # no formula for a spreadsheet
-    again = table_of(tmp_path, "b.csv", out, ReadingOptions()).tools
+    again = table_of(tmp_path, "b.csv", out, TableReadingOptions()).tools
     assert again.keys() == tools.keys()
     for number, tool in tools.items():
         assert again[number].offset_values == pytest.approx(tool.offset_values, abs=2e-6)

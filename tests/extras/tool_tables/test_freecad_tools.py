@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from core.extras.tool_tables.tool_entry import ReadingOptions, ToolTableError
+from core.extras.tool_tables.tool_entry import TableReadingOptions, ToolTableError
 from tests.coded import raises_code
 from tests.extras.tool_tables.hand import table_of, tool_of
 
-NUMBERED = ReadingOptions(default_tool_number=4)
+NUMBERED = TableReadingOptions(default_tool_number=4)
 
 
 def tool_bit(name: str, shape: str, **parameters: object) -> str:
@@ -50,7 +50,7 @@ def test_library_finds_its_bits_in_both_folders(tmp_path: Path) -> None:
     entries = [{"nr": 2, "path": "a.fctb"}, {"nr": 99, "path": "missing.fctb"}]
     text = json.dumps({"tools": entries, "version": 1})
     table = table_of(
-        tmp_path / "Library", "x.fctl", text, ReadingOptions(selected_tool_numbers=frozenset({2}))
+        tmp_path / "Library", "x.fctl", text, TableReadingOptions(selected_tool_numbers=frozenset({2}))
     )
     assert table.tools[2].shape_values == {"kind": "reamer", "diameter": 8}
 
@@ -91,7 +91,7 @@ def test_invalid_bits_are_rejected(tmp_path: Path, text: str, code: str) -> None
 
 def test_bit_without_a_number_is_rejected(tmp_path: Path) -> None:
     with raises_code(ToolTableError, "no-number", "--number"):
-        table_of(tmp_path, "a.fctb", tool_bit("a", "drill"), ReadingOptions())
+        table_of(tmp_path, "a.fctb", tool_bit("a", "drill"), TableReadingOptions())
 
 
 @pytest.mark.parametrize(

@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 
 from core.extras.tool_tables import fusion_library
-from core.extras.tool_tables.tool_entry import ReadingOptions, ToolEntry, ToolTable, ToolTableError
+from core.extras.tool_tables.tool_entry import TableReadingOptions, ToolEntry, ToolTable, ToolTableError
 from tests.coded import raises_code
 from tests.extras.tool_tables.hand import table_of
 
-PLAIN = ReadingOptions()
+PLAIN = TableReadingOptions()
 CNMG = {
     **{"SC": "C", "RA": 0, "TC": "M", "SCTY": "G", "INSD": 12.7, "SIZE_SPECIFICATION_MODE": "IC"},
     **{"S": 4.76, "RE": 0.8},
@@ -32,7 +32,7 @@ def library(*tools: object) -> str:
     return json.dumps({"data": list(tools), "version": 1})
 
 
-def read(folder: Path, *tools: object, options: ReadingOptions = PLAIN) -> ToolTable:
+def read(folder: Path, *tools: object, options: TableReadingOptions = PLAIN) -> ToolTable:
     return table_of(folder, "a.json", library(*tools), options)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from core.extras.tool_tables.linuxcnc_table import format_table
-from core.extras.tool_tables.tool_entry import ReadingOptions, ToolTableError
+from core.extras.tool_tables.tool_entry import TableReadingOptions, ToolTableError
 from core.tool_edges import TIP_DIRECTIONS
 from tests.coded import raises_code
 from tests.extras.tool_tables.hand import table_of, tool_of
@@ -27,7 +27,7 @@ def test_inch_line_is_read(tmp_path: Path) -> None:
 
 
 def test_millimeters_and_leading_points_are_read(tmp_path: Path) -> None:
-    tool = tool_of(tmp_path, "a.tbl", "T1 P1 X.5 Z+1. D.8\r\n", ReadingOptions(unit="mm"))
+    tool = tool_of(tmp_path, "a.tbl", "T1 P1 X.5 Z+1. D.8\r\n", TableReadingOptions(unit="mm"))
     assert (tool.offset_values["x"], tool.offset_values["z"], tool.offset_values["nose_radius"]) == (
         0.5,
         1.0,
@@ -59,7 +59,7 @@ def test_codes_in_the_remark_are_the_shape(tmp_path: Path) -> None:
 
 
 def test_a_radius_entered_as_diameter_is_noted(tmp_path: Path) -> None:
-    tool = tool_of(tmp_path, "a.tbl", "T1 D.8 ;CNMG120408\n", ReadingOptions(unit="mm"))
+    tool = tool_of(tmp_path, "a.tbl", "T1 D.8 ;CNMG120408\n", TableReadingOptions(unit="mm"))
     assert tool.offset_values["nose_radius"] == 0.4
     (note,) = tool.notes
     assert "0.400" in note
@@ -81,7 +81,7 @@ def test_tool_at_zero_is_treated_as_not_measured(tmp_path: Path) -> None:
 def test_only_selected_tools_are_read(tmp_path: Path) -> None:
     text = "T1 X1 Z1\nT2 X1 Z1\nT10001 X1 Z1\n"
     table = table_of(
-        tmp_path, "a.tbl", text, ReadingOptions(unit="in", selected_tool_numbers=frozenset({2, 3}))
+        tmp_path, "a.tbl", text, TableReadingOptions(unit="in", selected_tool_numbers=frozenset({2, 3}))
     )
     assert list(table.tools) == [2]
 
@@ -123,8 +123,8 @@ def test_invalid_lines_are_rejected(tmp_path: Path, text: str, code: str, place:
 
 def test_missing_unit_is_reported_once(tmp_path: Path) -> None:
     with raises_code(ToolTableError, "unit-missing", "--unit"):
-        table_of(tmp_path, "a.tbl", "T1 X1 Z1\nT2 X1 Z1\n", ReadingOptions())
-    assert list(table_of(tmp_path, "a.tbl", "T1 P1 Q2 X0\n", ReadingOptions()).tools) == [
+        table_of(tmp_path, "a.tbl", "T1 X1 Z1\nT2 X1 Z1\n", TableReadingOptions())
+    assert list(table_of(tmp_path, "a.tbl", "T1 P1 Q2 X0\n", TableReadingOptions()).tools) == [
         1
     ]  # without a length
 
@@ -156,7 +156,7 @@ def test_written_table_is_read_back_unchanged(tmp_path: Path) -> None:
     tools = table_of(tmp_path, "a.tbl", text).tools
     for unit in ("in", "mm"):
         again = table_of(
-            tmp_path, "b.tbl", format_table(tools.values(), unit), ReadingOptions(unit=unit)
+            tmp_path, "b.tbl", format_table(tools.values(), unit), TableReadingOptions(unit=unit)
         ).tools
         assert again.keys() == tools.keys()
         for number, tool in tools.items():

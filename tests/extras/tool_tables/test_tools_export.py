@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from core.extras.tool_tables.table_file import find_format, read_table
-from core.extras.tool_tables.tool_entry import ReadingOptions, ToolTable
+from core.extras.tool_tables.table_file import find_table_format, read_tool_table
+from core.extras.tool_tables.tool_entry import TableReadingOptions, ToolTable
 from core.store.store import Store
 from tests.cli.conftest import Turndesk
 
@@ -56,7 +56,7 @@ def tools(turndesk: Turndesk, home: Path) -> None:
 
 
 def read(path: Path, unit: str = "", **options: object) -> ToolTable:
-    return read_table(path, find_format(path.name), ReadingOptions(unit=unit, **options))  # type: ignore[arg-type]
+    return read_tool_table(path, find_table_format(path.name), TableReadingOptions(unit=unit, **options))  # type: ignore[arg-type]
 
 
 @pytest.mark.usefixtures("tools")

@@ -14,7 +14,7 @@ from app.extras.tool_tables.import_command import IMPORT_OUTPUT
 from core.access.access_table import AccessLevel
 from core.message import CodedError
 from core.store.store import Store
-from core.store.store_rows import OffsetKind, ShapeRow, ToolRow
+from core.store.store_rows import OffsetKind, ToolOffsetRow, ToolShapeRow
 from core.store.user_records import UserRow, save_user
 from tests.cli.conftest import Turndesk
 from tests.cli.json_output import declared_alone, whole
@@ -30,7 +30,7 @@ def table(tmp_path: Path) -> Path:
     return path
 
 
-def rows(home: Path) -> tuple[dict[int, ToolRow], dict[int, ShapeRow]]:
+def rows(home: Path) -> tuple[dict[int, ToolOffsetRow], dict[int, ToolShapeRow]]:
     with Store.open(home, read_only=True) as store:
         return store.offsets.tool_offsets.read_rows(), store.offsets.tool_shapes.read_rows()
 

@@ -7,16 +7,16 @@ from dataclasses import replace
 import pytest
 
 from core.interpreter.restart.restart_approach import (
+    CurrentMachineState,
     OperatorChoices,
-    PresentState,
     list_starting_functions,
-    make_lathe_start,
+    make_lathe_pass_start,
     plan_exit_moves,
     plan_lathe_approach,
     plan_retract_from_part,
 )
 from core.interpreter.restart.restart_point import Interruption, RestartPoint
-from core.interpreter.restart.state_rebuild import OmniturnSearch
+from core.interpreter.restart.state_rebuild import OmniturnRestartSearch
 from core.interpreter.restart.tool_retract import Retract, RetractLeg, ToolSituation
 from core.interpreter.shared.actions import CoolantSwitch, OutputSwitch, SpindleRun, SpindleStop
 from core.interpreter.shared.checkpoint import ApproachStep, CAxisMove, Checkpoint, FunctionStep, StraightLeg
@@ -26,11 +26,11 @@ from core.language.source import ProgramSource
 from tests.interpreter.programs import INCH, setup
 from tests.texts import text
 
-MODAL = ModalState(tool=1, tool_x=-10.0, tool_z=-50.0)
+MODAL = ModalState(tool=1, tool_offset_x=-10.0, tool_offset_z=-50.0)
 AT = Checkpoint(MODAL._replace(spindle=1, rpm=800.0, coolant=True), x=8.0, z=-12.0)
 BACK = Retract(ToolSituation.IN_PART, (RetractLeg(15.0, -12.0), RetractLeg(15.0, 2.0)), (1, 0))
 FOUND = RestartPoint(9, AT, BACK)
-STANDS = PresentState((30.0, -48.0, 0.0), MODAL)
+STANDS = CurrentMachineState((30.0, -48.0, 0.0), MODAL)
 
 
 def legs(steps: tuple[ApproachStep, ...]) -> list[tuple[float | None, float | None, bool]]:
@@ -47,7 +47,9 @@ def test_approach_is_the_retract_path_reversed() -> None:
     assert order(steps) == ["X", "M03", "M08", "Z", "X"]
     last = steps[-1]
     assert isinstance(last, StraightLeg)
-    assert last.feed_mm_s < OperatorChoices().outside_speed_mm_s  # a feed waits for the spindle's speed
+    assert (
+        last.feed_mm_s < OperatorChoices().approach_speed_outside_mm_s
+    )  # a feed waits for the spindle's speed
 
 
 def test_line_that_starts_clear_of_the_part_is_approached_in_rapid() -> None:
@@ -59,7 +61,7 @@ def test_line_that_starts_clear_of_the_part_is_approached_in_rapid() -> None:
 
 
 def test_unwanted_functions_are_stopped_before_any_move() -> None:
-    now = PresentState(
+    now = CurrentMachineState(
         STANDS.axis_positions, MODAL._replace(spindle=-1, coolant=True, outputs=frozenset({"live1"}))
     )
     found = replace(FOUND, checkpoint=AT._replace(modal=AT.modal._replace(coolant=False)))
@@ -76,19 +78,19 @@ def test_starting_functions_are_listed_and_coolant_is_optional() -> None:
         if isinstance(step, FunctionStep)
     ]
     assert told == [SpindleRun(800.0, None), CoolantSwitch(True)]
-    without = make_lathe_start(FOUND, STANDS, OperatorChoices(uses_coolant=False))
+    without = make_lathe_pass_start(FOUND, STANDS, OperatorChoices(uses_coolant=False))
     assert not without.checkpoint.modal.coolant
-    assert "M08" not in order(without.approach)
+    assert "M08" not in order(without.approach_steps)
 
 
 def test_c_is_locked_and_turned_the_short_distance_clear_of_the_part() -> None:
     modal = AT.modal._replace(spindle=0, c_locked=True, coolant=False, offset_c=720.0)
     found = replace(FOUND, checkpoint=AT._replace(modal=modal, c=90.0))
-    begin = make_lathe_start(found, PresentState((30.0, -48.0, 1000.0), MODAL), OperatorChoices())
-    turn = next(step for step in begin.approach if isinstance(step, CAxisMove))
+    begin = make_lathe_pass_start(found, CurrentMachineState((30.0, -48.0, 1000.0), MODAL), OperatorChoices())
+    turn = next(step for step in begin.approach_steps if isinstance(step, CAxisMove))
     assert turn.angle_deg == pytest.approx(1170.0)  # 90 degrees and three turns: the nearest to 1000
     assert begin.checkpoint.modal.offset_c == pytest.approx(1080.0)
-    assert order(begin.approach) == ["X", "M89", "C", "Z", "X"]
+    assert order(begin.approach_steps) == ["X", "M89", "C", "Z", "X"]
 
 
 TWO = (
@@ -100,9 +102,9 @@ TOOLS = {1: ToolOffset(-10.0, -50.0), 2: ToolOffset(90.0, -20.0)}
 
 def two(line: int, broken: Interruption | None = None) -> RestartPoint:
     """T1 cuts a groove at Z-.3 from X.5 (a radius), then T2, whose offset is another, bores at X.2."""
-    found = OmniturnSearch(ProgramSource("PART", TWO), setup(tools=TOOLS), lambda _count: None).find_restart(
-        line, 0, broken
-    )
+    found = OmniturnRestartSearch(
+        ProgramSource("PART", TWO), setup(tools=TOOLS), lambda _count: None
+    ).find_restart_point(line, 0, broken)
     assert isinstance(found, RestartPoint), found
     return found
 
@@ -120,11 +122,11 @@ def spots(steps: tuple[ApproachStep, ...], tool: int) -> list[tuple[float | None
     ]
 
 
-def in_the_groove(x: float = 0.42) -> tuple[PresentState, Interruption]:
+def in_the_groove(x: float = 0.42) -> tuple[CurrentMachineState, Interruption]:
     """T1 was stopped on line 6, in its groove; the fifth elementary block is that cut."""
     at = (-10.0 + x * INCH, -50.0 - 0.3 * INCH, 0.0)
     broken = Interruption(5, 1, at, 5)
-    return PresentState(at, MODAL, broken), broken
+    return CurrentMachineState(at, MODAL, broken), broken
 
 
 def test_retract_uses_the_interrupted_tool_not_the_tool_of_the_line() -> None:
@@ -140,7 +142,7 @@ def test_retract_uses_the_interrupted_tool_not_the_tool_of_the_line() -> None:
 
 def test_tool_called_in_mdi_does_not_replace_the_tool_in_the_groove() -> None:
     now, _ = in_the_groove()
-    by_hand = replace(now, modal=now.modal._replace(tool=2, tool_x=90.0, tool_z=-20.0))
+    by_hand = replace(now, modal=now.modal._replace(tool=2, tool_offset_x=90.0, tool_offset_z=-20.0))
     cut = two(6).cut_record
     assert cut is not None
     assert plan_exit_moves(cut, by_hand, OperatorChoices()) == plan_exit_moves(cut, now, OperatorChoices())
@@ -170,21 +172,23 @@ def test_tool_jogged_clear_retracts_only_along_z() -> None:
     cut = two(6).cut_record
     assert cut is not None
     clear = replace(now, axis_positions=(-10.0 + 0.8 * INCH, now.axis_positions[1], 0.0))
-    assert plan_retract_from_part(cut, clear)[0].situation is ToolSituation.CLEAR
+    assert plan_retract_from_part(cut, clear)[0].tool_situation is ToolSituation.CLEAR
     assert all(rapid for _, _, rapid in legs(plan_exit_moves(cut, clear, OperatorChoices())))
 
 
 def test_unknown_interruption_requires_every_tool_to_be_clear() -> None:
     cut = two(6).cut_record
     assert cut is not None
-    unknown = PresentState((-10.0 + 0.2 * INCH, -50.0 - 0.3 * INCH, 0.0), ModalState())
+    unknown = CurrentMachineState((-10.0 + 0.2 * INCH, -50.0 - 0.3 * INCH, 0.0), ModalState())
     assert not plan_retract_from_part(cut, unknown)[0].is_known
-    assert plan_retract_from_part(cut, PresentState((40.0, cut.max_machine_z, 0.0), ModalState()))[0].is_known
+    assert plan_retract_from_part(cut, CurrentMachineState((40.0, cut.max_machine_z, 0.0), ModalState()))[
+        0
+    ].is_known
 
 
 def test_position_after_a_power_cut_may_be_slightly_further_along() -> None:
     now, _ = in_the_groove()
-    noted = Interruption(4, 1, (-10.0 + 0.5 * INCH, -50.0 + 0.05 * INCH, 0.0), 4, is_stale=True)
+    noted = Interruption(4, 1, (-10.0 + 0.5 * INCH, -50.0 + 0.05 * INCH, 0.0), 4, was_power_lost=True)
     cut = two(6).cut_record
     assert cut is not None
     assert spots(plan_exit_moves(cut, replace(now, interruption=noted), OperatorChoices()), 1)[0] == (
@@ -192,7 +196,7 @@ def test_position_after_a_power_cut_may_be_slightly_further_along() -> None:
         None,
         False,
     )
-    known = replace(now, interruption=noted._replace(is_stale=False))
+    known = replace(now, interruption=noted._replace(was_power_lost=False))
     assert plan_exit_moves(cut, known, OperatorChoices()) == ()  # it was moved by hand, nobody knows whither
 
 
@@ -207,9 +211,9 @@ def test_tool_not_yet_called_is_brought_in_clear_of_the_whole_program() -> None:
 
 def test_line_that_starts_in_uncut_material_is_rejected() -> None:
     _, broken = in_the_groove()
-    answer = OmniturnSearch(ProgramSource("PART", TWO), setup(tools=TOOLS), lambda _count: None).find_restart(
-        12, 0, broken
-    )
+    answer = OmniturnRestartSearch(
+        ProgramSource("PART", TWO), setup(tools=TOOLS), lambda _count: None
+    ).find_restart_point(12, 0, broken)
     assert not isinstance(answer, RestartPoint)
     uncut = text("search.uncut-lines", first=6, last=11)
     assert answer.why == text("search.in-uncut-material", line=12, uncut=uncut)
@@ -218,8 +222,8 @@ def test_line_that_starts_in_uncut_material_is_rejected() -> None:
 
 def test_rest_of_an_interrupted_cut_is_skipped_unless_complete() -> None:
     _, broken = in_the_groove()
-    rebuild = OmniturnSearch(ProgramSource("PART", TWO), setup(tools=TOOLS), lambda _count: None)
-    answer = rebuild.find_restart(7, 0, broken)
+    rebuild = OmniturnRestartSearch(ProgramSource("PART", TWO), setup(tools=TOOLS), lambda _count: None)
+    answer = rebuild.find_restart_point(7, 0, broken)
     assert not isinstance(answer, RestartPoint)
     uncut = text("search.uncut-line", line=6)
     assert answer.why == text("search.in-uncut-material", line=7, uncut=uncut)
@@ -228,5 +232,5 @@ def test_rest_of_an_interrupted_cut_is_skipped_unless_complete() -> None:
     assert two(6, broken).skipped_lines == (0, 0)
     later = two(9, broken)
     assert later.skipped_lines == (6, 6)
-    assert make_lathe_start(later, now, OperatorChoices()).skips_cuts
-    assert not make_lathe_start(two(9, complete), now, OperatorChoices()).skips_cuts
+    assert make_lathe_pass_start(later, now, OperatorChoices()).skips_cuts
+    assert not make_lathe_pass_start(two(9, complete), now, OperatorChoices()).skips_cuts

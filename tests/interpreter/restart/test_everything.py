@@ -10,7 +10,7 @@ import pytest
 from core.interpreter.omniturn.omniturn_program import read_program
 from core.interpreter.restart.restart_point import RestartPoint
 from core.interpreter.shared.actions import InputRead
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 from core.language.diagnostics import Severity
 from core.language.source import ProgramSource, load_source
 from tests.interpreter.programs import ALL_TOOLS, setup
@@ -26,25 +26,25 @@ WORKED = sorted(FOLDER.glob("*.nc")) if FOLDER.is_dir() else []
 SAMPLES = sorted((ROOT / "resources" / "programs").glob("*.nc"))
 
 
-def golden_setup(path: Path) -> Setup:
+def golden_setup(path: Path) -> InterpreterSetup:
     table = path.with_suffix(".expected").read_text().splitlines()
     return circumstances([line[1:].split() for line in table if line.startswith("#")])
 
 
-def runs(source: ProgramSource, given: Setup) -> bool:
+def runs(source: ProgramSource, given: InterpreterSetup) -> bool:
     return not any(d.severity is Severity.ERROR for d in read_program(source).diagnostics) and bool(
         given.tools
     )
 
 
-def check(source: ProgramSource, given: Setup) -> int:
+def check(source: ProgramSource, given: InterpreterSetup) -> int:
     """Compare every good line; how many there were."""
     full = all_of(source, given)
     good = [each for each in of_each_line(source, given) if isinstance(each, RestartPoint)]
     for found in good:
         begin = begun(given, found)
         assert begin.begin is not None
-        again = all_of(source, begin)[len(begin.begin.approach) :]
+        again = all_of(source, begin)[len(begin.begin.approach_steps) :]
         rest = [block for block in full if block.n > found.checkpoint.blocks]
         if any(isinstance(block.action, InputRead) for block in full):  # the count depends on the answers
             rest = full[len(full) - len(again) :]

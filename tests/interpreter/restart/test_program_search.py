@@ -7,23 +7,23 @@ from dataclasses import replace
 import pytest
 
 from app.compose.machine.machine_files import load_named_machine
-from app.compose.machine.machine_setup import create_setup
+from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.dialects import SharedProgram
-from core.interpreter.restart.program_search import BlockSearch, _is_uncut, _PassState
+from core.interpreter.restart.program_search import RestartLineSearch, _is_uncut, _PassState
 from core.interpreter.restart.restart_approach import (
+    CurrentMachineState,
     OperatorChoices,
-    PresentState,
-    make_lathe_start,
-    make_mill_start,
+    make_lathe_pass_start,
+    make_mill_pass_start,
 )
-from core.interpreter.restart.restart_point import Interruption, RestartPoint, RestartRefusal
+from core.interpreter.restart.restart_point import Interruption, RestartPoint, RestartRejection
 from core.interpreter.shared.actions import ProgramStop, SpindleRun, ToolChange
-from core.interpreter.shared.checkpoint import AxesLeg, Checkpoint, FunctionStep, PassStart
+from core.interpreter.shared.checkpoint import Checkpoint, FunctionStep, MultiAxisLeg, PassStart
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.shared.job_setup import Setup, ToolOffset, ZeroOffset
+from core.interpreter.shared.job_setup import InterpreterSetup, ToolOffset, ZeroOffset
 from core.interpreter.shared.modal_state import ModalState
 from core.language.source import ProgramSource
-from core.tool_edges import make_row_number
+from core.tool_edges import make_edge_row_number
 from tests.texts import text
 
 PLATE = """\
@@ -85,34 +85,36 @@ M30
 TOOLS = {5: ToolOffset(z=80.0, nose_radius=6.0), 6: ToolOffset(z=95.0, nose_radius=4.0)}
 
 
-def mill(program: str = PLATE) -> tuple[SharedProgram, Setup]:
-    return SharedProgram(ProgramSource("plate.h", program)), create_setup(
+def mill(program: str = PLATE) -> tuple[SharedProgram, InterpreterSetup]:
+    return SharedProgram(ProgramSource("plate.h", program)), create_power_up_setup(
         load_named_machine("ac-table-mill"), tool_offsets=TOOLS, secondary_offsets={}
     )
 
 
-def lathe(program: str = TURNED) -> tuple[SharedProgram, Setup]:
+def lathe(program: str = TURNED) -> tuple[SharedProgram, InterpreterSetup]:
     machine = load_named_machine("sinumerik-modulo")
     zero = {54: ZeroOffset(z=-300.0)}
-    return SharedProgram(ProgramSource("shaft.mpf", program)), create_setup(
+    return SharedProgram(ProgramSource("shaft.mpf", program)), create_power_up_setup(
         machine, tool_offsets={}, secondary_offsets={}, zero_offsets=zero
     )
 
 
 def searched(
-    of: tuple[SharedProgram, Setup], line: int, visit: int = 0, broken: Interruption | None = None
-) -> RestartPoint | RestartRefusal:
+    of: tuple[SharedProgram, InterpreterSetup], line: int, visit: int = 0, broken: Interruption | None = None
+) -> RestartPoint | RestartRejection:
     reading, setup = of
-    return BlockSearch(reading, setup, lambda _count: None).find_restart(line, visit, broken)
+    return RestartLineSearch(reading, setup, lambda _count: None).find_restart_point(line, visit, broken)
 
 
-def refused(of: tuple[SharedProgram, Setup], line: int, broken: Interruption | None = None) -> RestartRefusal:
+def refused(
+    of: tuple[SharedProgram, InterpreterSetup], line: int, broken: Interruption | None = None
+) -> RestartRejection:
     found = searched(of, line, broken=broken)
-    assert isinstance(found, RestartRefusal)
+    assert isinstance(found, RestartRejection)
     return found
 
 
-def good(of: tuple[SharedProgram, Setup], line: int, visit: int = 0) -> RestartPoint:
+def good(of: tuple[SharedProgram, InterpreterSetup], line: int, visit: int = 0) -> RestartPoint:
     found = searched(of, line, visit)
     assert isinstance(found, RestartPoint), found
     return found
@@ -132,11 +134,13 @@ def told(block: Block) -> tuple[object, ...]:
     )
 
 
-def whole(of: tuple[SharedProgram, Setup]) -> list[Block]:
+def whole(of: tuple[SharedProgram, InterpreterSetup]) -> list[Block]:
     return list(of[0].start_pass(of[1]).generate_blocks(stops_at_first_error=True))
 
 
-def restarted(of: tuple[SharedProgram, Setup], begin: PassStart, start: tuple[float, ...]) -> list[Block]:
+def restarted(
+    of: tuple[SharedProgram, InterpreterSetup], begin: PassStart, start: tuple[float, ...]
+) -> list[Block]:
     run = of[0].start_pass(replace(of[1], start=start, begin=begin))
     blocks = list(run.generate_blocks(stops_at_first_error=True))
     assert not run.has_errors, run.diagnostics
@@ -147,11 +151,11 @@ STANDS = (-50.0, 30.0, -420.0, 0.0, 0.0)
 
 
 def mill_begin(
-    of: tuple[SharedProgram, Setup], found: RestartPoint, now: PresentState | None = None
+    of: tuple[SharedProgram, InterpreterSetup], found: RestartPoint, now: CurrentMachineState | None = None
 ) -> PassStart:
     assert of[1].kinematics is not None
-    return make_mill_start(
-        found, now or PresentState(STANDS, ModalState()), OperatorChoices(), of[1].kinematics
+    return make_mill_pass_start(
+        found, now or CurrentMachineState(STANDS, ModalState()), OperatorChoices(), of[1].kinematics
     )
 
 
@@ -181,8 +185,8 @@ def test_mill_restart_continues_as_the_original_run(line: int, visit: int) -> No
     found = good(of, line, visit)
     begin = mill_begin(of, found)
     blocks, made = restarted(of, begin, STANDS), found.checkpoint.blocks
-    assert blocks[len(begin.approach) - 1].n == made
-    rest = [told(each) for each in blocks[len(begin.approach) :]]
+    assert blocks[len(begin.approach_steps) - 1].n == made
+    rest = [told(each) for each in blocks[len(begin.approach_steps) :]]
     assert rest == [told(each) for each in whole(of) if each.n > made]
     assert rest
 
@@ -191,10 +195,10 @@ def test_mill_restart_continues_as_the_original_run(line: int, visit: int) -> No
 def test_lathe_restart_continues_as_the_original_run(line: int, visit: int) -> None:
     of = lathe()
     found = good(of, line, visit)
-    now = PresentState((150.0, 100.0, 0.0), ModalState())
-    begin = make_lathe_start(found, now, OperatorChoices())
+    now = CurrentMachineState((150.0, 100.0, 0.0), ModalState())
+    begin = make_lathe_pass_start(found, now, OperatorChoices())
     blocks, made = restarted(of, begin, now.axis_positions), found.checkpoint.blocks
-    rest = [told(each) for each in blocks[len(begin.approach) :]]
+    rest = [told(each) for each in blocks[len(begin.approach_steps) :]]
     assert rest == [told(each) for each in whole(of) if each.n > made]
 
 
@@ -216,9 +220,9 @@ def test_interrupted_pass_is_the_default() -> None:
 
 def test_mill_retracts_along_the_tool_repositions_and_feeds_in_last() -> None:
     of = mill()
-    turned = PresentState((-50.0, 30.0, -420.0, 15.0, 200.0), ModalState())
+    turned = CurrentMachineState((-50.0, 30.0, -420.0, 15.0, 200.0), ModalState())
     begin = mill_begin(of, good(of, 19), turned)
-    legs = [step for step in begin.approach if isinstance(step, AxesLeg)]
+    legs = [step for step in begin.approach_steps if isinstance(step, MultiAxisLeg)]
     assert [leg.text for leg in legs] == ["Z", "Z", "A C", "X Y", "Z", "Z"]
     assert dict(legs[1].target_positions)["Z"] == pytest.approx(-0.01)  # the top of its travel
     assert dict(legs[2].target_positions) == pytest.approx({"A": 20.0, "C": 0.0})
@@ -228,8 +232,10 @@ def test_mill_retracts_along_the_tool_repositions_and_feeds_in_last() -> None:
 
 def test_other_tool_is_requested_at_the_top_before_the_spindle_starts() -> None:
     of = mill()
-    begin = mill_begin(of, good(of, 15), PresentState(STANDS, ModalState(tool=5, spindle=1, rpm=3000.0)))
-    actions = [step.action for step in begin.approach if isinstance(step, FunctionStep)]
+    begin = mill_begin(
+        of, good(of, 15), CurrentMachineState(STANDS, ModalState(tool=5, spindle=1, rpm=3000.0))
+    )
+    actions = [step.action for step in begin.approach_steps if isinstance(step, FunctionStep)]
     assert actions[1:] == [ToolChange(6), ProgramStop(optional=False, message="TOOL 6"), SpindleRun(1500.0)]
 
 
@@ -238,8 +244,8 @@ def test_axis_that_never_moved_is_not_moved() -> None:
     assert found.axis_positions[3:] == (None, None)
     goals = [
         dict(step.target_positions)
-        for step in mill_begin(mill(), found).approach
-        if isinstance(step, AxesLeg)
+        for step in mill_begin(mill(), found).approach_steps
+        if isinstance(step, MultiAxisLeg)
     ]
     assert not any("A" in goal or "C" in goal for goal in goals)
 
@@ -278,16 +284,16 @@ def test_line_in_uncut_material_is_rejected_and_one_above_it_warns() -> None:
     assert first.travel is not None
     broken = Interruption(first.n, 5, first.travel.end, first.n)
     reading, setup = of
-    search = BlockSearch(reading, setup, lambda _count: None)
-    found = search.find_restart(10, 2, broken)
-    assert isinstance(found, RestartRefusal)
+    search = RestartLineSearch(reading, setup, lambda _count: None)
+    found = search.find_restart_point(10, 2, broken)
+    assert isinstance(found, RestartRejection)
     assert found.why == text(
         "search.in-uncut-material", line=10, uncut=text("search.uncut-lines", first=9, last=10)
     )
-    above = search.find_restart(7, 2, broken)
+    above = search.find_restart_point(7, 2, broken)
     assert isinstance(above, RestartPoint)
     assert above.skipped_lines == (10, 10)
-    half_cut = search.find_restart(7, 2, broken._replace(machine_position=STANDS))
+    half_cut = search.find_restart_point(7, 2, broken._replace(machine_position=STANDS))
     assert isinstance(half_cut, RestartPoint)
     assert half_cut.skipped_lines == (9, 10)
 
@@ -297,7 +303,7 @@ def test_interrupted_full_circle_counts_as_uncut() -> None:
     circle = next(each for each in whole(of) if each.line == 8)
     assert circle.travel is not None
     found = searched(of, 10, broken=Interruption(circle.n, 5, circle.travel.end, circle.n))
-    assert isinstance(found, RestartRefusal)
+    assert isinstance(found, RestartRejection)
     assert found.nearest_line_before == 8
 
 
@@ -350,7 +356,7 @@ def test_outdated_search_is_canceled() -> None:
 
     long = "G90 G54 G0 X10 Z10\n" + "G0 X20\nG0 X21\n" * 2000 + "M30\n"
     with pytest.raises(GivenUpError):
-        BlockSearch(*lathe(long), watch).find_restart(3)
+        RestartLineSearch(*lathe(long), watch).find_restart_point(3)
 
 
 CONTOUR = """\
@@ -367,9 +373,9 @@ M30
 """
 
 
-def edged(program: str = CONTOUR) -> tuple[SharedProgram, Setup]:
+def edged(program: str = CONTOUR) -> tuple[SharedProgram, InterpreterSetup]:
     reading, around = lathe(program)
-    tools = {1: ToolOffset(30.0, 40.0, 0.8, 3), make_row_number(1, 2): ToolOffset(31.0, 38.0, 0.4, 3)}
+    tools = {1: ToolOffset(30.0, 40.0, 0.8, 3), make_edge_row_number(1, 2): ToolOffset(31.0, 38.0, 0.4, 3)}
     return reading, replace(around, tools=tools)
 
 
@@ -382,8 +388,8 @@ def test_line_within_a_g42_contour_is_rejected(line: int) -> None:
 def test_restart_on_the_next_pass_retains_cutting_edge_and_nose_radius(line: int) -> None:
     of = edged()
     found = good(of, line)
-    begin = make_lathe_start(
-        found, PresentState((50.0, 60.0, 0.0), found.checkpoint.modal), OperatorChoices()
+    begin = make_lathe_pass_start(
+        found, CurrentMachineState((50.0, 60.0, 0.0), found.checkpoint.modal), OperatorChoices()
     )
     behind = [told(block) for block in restarted(of, begin, (50.0, 60.0, 0.0))]
     run = [told(block) for block in whole(of) if block.line >= line]
@@ -413,8 +419,8 @@ M30
 """
 
 
-def milled(program: str = FLATS) -> tuple[SharedProgram, Setup]:
-    setup = create_setup(
+def milled(program: str = FLATS) -> tuple[SharedProgram, InterpreterSetup]:
+    setup = create_power_up_setup(
         load_named_machine("sinumerik-live"),
         tool_offsets={1: ToolOffset(10.0, 20.0, 4.0)},
         secondary_offsets={},
@@ -427,9 +433,9 @@ def test_transmit_restart_turns_the_part_to_the_original_angle(line: int) -> Non
     """X, Z and C are where they would have been; C counts whole turns from where the part stands now."""
     of = milled()
     found = good(of, line)
-    now = PresentState((150.0, 100.0, 725.0), ModalState())
-    begin = make_lathe_start(found, now, OperatorChoices())
-    blocks = restarted(of, begin, now.axis_positions)[len(begin.approach) :]
+    now = CurrentMachineState((150.0, 100.0, 725.0), ModalState())
+    begin = make_lathe_pass_start(found, now, OperatorChoices())
+    blocks = restarted(of, begin, now.axis_positions)[len(begin.approach_steps) :]
     run = [each for each in whole(of) if each.n > found.checkpoint.blocks]
     assert [told(each)[:3] for each in blocks] == [told(each)[:3] for each in run]
     for have, want in zip(blocks, run, strict=True):
@@ -440,10 +446,10 @@ def test_transmit_restart_turns_the_part_to_the_original_angle(line: int) -> Non
 
 
 def test_live_tool_and_locked_spindle_are_set_before_the_line() -> None:
-    begin = make_lathe_start(
-        good(milled(), 10), PresentState((150.0, 100.0, 0.0), ModalState()), OperatorChoices()
+    begin = make_lathe_pass_start(
+        good(milled(), 10), CurrentMachineState((150.0, 100.0, 0.0), ModalState()), OperatorChoices()
     )
-    told_of = [step.text for step in begin.approach if isinstance(step, FunctionStep)]
+    told_of = [step.text for step in begin.approach_steps if isinstance(step, FunctionStep)]
     assert told_of == ["M89", "LIVE ON"]
 
 
@@ -464,10 +470,10 @@ M30
 def test_oriented_spindle_is_restored_to_its_angle(line: int, told_of: list[str]) -> None:
     of = lathe(HELD)
     found = good(of, line)
-    now = PresentState((150.0, 100.0, 0.0), ModalState())
-    begin = make_lathe_start(found, now, OperatorChoices())
-    assert [step.text for step in begin.approach if isinstance(step, FunctionStep)] == told_of
-    behind = [told(block) for block in restarted(of, begin, now.axis_positions)][len(begin.approach) :]
+    now = CurrentMachineState((150.0, 100.0, 0.0), ModalState())
+    begin = make_lathe_pass_start(found, now, OperatorChoices())
+    assert [step.text for step in begin.approach_steps if isinstance(step, FunctionStep)] == told_of
+    behind = [told(block) for block in restarted(of, begin, now.axis_positions)][len(begin.approach_steps) :]
     assert behind == [told(block) for block in whole(of) if block.n > found.checkpoint.blocks]
 
 

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import pytest
 
-from core.interpreter.restart.restart_point import Interruption, RestartPoint, RestartRefusal
-from core.interpreter.restart.state_rebuild import OmniturnSearch
+from core.interpreter.restart.restart_point import Interruption, RestartPoint, RestartRejection
+from core.interpreter.restart.state_rebuild import OmniturnRestartSearch
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import ProgramSource
 from tests.interpreter.programs import INCH, setup
 from tests.texts import text as text_of
 
 
-def find(text: str, line: int, visit: int = 0, **given: object) -> RestartPoint | RestartRefusal:
+def find(text: str, line: int, visit: int = 0, **given: object) -> RestartPoint | RestartRejection:
     found_setup = setup(**given)  # type: ignore[arg-type]
-    return OmniturnSearch(ProgramSource("PART", text), found_setup, lambda _count: None).find_restart(
-        line, visit
-    )
+    return OmniturnRestartSearch(
+        ProgramSource("PART", text), found_setup, lambda _count: None
+    ).find_restart_point(line, visit)
 
 
 PLAIN = "G90G94F300G72\nT1\nX1Z.1\nM03S900\nM08\nG95F.005Z-.5\nX1.1\nM30\n"
@@ -62,7 +62,7 @@ def test_invalid_lines_are_rejected_with_the_nearest_valid_ones(
     text: str, line: int, why: str, before: int, after: int
 ) -> None:
     answer = find(text, line, secondary={1: (-0.015, -0.015, 0.015)})
-    assert isinstance(answer, RestartRefusal)
+    assert isinstance(answer, RestartRejection)
     assert answer.why == why
     assert (answer.nearest_line_before, answer.nearest_line_after) == ((0 if before == 2 else before), after)
 
@@ -70,7 +70,7 @@ def test_invalid_lines_are_rejected_with_the_nearest_valid_ones(
 @pytest.mark.parametrize("line", [1, 2])
 def test_line_before_any_axis_motion_is_rejected(line: int) -> None:
     answer = find("G90G94F300\nT1\nX1Z1\nX2\nM30\n", line)
-    assert isinstance(answer, RestartRefusal)
+    assert isinstance(answer, RestartRejection)
     assert answer.why.startswith(f"No axis has moved before line {line}")
     assert (answer.nearest_line_before, answer.nearest_line_after) == (0, 4)
 
@@ -88,13 +88,13 @@ def test_loop_with_the_first_move_is_entered_in_every_pass(visit: int, expected:
 
 def test_first_move_in_a_loop_is_valid_only_from_the_second_pass() -> None:
     first, second = find(IN_A_LOOP, 4, visit=1), find(IN_A_LOOP, 4, visit=2)
-    assert isinstance(first, RestartRefusal)
+    assert isinstance(first, RestartRejection)
     assert isinstance(second, RestartPoint)
 
 
 def test_loop_of_only_incremental_moves_is_rejected() -> None:
     text = "G91G94F300\nT1\nLS3\nX.1Z-.1\nX-.1\nLF\nM30\n"
-    assert all(isinstance(find(text, 5, visit=each), RestartRefusal) for each in (1, 2, 3))
+    assert all(isinstance(find(text, 5, visit=each), RestartRejection) for each in (1, 2, 3))
 
 
 def test_incremental_moves_are_rejected_until_both_axes_are_known() -> None:
@@ -102,7 +102,7 @@ def test_incremental_moves_are_rejected_until_both_axes_are_known() -> None:
     said = {line: find(text, line) for line in range(3, 9)}
     for line in (3, 4, 5, 6):
         answer = said[line]
-        assert isinstance(answer, RestartRefusal)
+        assert isinstance(answer, RestartRejection)
         assert "depend on the axis positions at Cycle Start" in answer.why
         assert answer.nearest_line_after == 7
     assert isinstance(said[7], RestartPoint)
@@ -112,7 +112,7 @@ def test_incremental_moves_are_rejected_until_both_axes_are_known() -> None:
 def test_preset_at_an_unknown_position_remains_unknown() -> None:
     text = "G90G94F300\nG92X0Z0\nX1Z1\nX2\nT1\nX1Z1\nX2\nM30\n"
     answer = find(text, 4)
-    assert isinstance(answer, RestartRefusal)
+    assert isinstance(answer, RestartRejection)
     assert answer.nearest_line_after == 7
     assert isinstance(find(text, 7), RestartPoint)
 
@@ -121,7 +121,7 @@ def test_result_of_an_input_is_not_assumed() -> None:
     sub = "}1\nZ.5\nM99\n"
     text = f"G90G94F300\nX1Z1\nM97I3C1P1\nX2\nZ2\nX1\nM30\n{sub}"
     answer = find(text, 4)
-    assert isinstance(answer, RestartRefusal)
+    assert isinstance(answer, RestartRejection)
     assert answer.why == text_of("search.input-read", line=4, asked=3)
     assert (answer.nearest_line_before, answer.nearest_line_after) == (
         3,
@@ -134,29 +134,33 @@ def test_result_of_an_input_is_not_assumed() -> None:
 def test_second_unknown_input_result_is_rejected() -> None:
     text = "G90G94F300\nX1Z1\nM97I3C1P1\nM97I4C1P1\nX2Z2\nX1\nM30\n}1\nG91Z.5\nG90\nM99\n"
     answer = find(text, 6)
-    assert isinstance(answer, RestartRefusal)
+    assert isinstance(answer, RestartRejection)
     assert text_of("search.unknown-input", asked=4) in answer.why
 
 
 def test_line_after_an_input_test_in_a_loop_or_subroutine_is_rejected() -> None:
     text = "G90G94F300\nX1Z1\nLS2\nM97I3C1P1\nLF\nX1Z1\nX2\nM30\n}1\nZ.5\nM99\n"
     answer = find(text, 7)
-    assert isinstance(answer, RestartRefusal)
+    assert isinstance(answer, RestartRejection)
     assert text_of("search.unknown-terminal", asked=4, terminal=3) in answer.why
 
 
 def test_line_after_the_program_end_or_an_error_is_rejected() -> None:
     answer = find("G90G94F300\nX1Z1\nM97I3C0P1\nX2\nM30\n}1\nM30\nM99\n", 4)
-    assert isinstance(answer, RestartRefusal)
+    assert isinstance(answer, RestartRejection)
     broken = find("G90G94F300\nX1Z1\nX1R9\nX2\nX3\nM30\n", 5)
-    assert isinstance(broken, RestartRefusal)
+    assert isinstance(broken, RestartRejection)
     assert broken.why == "The program has errors before line 5."
 
 
 def test_restart_search_works_after_a_loop_and_for_an_earlier_line() -> None:
     text = "G90G94F300\nX1Z1\nLS50\nG91X-.01\nZ-.01\nLF\nG90\nX1Z1\nM30\n"
-    rebuild = OmniturnSearch(ProgramSource("PART", text), setup(), lambda _count: None)
-    first, later, earlier = rebuild.find_restart(3), rebuild.find_restart(7), rebuild.find_restart(3)
+    rebuild = OmniturnRestartSearch(ProgramSource("PART", text), setup(), lambda _count: None)
+    first, later, earlier = (
+        rebuild.find_restart_point(3),
+        rebuild.find_restart_point(7),
+        rebuild.find_restart_point(3),
+    )
     assert isinstance(first, RestartPoint)
     assert isinstance(later, RestartPoint)
     assert later.checkpoint.x == pytest.approx(0.5 * INCH)
@@ -174,16 +178,16 @@ def test_outdated_search_is_canceled() -> None:
 
     text = "G90G94F300\nX1Z1\nLS90000\nX1\nX2\nLF\nX1\nM30\n"
     with pytest.raises(GivenUpError):
-        OmniturnSearch(ProgramSource("PART", text), setup(), watch).find_restart(7)
+        OmniturnRestartSearch(ProgramSource("PART", text), setup(), watch).find_restart_point(7)
 
 
 NESTED = "G90G94F300\nX1Z1\nLS2\nG91X-.1\nLS3\nZ-.1\nLF\nM98P1\nLF\nG90\nX1Z1\nM30\n}1\nX.05\nM99\n"
 
 
 def visit(text: str, line: int, number: int, broken: Interruption | None = None) -> RestartPoint:
-    found = OmniturnSearch(ProgramSource("PART", text), setup(), lambda _count: None).find_restart(
-        line, number, broken
-    )
+    found = OmniturnRestartSearch(
+        ProgramSource("PART", text), setup(), lambda _count: None
+    ).find_restart_point(line, number, broken)
     assert isinstance(found, RestartPoint), found
     return found
 
@@ -250,8 +254,8 @@ def test_interrupted_pass_is_the_default() -> None:
     ],
 )  # fmt: skip
 def test_invalid_passes_are_rejected(text: str, line: int, number: int, why: str) -> None:
-    answer = OmniturnSearch(ProgramSource("PART", text), setup(), lambda _count: None).find_restart(
-        line, number
-    )
-    assert isinstance(answer, RestartRefusal)
+    answer = OmniturnRestartSearch(
+        ProgramSource("PART", text), setup(), lambda _count: None
+    ).find_restart_point(line, number)
+    assert isinstance(answer, RestartRejection)
     assert answer.why == why

@@ -6,18 +6,18 @@ import pytest
 
 from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.restart_retract import plan_retract
-from core.interpreter.restart.state_rebuild import OmniturnSearch
+from core.interpreter.restart.state_rebuild import OmniturnRestartSearch
 from core.interpreter.restart.tool_retract import Retract, ToolPosition, ToolSituation
 from core.interpreter.shared.job_setup import ControlLimits
 from core.language.source import ProgramSource
 from tests.interpreter.programs import INCH, OUTPUTS, setup
 
 HEAD = "G90G94F300\nT1\nM03S900\n"
-LIMITS = ControlLimits(m_outputs={**OUTPUTS, 27: ("mill", True)})
+LIMITS = ControlLimits(m_code_outputs={**OUTPUTS, 27: ("mill", True)})
 
 
 def cut_of(text: str) -> CutRecord:
-    return OmniturnSearch(
+    return OmniturnRestartSearch(
         ProgramSource("PART", f"{HEAD}{text}M30\n"), setup(limits=LIMITS), lambda _count: None
     ).cut_record
 
@@ -25,8 +25,8 @@ def cut_of(text: str) -> CutRecord:
 def standing(text: str, line: int, x: float, z: float, nth: int = 1) -> Retract:
     """The tip at (x, z), inches, on the ``nth`` move of this line of the text (the first is 4)."""
     cut = cut_of(text)
-    rows = [row for row in range(len(cut)) if cut.line_number[row] == line]
-    n = sorted({int(cut.block_number[row]) for row in rows})[nth - 1]
+    rows = [row for row in range(len(cut)) if cut.line_numbers[row] == line]
+    n = sorted({int(cut.block_numbers[row]) for row in rows})[nth - 1]
     return plan_retract(cut, ToolPosition(n, 1, x * INCH, z * INCH), n)
 
 
@@ -80,35 +80,35 @@ def test_retract_path_matches_the_operation(
     text: str, line: int, x: float, z: float, way: list[tuple[float, float]]
 ) -> None:
     found = standing(text, line, x, z)
-    assert found.situation is ToolSituation.IN_PART
+    assert found.tool_situation is ToolSituation.IN_PART
     assert hops(found) == way
 
 
 def test_thread_retract_moves_x_first_and_never_back_along_z() -> None:
     # S is X.5, I .02 a side: it is drawn back to S + 3 I.
     found = standing(THREAD, 5, 0.5, -0.2)
-    assert found.situation is ToolSituation.IN_THREAD
+    assert found.tool_situation is ToolSituation.IN_THREAD
     assert hops(found)[0] == (0.56, -0.2)
 
 
 def test_tap_has_no_retract_by_the_axes() -> None:
     found = standing(TAP, 5, 0.0, -0.3)
-    assert found.situation is ToolSituation.IN_TAPPED_HOLE
+    assert found.tool_situation is ToolSituation.IN_TAPPED_HOLE
     assert not found.is_known
-    assert standing(TAP, 7, 0.0, -0.3).situation is ToolSituation.IN_TAPPED_HOLE  # on its way back too
+    assert standing(TAP, 7, 0.0, -0.3).tool_situation is ToolSituation.IN_TAPPED_HOLE  # on its way back too
 
 
 def test_a_live_drill_in_a_cross_hole_leaves_along_x() -> None:
     found = standing(CROSS, 8, 0.6, -0.3)
-    assert (found.situation, hops(found)) == (ToolSituation.MILLING, [(0.75, -0.3)])
+    assert (found.tool_situation, hops(found)) == (ToolSituation.MILLING, [(0.75, -0.3)])
 
 
 def test_mill_retracts_along_its_own_axis() -> None:
     side = standing(ON_THE_SIDE, 11, -0.4, -0.2)
-    assert side.situation is ToolSituation.MILLING
+    assert side.tool_situation is ToolSituation.MILLING
     assert hops(side)[0][0] == -1.0  # X, away from the centre, as far as it has been
     face = standing(ON_THE_FACE, 9, -0.6, -0.1)
-    assert (face.situation, hops(face)) == (ToolSituation.MILLING, [(-0.6, 1.0)])
+    assert (face.tool_situation, hops(face)) == (ToolSituation.MILLING, [(-0.6, 1.0)])
 
 
 @pytest.mark.parametrize(
@@ -119,7 +119,7 @@ def test_tool_not_moved_there_by_the_program_has_no_known_retract(
     text: str, line: int, x: float, z: float
 ) -> None:
     found = standing(text, line, x, z)
-    assert (found.situation, found.is_known) == (ToolSituation.UNKNOWN, False)
+    assert (found.tool_situation, found.is_known) == (ToolSituation.UNKNOWN, False)
 
 
 def test_opening_the_collet_invalidates_earlier_cuts() -> None:

@@ -14,15 +14,15 @@ import pytest
 
 from core.interpreter.restart.cut_record import FACE, FEED, SIDE, CutRecord
 from core.interpreter.restart.restart_approach import (
+    CurrentMachineState,
     OperatorChoices,
-    PresentState,
     plan_exit_moves,
     plan_lathe_approach,
 )
 from core.interpreter.restart.restart_point import Interruption, RestartPoint
-from core.interpreter.restart.state_rebuild import OmniturnSearch
+from core.interpreter.restart.state_rebuild import OmniturnRestartSearch
 from core.interpreter.shared.checkpoint import ApproachStep, StraightLeg
-from core.interpreter.shared.job_setup import ControlLimits, Setup
+from core.interpreter.shared.job_setup import ControlLimits, InterpreterSetup
 from core.interpreter.shared.modal_state import ModalState
 from core.language.source import ProgramSource, load_source
 from tests.interpreter.programs import ALL_TOOLS, OUTPUTS, setup
@@ -38,12 +38,12 @@ MOST = 60  # rows of a program at which it breaks off; of a longer one every so 
 PLACES = [*GOLDEN, *SAMPLES, *WORKED]
 
 
-def given_for(path: Path) -> Setup:
+def given_for(path: Path) -> InterpreterSetup:
     if path in GOLDEN:
         return golden_setup(path)
     if path in SAMPLES:
         return setup(tools=ALL_TOOLS)
-    limits = ControlLimits(m_outputs={**OUTPUTS, 27: ("mill", True), 28: ("mill", False)})
+    limits = ControlLimits(m_code_outputs={**OUTPUTS, 27: ("mill", True), 28: ("mill", False)})
     return setup(secondary=dict.fromkeys(range(1, 9), (-0.015, -0.015, 0.015)), limits=limits)
 
 
@@ -57,11 +57,13 @@ def between(x0: float, z0: float, x: float, z: float) -> Points:
 
 def off(points: Points, cut: CutRecord, rows: npt.NDArray[np.bool_]) -> Points:
     """How far each point lies off the nearest of these rows, mm."""
-    known = rows & ~np.isnan(cut.x0) & ~np.isnan(cut.z0) & ~np.isnan(cut.x) & ~np.isnan(cut.z)
+    known = (
+        rows & ~np.isnan(cut.start_x) & ~np.isnan(cut.start_z) & ~np.isnan(cut.end_x) & ~np.isnan(cut.end_z)
+    )
     if not known.any() or not len(points):
         return np.full(len(points), np.inf)
-    ax, az = cut.x0[known], cut.z0[known]
-    dx, dz = cut.x[known] - ax, cut.z[known] - az
+    ax, az = cut.start_x[known], cut.start_z[known]
+    dx, dz = cut.end_x[known] - ax, cut.end_z[known] - az
     size = np.maximum(dx * dx + dz * dz, 1e-18)
     px, pz = points[:, :1] - ax, points[:, 1:] - az
     share = np.clip((px * dx + pz * dz) / size, 0.0, 1.0)
@@ -74,11 +76,11 @@ class Metal:
     def __init__(self, cut: CutRecord, tool: int, row: int) -> None:
         self.cut, self.tool = cut, tool
         index = np.arange(len(cut))
-        feeds = ((cut.move_kind & FEED) != 0) & ((cut.move_kind & (FACE | SIDE)) == 0)
+        feeds = ((cut.move_kinds & FEED) != 0) & ((cut.move_kinds & (FACE | SIDE)) == 0)
         self.done, self.row, self.feeds = index <= row, row, feeds
-        self.own = cut.tool_number == tool
-        self.radius = float(np.nanmax(np.abs(cut.x[feeds]), initial=0.0))
-        self.front = float(np.nanmax(cut.z[feeds], initial=-np.inf))
+        self.own = cut.tool_numbers == tool
+        self.radius = float(np.nanmax(np.abs(cut.end_x[feeds]), initial=0.0))
+        self.front = float(np.nanmax(cut.end_z[feeds], initial=-np.inf))
 
     def crossed(self, points: Points) -> bool:
         """Whether a way goes through what is still to be cut for the first time.
@@ -91,10 +93,15 @@ class Metal:
         for row in range(self.row + 1, len(self.cut)):
             if not len(fresh):
                 return False
-            along = float(self.cut.x[row] - self.cut.x0[row]), float(self.cut.z[row] - self.cut.z0[row])
+            along = (
+                float(self.cut.end_x[row] - self.cut.start_x[row]),
+                float(self.cut.end_z[row] - self.cut.start_z[row]),
+            )
             beside = abs(along[0] * dz - along[1] * dx) < 0.02 * np.hypot(*along) * np.hypot(dx, dz)
             there = off(fresh, self.cut, np.arange(len(self.cut)) == row) < (SAME if beside else NEAR)
-            away = self.cut.z[row] > self.cut.z0[row] + NEAR  # a feed towards Z+ mostly leaves the part
+            away = (
+                self.cut.end_z[row] > self.cut.start_z[row] + NEAR
+            )  # a feed towards Z+ mostly leaves the part
             if self.feeds[row] and not away and there.any():
                 return True
             fresh = fresh[~there]
@@ -126,24 +133,24 @@ def spoiled(
 
 @pytest.mark.parametrize("path", PLACES, ids=lambda path: path.stem)
 def test_retract_is_clear_from_every_block_and_within_it(path: Path) -> None:
-    cut = OmniturnSearch(load_source(path), given_for(path), lambda _count: None).cut_record
+    cut = OmniturnRestartSearch(load_source(path), given_for(path), lambda _count: None).cut_record
     known = asked = 0
     for row in range(0, len(cut), max(1, len(cut) // MOST)):
-        tool, n = int(cut.tool_number[row]), int(cut.block_number[row])
+        tool, n = int(cut.tool_numbers[row]), int(cut.block_numbers[row])
         off_x, off_z = cut.tool_offsets[tool]
         metal = Metal(cut, tool, row)
         for share in (0.35, 0.8, 1.0):
-            x = float(cut.x0[row] + share * (cut.x[row] - cut.x0[row])) + off_x
-            z = float(cut.z0[row] + share * (cut.z[row] - cut.z0[row])) + off_z
+            x = float(cut.start_x[row] + share * (cut.end_x[row] - cut.start_x[row])) + off_x
+            z = float(cut.start_z[row] + share * (cut.end_z[row] - cut.start_z[row])) + off_z
             if np.isnan(x) or np.isnan(z):
                 continue
             at = (x, z, 0.0)
             steps = plan_exit_moves(
-                cut, PresentState(at, ModalState(), Interruption(n, tool, at, n)), OperatorChoices()
+                cut, CurrentMachineState(at, ModalState(), Interruption(n, tool, at, n)), OperatorChoices()
             )
             known, asked = known + bool(steps), asked + 1
             wrong = spoiled(metal, steps, (x, z), (off_x, off_z))
-            assert not wrong, (int(cut.line_number[row]), share, wrong)
+            assert not wrong, (int(cut.line_numbers[row]), share, wrong)
     assert known >= 0.6 * asked or path in GOLDEN or path.stem in FEW, (known, asked)
 
 
@@ -151,7 +158,7 @@ FEW = {"tapping"}
 """Programs out of whose work the control knows few ways: a tap comes out by its spindle alone."""
 
 
-def ways_in(source: ProgramSource, given: Setup) -> tuple[int, int]:
+def ways_in(source: ProgramSource, given: InterpreterSetup) -> tuple[int, int]:
     """Checks the way to every good line, in its first passes and the last; how many there were."""
     said = of_each_line(source, given, 3)
     good = [each for each in said if isinstance(each, RestartPoint)]
@@ -161,9 +168,9 @@ def ways_in(source: ProgramSource, given: Setup) -> tuple[int, int]:
         row = cut.find_last_row(found.checkpoint.blocks)
         if row < 0:
             continue
-        tool = int(cut.tool_number[row])
+        tool = int(cut.tool_numbers[row])
         clear = (found.checkpoint.machine[0], cut.max_machine_z + 1.0, 0.0)
-        steps = plan_lathe_approach(found, PresentState(clear, ModalState()), OperatorChoices())
+        steps = plan_lathe_approach(found, CurrentMachineState(clear, ModalState()), OperatorChoices())
         wrong = spoiled(Metal(cut, tool, row), steps, clear[:2], cut.tool_offsets[tool])
         assert not wrong, (found.line_number, found.visit, wrong)
         assert modal.tool in cut.tool_offsets or not cut.tool_offsets

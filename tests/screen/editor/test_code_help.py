@@ -39,9 +39,9 @@ def look_up(writer: Writer) -> None:
 
 def test_code_strip_explains_code_at_cursor(proved: Writer) -> None:
     proved.editor.move_cursor_to(1, 5)
-    proved.sees(lambda: head_of(proved.editor.code_strip.entry) == "G94")
+    proved.sees(lambda: head_of(proved.editor.code_strip.code_entry) == "G94")
     proved.editor.move_cursor_to(1, 8)
-    proved.sees(lambda: head_of(proved.editor.code_strip.entry) == "G72")
+    proved.sees(lambda: head_of(proved.editor.code_strip.code_entry) == "G72")
 
 
 def test_typed_code_is_completed_from_list(proved: Writer) -> None:

@@ -56,7 +56,9 @@ def test_path_of_cursor_line_is_highlighted(drawn: Writer) -> None:
     drawn.editor.move_cursor_to(6)
     picture = drawn.editor.path_view.picture
     assert picture is not None
-    drawn.sees(lambda: drawn.editor.path_view.tip_position.active_block == picture.find_block_for_line(6))
+    drawn.sees(
+        lambda: drawn.editor.path_view.tip_position.active_block_number == picture.find_block_for_line(6)
+    )
     ((start, end),) = drawn.editor.path_view.panes[0].marked_point_ranges
     points = [(picture.z[k], picture.x[k]) for k in range(start - 1, end)]
     assert points == [pytest.approx(inch(-1, 0.5)), pytest.approx(inch(-2, 1.5))]
@@ -78,7 +80,7 @@ def test_a_taper_is_measured_by_keys(drawn: Writer) -> None:
         drawn.key(Key.Key_Tab)
     drawn.key(Key.Key_Return)
     drawn.key(Key.Key_Tab)
-    rows = dict(path.measurement.make_rows(path.is_metric))
+    rows = dict(path.measurement.make_value_rows(path.is_metric))
     assert rows["ΔX Ø"] == "1.00000"
     assert rows["ΔX R"] == "0.50000"
     assert rows["ΔZ"] == "−1.00000"

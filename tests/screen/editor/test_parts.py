@@ -78,7 +78,7 @@ def test_lines_of_removed_plane_are_colored_as_comments(field: ProgramTextField)
     field.replace_text("(~PLXC)\n(X.5)", as_new=True)
     field.apply_theme()
     assert inks(field, 2) == [("X.5", DARK_PALETTE.text)]
-    field.replace_ranges((1,), 1, "")  # the mark of the entry
+    field.replace_text_ranges((1,), 1, "")  # the mark of the entry
     assert inks(field, 2) == [("(X.5)", DARK_PALETTE.soft)]
 
 

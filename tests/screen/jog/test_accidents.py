@@ -324,17 +324,17 @@ def test_rapid_selected_by_touch_ends_with_jog_by_key(jog: JogBench) -> None:
     jog.up(Key.Key_Left)
     jog.run(0.5)
     assert not model.held_jog.is_rapid_armed
-    model.press_direction("finger", "Z", -1)
+    model.handle_direction_press("finger", "Z", -1)
     assert model.held_jog.active_jog is not None
     assert not model.held_jog.active_jog.is_rapid
-    model.release_all()
+    model.release_all_keys()
 
 
 def test_rapid_selected_by_touch_applies_to_next_jog_only(jog: JogBench) -> None:
     model = jog.page.model
     model.toggle_rapid()
-    model.press_direction("finger", "Z", -1)
+    model.handle_direction_press("finger", "Z", -1)
     assert model.held_jog.active_jog is not None
     assert model.held_jog.active_jog.is_rapid
     assert not model.held_jog.is_rapid_armed
-    model.release_all()
+    model.release_all_keys()

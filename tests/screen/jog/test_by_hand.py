@@ -211,7 +211,7 @@ def test_feed_hold_blocks_start(jog: JogBench) -> None:
     palms(jog)
     jog.run(0.5)
     assert (jog.shot.state, jog.shot.rpm_command) == (MachineState.IDLE, 0.0)
-    assert text("jog.in-feed-hold") in jog.shot.start_refusal
+    assert text("jog.in-feed-hold") in jog.shot.start_refusal_reason
     jog.desk.desk_control.station_panel.release_hold()
 
 
@@ -224,7 +224,7 @@ def test_leaving_page_cancels_ready_line_and_leaves_spindle_running(jog: JogBenc
     jog.key(page)
     jog.run(0.5)
     assert jog.shot.rpm_command == 200.0  # as MDI leaves it; every page shows it
-    assert jog.shot.prepared_digest == ""
+    assert jog.shot.prepared_job_digest == ""
 
 
 def test_key_down_through_page_change_does_not_jog(jog: JogBench) -> None:

@@ -91,7 +91,7 @@ def test_program_begun_while_jog_page_opens_is_not_restarted(jog: JogBench, tmp_
     jog.executor.post(CycleStart())
     jog.run(0.5)
     assert (jog.shot.state, jog.shot.ends) == (MachineState.IDLE, ends)
-    assert jog.shot.start_refusal == wording("jog.no-line-ready")
+    assert jog.shot.start_refusal_reason == wording("jog.no-line-ready")
 
 
 def test_palm_buttons_start_nothing_while_size_is_asked(jog: JogBench) -> None:

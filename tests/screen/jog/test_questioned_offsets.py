@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.store.store_rows import ToolRow
+from core.store.store_rows import ToolOffsetRow
 from tests.screen.jog.bench import INCH, JogBench, Key
 from tests.texts import Pattern, shows, text
 
@@ -31,7 +31,7 @@ def test_undo_applies_to_selected_tool_and_no_leaves_its_offset(jog: JogBench, k
     jog.key(key)
     jog.saved()
     assert jog.store.offsets.tool_offsets.read_rows() == before
-    assert not jog.desk.confirm_key
+    assert not jog.desk.confirmation_key
     assert jog.page.model.tool_setting.question_name == ""  # N did not open the nose radius
     jog.key(Key.Key_F4)
     jog.confirm()
@@ -46,7 +46,7 @@ def test_f10_changes_no_offset(jog: JogBench) -> None:
         jog.key(Key.Key_F10)
         jog.saved()
     assert jog.store.offsets.tool_offsets.read_rows() == before
-    assert not jog.desk.confirm_key
+    assert not jog.desk.confirmation_key
 
 
 def test_a_diameter_with_the_wrong_sign_is_questioned(jog: JogBench) -> None:
@@ -68,7 +68,7 @@ def test_a_touch_near_the_offset_in_use_is_saved_without_a_question(jog: JogBenc
     jog.type("x")
     jog.enter("1.205")
     jog.saved()
-    assert not jog.desk.confirm_key
+    assert not jog.desk.confirmation_key
     assert jog.store.offsets.tool_offsets.read_rows()[1].x == pytest.approx(-0.6025 * INCH)
 
 
@@ -171,4 +171,4 @@ def test_answer_about_offset_changed_meanwhile_does_nothing(jog: JogBench) -> No
     jog.desk.offset_book.read_store()
     jog.confirm()
     assert jog.prompt == text("offsets.changed-meanwhile")
-    assert jog.store.offsets.tool_offsets.read_rows()[1] == ToolRow(-10.0, -50.0)
+    assert jog.store.offsets.tool_offsets.read_rows()[1] == ToolOffsetRow(-10.0, -50.0)

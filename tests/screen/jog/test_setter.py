@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.executor.snapshot import MachineState
-from core.store.store_rows import OffsetKind, ToolRow
+from core.store.store_rows import OffsetKind, ToolOffsetRow
 from drivers.simulators.plant_controls import PlantControls
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
 from tests.texts import Pattern, begins, shows, text
@@ -22,15 +22,15 @@ def hands(bench: JogBench) -> PlantControls:
 
 def put(bench: JogBench, place: tuple[float, float]) -> None:
     """The slides stand there: somebody has pushed them while the drives were off."""
-    hands(bench)._plant.set_power(False)
+    hands(bench)._plant.set_drive_power(False)
     for axis, inches in zip("XZ", place, strict=True):
         here = bench.shot.actual["XZ".index(axis)]
         hands(bench).push(axis, inches * INCH - here)
-    hands(bench)._plant.set_power(True)
+    hands(bench)._plant.set_drive_power(True)
     bench.run(0.1)
 
 
-def given(bench: JogBench, number: int, row: ToolRow) -> None:
+def given(bench: JogBench, number: int, row: ToolOffsetRow) -> None:
     """The table has this tool already."""
     values = row._asdict()
     values.pop("master")
@@ -61,7 +61,7 @@ def test_new_tool_is_set_by_two_setter_touches_and_return(setter: JogBench) -> N
     hold(setter, Key.Key_Up)
     assert shows(setter.prompt, "jog.return-keeps-found")
     words = setter.page.entry_panel.entry_texts
-    assert "not set  →  +0.1" in words.change_text
+    assert "not set  →  +0.1" in words.change_description
     assert begins(words.text, "jog.reason-setter", way="X−")
     setter.key(Key.Key_Return)
     put(setter, BESIDE)
@@ -75,18 +75,18 @@ def test_new_tool_is_set_by_two_setter_touches_and_return(setter: JogBench) -> N
 
 
 def test_setter_shows_difference_and_asks_once_if_it_is_large(setter: JogBench) -> None:
-    given(setter, 2, ToolRow(x=0.14 * INCH, z=-1.6 * INCH, quadrant=3))
+    given(setter, 2, ToolOffsetRow(x=0.14 * INCH, z=-1.6 * INCH, quadrant=3))
     choose(setter, 2)
     put(setter, ABOVE)
     setter.key(Key.Key_P)
     hold(setter, Key.Key_Up)
     words = setter.page.entry_panel.entry_texts
-    assert "DIFFERENCE +0.0" in words.change_text
-    assert not setter.desk.confirm_key
+    assert "DIFFERENCE +0.0" in words.change_description
+    assert not setter.desk.confirmation_key
     setter.key(Key.Key_Escape)
     setter.saved()
     assert setter.desk.offset_book.tool_offsets[2].x == pytest.approx(0.14 * INCH)  # nothing was kept
-    given(setter, 2, ToolRow(x=0.11 * INCH, z=-1.6 * INCH, quadrant=3))
+    given(setter, 2, ToolOffsetRow(x=0.11 * INCH, z=-1.6 * INCH, quadrant=3))
     put(setter, ABOVE)
     setter.key(Key.Key_P)
     hold(setter, Key.Key_Up)
@@ -100,15 +100,15 @@ def test_setter_shows_difference_and_asks_once_if_it_is_large(setter: JogBench) 
 
 
 def test_typed_value_does_not_change_measured_values(setter: JogBench) -> None:
-    given(setter, 2, ToolRow(x=0.14 * INCH, z=-1.6 * INCH, quadrant=3))
+    given(setter, 2, ToolOffsetRow(x=0.14 * INCH, z=-1.6 * INCH, quadrant=3))
     choose(setter, 2)
     put(setter, ABOVE)
     setter.key(Key.Key_P)
     hold(setter, Key.Key_Up)
-    before = setter.page.entry_panel.entry_texts.change_text
+    before = setter.page.entry_panel.entry_texts.change_description
     setter.type("12")
     setter.run(0.05)
-    assert setter.page.entry_panel.entry_texts.change_text == before
+    assert setter.page.entry_panel.entry_texts.change_description == before
 
 
 def test_early_release_measures_nothing_and_next_press_starts_over(setter: JogBench) -> None:
@@ -135,13 +135,13 @@ def test_another_key_or_page_ends_setter_touch(setter: JogBench) -> None:
     setter.until(lambda: setter.shot.state is MachineState.IDLE)
     assert setter.page.model.tool_setting.question_name == ""
     setter.up(Key.Key_Up)
-    assert setter.page.model.setter_touch.is_armed
+    assert setter.page.model.tool_setter_touch_off.is_armed
     setter.key(Key.Key_F8)
     setter.run(0.05)
     setter.key(Key.Key_F1)
     setter.key(Key.Key_F5)
     setter.run(0.05)
-    assert not setter.page.model.setter_touch.is_armed
+    assert not setter.page.model.tool_setter_touch_off.is_armed
 
 
 # --- which way ----------------------------------------------------------------------------------------------
@@ -152,7 +152,7 @@ def test_another_key_or_page_ends_setter_touch(setter: JogBench) -> None:
     [(1, "X+ Z+"), (2, "X+ Z−"), (3, "X− Z−"), (4, "X− Z+"), (5, "Z+"), (6, "X+"), (7, "Z−"), (8, "X−")],
 )
 def test_tip_quadrant_sets_allowed_touch_directions(setter: JogBench, quadrant: int, ways: str) -> None:
-    given(setter, 2, ToolRow(x=1.0, z=1.0, quadrant=quadrant))
+    given(setter, 2, ToolOffsetRow(x=1.0, z=1.0, quadrant=quadrant))
     choose(setter, 2)
     keys = {"X−": Key.Key_Up, "X+": Key.Key_Down, "Z−": Key.Key_Left, "Z+": Key.Key_Right}
     for way, key in keys.items():
@@ -169,7 +169,7 @@ def test_tip_quadrant_sets_allowed_touch_directions(setter: JogBench, quadrant: 
 
 def test_round_tip_is_set_to_nose_center(setter: JogBench) -> None:
     """Quadrant 9: the centre stands a nose radius, here .03 in, before the face."""
-    given(setter, 2, ToolRow(x=0.1 * INCH, z=1.0, quadrant=9, nose_radius=0.03 * INCH))
+    given(setter, 2, ToolOffsetRow(x=0.1 * INCH, z=1.0, quadrant=9, nose_radius=0.03 * INCH))
     choose(setter, 2)
     put(setter, ABOVE)
     setter.key(Key.Key_P)
@@ -182,7 +182,7 @@ def test_round_tip_is_set_to_nose_center(setter: JogBench) -> None:
 def test_setter_touch_is_rejected_before_any_motion(setter: JogBench) -> None:
     setter.key(Key.Key_P)
     assert shows(setter.prompt, "jog.which-tool")
-    given(setter, 2, ToolRow(x=1.0, z=1.0))
+    given(setter, 2, ToolOffsetRow(x=1.0, z=1.0))
     choose(setter, 2)
     setter.key(Key.Key_P)
     assert shows(setter.prompt, "jog.no-tip", number=2)

@@ -32,7 +32,7 @@ def goes(jog: JogBench, key: Key, seconds: float = 1.0) -> None:
 
 def spindle(jog: JogBench) -> None:
     hand = jog.page.model.manual_functions
-    jog.type("1" if hand.is_shown else "b1")
+    jog.type("1" if hand.is_panel_shown else "b1")
     if hand.is_asking_speed:
         jog.enter("200")
     proved(jog)
@@ -73,7 +73,7 @@ def test_skim_cut_measures_diameter(jog: JogBench) -> None:
     assert step(jog) is SkimCutStep.MEASURING
     jog.type(".5")
     jog.run(0.05)
-    assert "→" in jog.page.entry_panel.entry_texts.change_text
+    assert "→" in jog.page.entry_panel.entry_texts.change_description
     assert rows(jog) == {}
     jog.key(Key.Key_Return)
     assert shows(

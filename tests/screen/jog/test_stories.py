@@ -8,7 +8,7 @@ from PySide6.QtGui import QPixmap
 
 from app.screen.screen_theme import ThemedPainter
 from core.executor.snapshot import MachineState
-from core.store.store_rows import ToolRow
+from core.store.store_rows import ToolOffsetRow
 from tests.screen.jog.bench import INCH, SHIFT, JogBench, Key
 from tests.screen.yes import yes
 from tests.texts import begins, shows, text
@@ -105,7 +105,7 @@ def test_new_touch_shows_old_and_new_offset_and_can_be_undone(jog: JogBench) -> 
     jog.type("1")
     jog.run(0.02)
     # radius .5 in; was −5 mm = −.19685 in
-    change = jog.page.entry_panel.entry_texts.change_text
+    change = jog.page.entry_panel.entry_texts.change_description
     assert change == "X R  −0.19685  →  −0.50000   WEAR X  +0.00787  →  +0.00000"  # .1 mm of radius
     jog.key(Key.Key_Return)
     jog.confirm()
@@ -114,7 +114,7 @@ def test_new_touch_shows_old_and_new_offset_and_can_be_undone(jog: JogBench) -> 
     assert jog.store.offsets.tool_offsets.read_rows()[2].x == 3.0
     jog.key(Key.Key_F4)
     jog.confirm()
-    assert jog.store.offsets.tool_offsets.read_rows()[1] == ToolRow(-5.0, -50.0, wear_x=0.1)
+    assert jog.store.offsets.tool_offsets.read_rows()[1] == ToolOffsetRow(-5.0, -50.0, wear_x=0.1)
 
 
 def test_master_moves_all_followers_or_is_set_alone(jog: JogBench) -> None:
@@ -148,7 +148,9 @@ def test_touch_off_is_active_at_once_for_loaded_tool(jog: JogBench) -> None:
     jog.key(Key.Key_F1)
     jog.key(Key.Key_F5)
     before = jog.executor.snapshot.modal
-    jog.executor._control.status.modal_state = before._replace(tool=1, tool_x=-5.0, tool_z=-50.0)
+    jog.executor._control.status.modal_state = before._replace(
+        tool=1, tool_offset_x=-5.0, tool_offset_z=-50.0
+    )
     jog.run(0.05)
     touch(jog, "x", "1")
     jog.confirm()
@@ -239,9 +241,10 @@ def test_homing_asks_once_and_homes_axes_in_order(lost: JogBench) -> None:
 
     def done() -> bool:
         seen.append(
-            tuple(known.value for known in lost.page.model.homing_question.find_states(lost.shot).values())[
-                :2
-            ]
+            tuple(
+                known.value
+                for known in lost.page.model.homing_question.find_homing_states(lost.shot).values()
+            )[:2]
         )
         return lost.shot.state is MachineState.IDLE
 

@@ -171,7 +171,7 @@ def test_step_key_changes_handwheel_notch_distance(wheeled: JogBench) -> None:
 def test_machine_without_handwheel_shows_message_and_draws_none(jog: JogBench) -> None:
     jog.key(Key.Key_V)
     assert jog.prompt == text("jog.no-wheel")
-    assert not jog.page.model.is_wheel_shown
+    assert not jog.page.model.is_handwheel_shown
 
 
 @pytest.mark.parametrize("high", [314, 361])

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from datetime import datetime
 from typing import NamedTuple
 
-from app.extras.mtconnect.driver.mtconnect_items import Category, DataItem
+from app.extras.mtconnect.driver.mtconnect_items import DataItem, DataItemCategory
 from core.message import Message
 from core.ports import DriverError
 
@@ -35,7 +35,7 @@ class ActiveCondition(NamedTuple):
 
     condition_level: str
     native_code: str
-    text: str
+    condition_text: str
 
 
 class MachineReport(NamedTuple):
@@ -44,8 +44,8 @@ class MachineReport(NamedTuple):
     A missing key means that the value is not known.
     """
 
-    values: Mapping[str, ItemValue]
-    conditions: Mapping[str, tuple[ActiveCondition, ...]]
+    item_values: Mapping[str, ItemValue]
+    active_conditions: Mapping[str, tuple[ActiveCondition, ...]]
 
 
 def format_utc_time(time: datetime) -> str:
@@ -53,7 +53,7 @@ def format_utc_time(time: datetime) -> str:
     return time.isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
-def make_pong(heartbeat_s: float) -> bytes:
+def make_pong_reply(heartbeat_s: float) -> bytes:
     """Return the PONG line that replies to the PING of an agent.
 
     ``heartbeat_s`` is in seconds. The reply contains it in milliseconds, limited to the range from 1 ms to
@@ -87,18 +87,18 @@ def make_values_line(time_text: str, pairs: Mapping[str, str]) -> str:
     return "|".join((time_text, *(part for pair in pairs.items() for part in pair))) + "\n"
 
 
-def make_active_line(time_text: str, key: str, active_condition: ActiveCondition) -> str:
+def make_active_condition_line(time_text: str, key: str, active_condition: ActiveCondition) -> str:
     """Return the SHDR line for a condition that becomes active or changes its text.
 
     The fields for severity and qualifier are empty.
     """
     return (
         f"{time_text}|{key}|{active_condition.condition_level}|{replace_separators(active_condition.native_code)}|||"
-        f"{replace_separators(active_condition.text)}\n"
+        f"{replace_separators(active_condition.condition_text)}\n"
     )
 
 
-def make_cleared_line(time_text: str, key: str, code: str = "") -> str:
+def make_cleared_condition_line(time_text: str, key: str, code: str = "") -> str:
     """Return the SHDR line that clears one native code of a condition.
 
     If ``code`` is empty, the line clears the whole condition.
@@ -106,7 +106,7 @@ def make_cleared_line(time_text: str, key: str, code: str = "") -> str:
     return f"{time_text}|{key}|{NORMAL_LEVEL}|{replace_separators(code)}|||\n"
 
 
-def make_unknown_line(time_text: str, key: str) -> str:
+def make_unknown_condition_line(time_text: str, key: str) -> str:
     """Return the SHDR line for a condition whose state is not known."""
     return f"{time_text}|{key}|{UNAVAILABLE}||||\n"
 
@@ -117,30 +117,30 @@ def make_unknown_line(time_text: str, key: str) -> str:
 ConditionsByItem = dict[str, tuple[ActiveCondition, ...] | None]  # None: not known
 
 
-class SentState:
+class SentMachineState:
     """Machine state that all connected agents have received."""
 
     def __init__(self, items: tuple[DataItem, ...]) -> None:
-        self._values = {item.key: item for item in items if item.category is not Category.CONDITION}
+        self._values = {item.key: item for item in items if item.category is not DataItemCategory.CONDITION}
         self._conditions: ConditionsByItem = {
-            item.key: None for item in items if item.category is Category.CONDITION
+            item.key: None for item in items if item.category is DataItemCategory.CONDITION
         }
         self._last: dict[str, ItemValue] = dict.fromkeys(self._values)
         self._shown = dict.fromkeys(self._values, UNAVAILABLE)
 
-    def make_complete_state(self, time: str) -> str:
+    def make_complete_state_lines(self, time: str) -> str:
         """Return the SHDR lines with the complete state for a newly connected agent."""
         lines = [make_values_line(time, self._shown)]
         for key, active in self._conditions.items():
             lines += _whole_condition(time, key, active)
         return "".join(lines)
 
-    def report_changes(self, report: MachineReport, time: str) -> str:
+    def make_change_lines(self, report: MachineReport, time: str) -> str:
         """Return SHDR lines with the changes in a report, and store the changed values as sent."""
         new = dict(self._new_values(report))
         lines = [make_values_line(time, new)] if new else []
         for key, before in self._conditions.items():
-            now = report.conditions.get(key)
+            now = report.active_conditions.get(key)
             if now != before:
                 lines += _changed_condition(time, key, before, now)
                 self._conditions[key] = now
@@ -148,7 +148,7 @@ class SentState:
 
     def _new_values(self, report: MachineReport) -> Iterator[tuple[str, str]]:
         for key, item in self._values.items():
-            value = report.values.get(key)
+            value = report.item_values.get(key)
             if not _differs(item, self._last[key], value):
                 continue
             self._last[key] = value
@@ -167,13 +167,15 @@ def _differs(item: DataItem, before: ItemValue, now: ItemValue) -> bool:
         return before != now
     if now == 0.0 or before == 0.0:
         return now != before
-    return abs(now - before) > item.minimum_change + item.relative_change * abs(before)
+    return abs(now - before) > item.minimum_change + item.min_relative_change * abs(before)
 
 
 def _whole_condition(at: str, key: str, active: tuple[ActiveCondition, ...] | None) -> list[str]:
     if active is None:
-        return [make_unknown_line(at, key)]
-    return [make_active_line(at, key, each) for each in active] or [make_cleared_line(at, key)]
+        return [make_unknown_condition_line(at, key)]
+    return [make_active_condition_line(at, key, each) for each in active] or [
+        make_cleared_condition_line(at, key)
+    ]
 
 
 def _changed_condition(
@@ -183,9 +185,11 @@ def _changed_condition(
     if not now or before is None:
         return _whole_condition(time, key, now)
     codes = {each.native_code for each in now}
-    lines = [make_active_line(time, key, each) for each in now if each not in before]
+    lines = [make_active_condition_line(time, key, each) for each in now if each not in before]
     return lines + [
-        make_cleared_line(time, key, each.native_code) for each in before if each.native_code not in codes
+        make_cleared_condition_line(time, key, each.native_code)
+        for each in before
+        if each.native_code not in codes
     ]
 
 
@@ -287,7 +291,7 @@ class AgentLink:
     def _obey(self, line: bytes, now: float) -> None:
         if line == PING_COMMAND:
             self._heard = now
-            self.queue_data(make_pong(self._heartbeat))
+            self.queue_data(make_pong_reply(self._heartbeat))
         elif line:
             self.ignored_line_count += 1
 

@@ -23,7 +23,7 @@ from app.extras.mtconnect.driver.agent_links import (
     AgentLink,
     AgentLostError,
     MachineReport,
-    SentState,
+    SentMachineState,
     accept_connection,
     format_utc_time,
     open_listening_socket,
@@ -70,7 +70,7 @@ class MtconnectAdapter:
         get_utc: Callable[[], datetime] = get_utc_now,
     ) -> None:
         self._settings, self._report, self._clock, self._utc = settings, read_report, clock, get_utc
-        self._sent = SentState(items)
+        self._sent = SentMachineState(items)
         self._door: socket.socket | None = None
         self._selector = selectors.DefaultSelector()
         self._links: list[AgentLink] = []
@@ -132,7 +132,7 @@ class MtconnectAdapter:
     def send_changes(self) -> None:
         """Send the changes of the machine state to all agents."""
         self._next_look = self._clock.now() + REPORT_INTERVAL_S
-        changes = self._sent.report_changes(self._report(), format_utc_time(self._utc())).encode("utf-8")
+        changes = self._sent.make_change_lines(self._report(), format_utc_time(self._utc())).encode("utf-8")
         for link in self._links.copy():
             self._tell(link, changes)
 
@@ -165,7 +165,7 @@ class MtconnectAdapter:
     def _admit(self, link: AgentLink) -> None:
         link.waiting_since = None
         self.counts.accepted_count += 1
-        self._tell(link, self._sent.make_complete_state(format_utc_time(self._utc())).encode("utf-8"))
+        self._tell(link, self._sent.make_complete_state_lines(format_utc_time(self._utc())).encode("utf-8"))
 
     def _make_room(self, link: AgentLink) -> None:
         """Start sending data to a waiting agent, or disconnect it if no connection can be freed.

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 
-class Category(StrEnum):
+class DataItemCategory(StrEnum):
     """Category of an MTConnect data item: sample, event or condition."""
 
     SAMPLE = "SAMPLE"
@@ -21,18 +21,18 @@ class DataItem:
 
     - ``key`` is the name of the item in SHDR lines, and ``units`` are the units of the sent values.
     - Values of samples are rounded to ``decimal_places`` decimals.
-    - A change is sent only if it exceeds ``minimum_change`` plus ``relative_change`` times the value.
+    - A change is sent only if it exceeds ``minimum_change`` plus ``min_relative_change`` times the value.
     """
 
     key: str
-    category: Category
+    category: DataItemCategory
     item_type: str
     sub_type: str = ""
     units: str = ""
     coordinate_system: str = ""  # coordinate system of a position
     decimal_places: int = 0
     minimum_change: float = 0.0
-    relative_change: float = 0.0
+    min_relative_change: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,34 +85,40 @@ def make_machine_items(layout: MachineLayout, device_name: str) -> Component:
 
 
 def _event(key: str, kind: str, sub_type: str = "", units: str = "") -> DataItem:
-    return DataItem(key, Category.EVENT, kind, sub_type, units)
+    return DataItem(key, DataItemCategory.EVENT, kind, sub_type, units)
 
 
 def _percent(key: str, kind: str) -> DataItem:
-    return DataItem(key, Category.EVENT, kind, "PROGRAMMED", "PERCENT", decimal_places=1)
+    return DataItem(key, DataItemCategory.EVENT, kind, "PROGRAMMED", "PERCENT", decimal_places=1)
 
 
 def _condition(key: str, kind: str) -> DataItem:
-    return DataItem(key, Category.CONDITION, kind)
+    return DataItem(key, DataItemCategory.CONDITION, kind)
 
 
 def _rpm(key: str, sub_type: str) -> DataItem:
     units = "REVOLUTION/MINUTE"
     return DataItem(
         key,
-        Category.SAMPLE,
+        DataItemCategory.SAMPLE,
         "ROTARY_VELOCITY",
         sub_type,
         units,
         decimal_places=1,
         minimum_change=1.0,
-        relative_change=0.005,
+        min_relative_change=0.005,
     )
 
 
 def _angle(axis: str) -> DataItem:
     return DataItem(
-        f"{axis}abs", Category.SAMPLE, "ANGLE", "ACTUAL", "DEGREE", decimal_places=3, minimum_change=0.05
+        f"{axis}abs",
+        DataItemCategory.SAMPLE,
+        "ANGLE",
+        "ACTUAL",
+        "DEGREE",
+        decimal_places=3,
+        minimum_change=0.05,
     )
 
 
@@ -128,7 +134,7 @@ def _linear(layout: MachineLayout) -> Iterator[Component]:
     for axis in layout.linear_axes:
         at = DataItem(
             f"{axis}abs",
-            Category.SAMPLE,
+            DataItemCategory.SAMPLE,
             "POSITION",
             "ACTUAL",
             "MILLIMETER",
@@ -150,7 +156,15 @@ def _spindle(layout: MachineLayout) -> Component:
         _rpm("Srpm", "ACTUAL"),
         _rpm("Scmd", "PROGRAMMED"),
         _percent("Sovr", "ROTARY_VELOCITY_OVERRIDE"),
-        DataItem("Sload", Category.SAMPLE, "LOAD", "ACTUAL", "PERCENT", decimal_places=1, minimum_change=1.0),
+        DataItem(
+            "Sload",
+            DataItemCategory.SAMPLE,
+            "LOAD",
+            "ACTUAL",
+            "PERCENT",
+            decimal_places=1,
+            minimum_change=1.0,
+        ),
         _event("rotmode", "ROTARY_MODE"),
         _condition("Sdrive", "ACTUATOR"),
     )
@@ -176,13 +190,13 @@ _PATH = (
     _event("part", "PART_DETECT"),
     DataItem(
         "Fact",
-        Category.SAMPLE,
+        DataItemCategory.SAMPLE,
         "PATH_FEEDRATE",
         "ACTUAL",
         "MILLIMETER/SECOND",
         decimal_places=3,
         minimum_change=0.1,
-        relative_change=0.02,
+        min_relative_change=0.02,
     ),
     _percent("Fovr", "PATH_FEEDRATE_OVERRIDE"),
     _condition("motion", "MOTION_PROGRAM"),

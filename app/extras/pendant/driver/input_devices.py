@@ -153,7 +153,7 @@ class DeviceEntry:
     able: frozenset[tuple[int, int]]  # kind and code of all possible events
 
 
-def list_devices(sysfs_folder: Path = SYSFS) -> list[DeviceEntry]:
+def list_input_devices(sysfs_folder: Path = SYSFS) -> list[DeviceEntry]:
     """Return the entries of all connected input devices."""
     found = []
     for path in sorted(sysfs_folder.glob("event*")):
@@ -165,25 +165,27 @@ def list_devices(sysfs_folder: Path = SYSFS) -> list[DeviceEntry]:
 def _entry(path: Path) -> DeviceEntry:
     device = path / "device"
 
-    def text(name: str) -> str:
+    def read_attribute(name: str) -> str:
         try:
             return (device / name).read_text(encoding="utf-8", errors="replace").strip()
         except FileNotFoundError:
             return ""
 
-    name = text("name")
+    name = read_attribute("name")
     if not name:
         raise FileNotFoundError(device)
     able = {
-        (kind, code) for kind, word in _CAPABILITIES.items() for code in _bits(text(f"capabilities/{word}"))
+        (kind, code)
+        for kind, word in _CAPABILITIES.items()
+        for code in _bits(read_attribute(f"capabilities/{word}"))
     }
     return DeviceEntry(
         path.name,
         name,
-        f"{text('id/vendor')}:{text('id/product')}".lower(),
-        text("uniq"),
-        text("phys").rpartition("/")[0] or path.name,
-        text("id/bustype") == _BLUETOOTH,
+        f"{read_attribute('id/vendor')}:{read_attribute('id/product')}".lower(),
+        read_attribute("uniq"),
+        read_attribute("phys").rpartition("/")[0] or path.name,
+        read_attribute("id/bustype") == _BLUETOOTH,
         frozenset(able),
     )
 

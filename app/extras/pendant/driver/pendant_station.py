@@ -22,7 +22,7 @@ from app.extras.pendant.driver.input_devices import (
     PacketParser,
 )
 from app.extras.pendant.driver.pendant_table import ABS, KEY, REL, PendantControl
-from core.ports import DigitalIO, DriverError, Station, StationState
+from core.ports import DigitalIO, DriverError, OperatorStation, StationState
 
 _LISTEN = 0.05  # seconds of one read of the device
 _AGAIN = 0.5  # seconds between two searches for a missing device
@@ -41,7 +41,7 @@ class PendantState:
     input_states: Mapping[str, bool]
     wheel_counts: int
     missing_reason: str
-    lost_at_s: float  # time at which the device or events were last lost
+    last_lost_time_s: float  # time at which the device or events were last lost
 
 
 class PendantReader:
@@ -88,7 +88,9 @@ class PendantReader:
             away = self._away
             if self._nodes and self.read_clock() - self._looked > _SILENT:
                 away = "the software thread that reads the pendant has stopped"
-            held = {name: not away and name in buttons.pressed_names for name in buttons.control_by_name}
+            held = {
+                name: not away and name in buttons.pressed_button_names for name in buttons.controls_by_name
+            }
             return PendantState(held, buttons.wheel_counts, away, self._broke)
 
     # --- thread ---------------------------------------------------------------------------------------------
@@ -163,7 +165,7 @@ class PendantReader:
     def _drop(self, why: str) -> None:
         nodes, self._nodes = self._nodes, {}
         with self._lock:
-            self._buttons.release_all()
+            self._buttons.release_all_buttons()
             self._away, self._broke = why, self.read_clock()
         self._ring()
         for node in nodes:
@@ -192,13 +194,15 @@ LOST_EVENTS_MESSAGE = "pendant events were lost; the handwheel may have turned f
 
 
 class PendantStation:
-    """Implementation of ``core.ports.Station`` for an operator station with a pendant.
+    """Implementation of ``core.ports.OperatorStation`` for an operator station with a pendant.
 
     If the pendant has a stop button, no cycle can run without the pendant. If it has no stop button,
     unplugging it causes one feed hold. The pendant cannot start motion.
     """
 
-    def __init__(self, station: Station, pendant: PendantReader, *, has_stops: bool, has_wheel: bool) -> None:
+    def __init__(
+        self, station: OperatorStation, pendant: PendantReader, *, has_stops: bool, has_wheel: bool
+    ) -> None:
         self._station, self._pendant = station, pendant
         self._stops, self._wheel = has_stops, has_wheel
 
@@ -210,7 +214,7 @@ class PendantStation:
     def read_state(self) -> StationState:
         """Return the state of the station, including the pendant."""
         state, pendant = self._station.read_state(), self._pendant.get_state()
-        just = self._pendant.read_clock() - pendant.lost_at_s < _TOLD
+        just = self._pendant.read_clock() - pendant.last_lost_time_s < _TOLD
         lost = pendant.missing_reason if pendant.missing_reason and (self._stops or just) else ""
         return dataclasses.replace(
             state,
@@ -271,17 +275,17 @@ class PendantButtons:
 
     - ``control_by_name`` maps names of the machine file to controls.
     - ``stop_inputs`` are the inputs whose presses take effect even if they arrive late.
-    - ``pressed_names`` are the pressed buttons, and ``wheel_counts`` is the handwheel count.
+    - ``pressed_button_names`` are the pressed buttons, and ``wheel_counts`` is the handwheel count.
     - ``has_absolute_wheel`` means that the wheel reports positions instead of steps.
     """
 
-    control_by_name: Mapping[str, PendantControl]
-    stop_inputs: frozenset[str]
+    controls_by_name: Mapping[str, PendantControl]
+    stop_input_names: frozenset[str]
     wheel_control: PendantControl | None = None
     has_absolute_wheel: bool = False
     wheel_counts: int = 0
-    pressed_names: set[str] = field(default_factory=set)
-    ineffective_names: set[str] = field(
+    pressed_button_names: set[str] = field(default_factory=set)
+    ineffective_button_names: set[str] = field(
         default_factory=set
     )  # pressed, but without effect until they are released
     axis_ranges: dict[int, AxisRange] = field(default_factory=dict)
@@ -294,9 +298,9 @@ class PendantButtons:
         """
         self.axis_ranges = dict(ranges)
         pressed, self._at = set(keys), None
-        held = {name for name, control in self.control_by_name.items() if self._held(control, pressed)}
-        self.pressed_names = held & self.stop_inputs
-        self.ineffective_names = held - self.stop_inputs
+        held = {name for name, control in self.controls_by_name.items() if self._held(control, pressed)}
+        self.pressed_button_names = held & self.stop_input_names
+        self.ineffective_button_names = held - self.stop_input_names
         if (
             self.wheel_control is not None
             and self.wheel_control.event_kind == ABS
@@ -304,10 +308,10 @@ class PendantButtons:
         ):
             self._at = self.axis_ranges[self.wheel_control.event_code].value
 
-    def release_all(self) -> None:
+    def release_all_buttons(self) -> None:
         """Release all buttons and discard the wheel position, because the device is disconnected."""
-        self.pressed_names.clear()
-        self.ineffective_names.clear()
+        self.pressed_button_names.clear()
+        self.ineffective_button_names.clear()
         self._at = None
 
     def apply_packet(self, packet: EventPacket, now_s: float) -> None:
@@ -322,7 +326,7 @@ class PendantButtons:
                 and (event.event_kind, event.event_code) == self.wheel_control[:2]
             ):
                 self._turn(event, late)
-            for name, control in self.control_by_name.items():
+            for name, control in self.controls_by_name.items():
                 if (event.event_kind, event.event_code) == control[:2]:
                     self._press(name, control, event, late)
 
@@ -335,16 +339,16 @@ class PendantButtons:
             self._keep(event)
             share = self._share(control)
             pressed = share >= _PRESSED or (
-                share > _FREE and name in self.pressed_names | self.ineffective_names
+                share > _FREE and name in self.pressed_button_names | self.ineffective_button_names
             )
         if not pressed:
-            self.pressed_names.discard(name)
-            self.ineffective_names.discard(name)
-        elif name in self.stop_inputs or not late:
-            if name not in self.ineffective_names:
-                self.pressed_names.add(name)
-        elif name not in self.pressed_names:
-            self.ineffective_names.add(name)
+            self.pressed_button_names.discard(name)
+            self.ineffective_button_names.discard(name)
+        elif name in self.stop_input_names or not late:
+            if name not in self.ineffective_button_names:
+                self.pressed_button_names.add(name)
+        elif name not in self.pressed_button_names:
+            self.ineffective_button_names.add(name)
 
     def _turn(self, event: InputEvent, late: bool) -> None:
         if event.event_kind == REL and not self.has_absolute_wheel:

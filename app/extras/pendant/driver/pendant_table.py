@@ -198,12 +198,12 @@ def _find_double_use(buttons: Mapping[str, str]) -> Iterator[FileFinding]:
 def _wheel(file: MachineFileReading) -> str:
     """Return the address of the handwheel, or an empty string if it is not on the pendant."""
     path = f"{_WHEEL}.at"
-    at = file.values.text(path) if file.values.has_values(path) else ""
+    at = file.file_values.text(path) if file.file_values.has_values(path) else ""
     return at if at.startswith(PENDANT_PREFIX) else ""
 
 
 def _analog(file: MachineFileReading) -> Iterator[FileFinding]:
-    values = file.values
+    values = file.file_values
     for name in file.list_table_keys("io.analog"):
         path = f"io.analog.{name}.at"
         if name != "handwheel" and values.has_values(path) and values.text(path).startswith(PENDANT_PREFIX):

@@ -48,7 +48,7 @@ def store_roughing_words(
         rough.relief_x = state.convert_length(u) if u is not None else 0.0
         rough.relief_z = state.convert_length(w) if w is not None else 0.0
         rough.repetition_count = (
-            max(round(r.value * (1 if not r.has_point or r.value >= 1 else 1000)), 1) if r else 1
+            max(round(r.value * (1 if not r.has_decimal_point or r.value >= 1 else 1000)), 1) if r else 1
         )
         if r is not None and rough.repetition_count > _MAX_REPETITIONS:
             raise make_error(r.line_number, r.column, "too-many-passes", word=r.text)
@@ -79,7 +79,9 @@ def read_pass_depth(
     """
     d = statement.find_word("D")
     if d is not None:
-        depth = state.convert_increment(d) if state.source_control.has_system_a else state.convert_length(d)
+        depth = (
+            state.convert_increment(d) if state.source_control.uses_code_system_a else state.convert_length(d)
+        )
         return require_positive(d, abs(depth))
     if not rough.depth_mm:
         raise make_error(code.line_number, code.column, "cycle-word", word="U" if code.value == 71 else "W")
@@ -133,7 +135,7 @@ class DepthLevel(NamedTuple):
     """
 
     start_point: Point
-    depth_position: float
+    depth: float
     depth_sign: float
     travel_sign: float
     pass_depth: float
@@ -147,7 +149,7 @@ def _one_level(
 
     There is one pass for each section where the contour is deeper than this level.
     """
-    begin, level, toward = at.start_point, at.depth_position, at.depth_sign
+    begin, level, toward = at.start_point, at.depth, at.depth_sign
     for low, high in find_deeper_sections(pieces, level, toward):
         enter = begin[1] if low is None else low
         if abs(high - enter) <= _SAME:

@@ -33,7 +33,7 @@ def append_hole_cycle(state: SourceState, statement: SourceStatement, code: Sour
         if word.letter in "KL" and word.value != 1:
             raise make_error(word.line_number, word.column, "code-unknown", word=word.text)
         if word.letter in "ZWRQP":
-            state.hole_words[word.letter] = word
+            state.hole_cycle_words[word.letter] = word
     x, _ = state.find_target(statement)
     x0, z0 = state.get_position(code)
     assert x is not None
@@ -46,7 +46,7 @@ def append_hole_cycle(state: SourceState, statement: SourceStatement, code: Sour
     else:
         state.append_cut(code, x, bottom)
     _at_bottom(state, code)
-    back = plane if state.returns_to_r else max(z0, plane)
+    back = plane if state.returns_to_r_plane else max(z0, plane)
     if code.value in {84, 85, 89}:
         _out_at_feed(state, code, plane)
     state.append_rapid(statement.line_number, x, back)
@@ -54,7 +54,7 @@ def append_hole_cycle(state: SourceState, statement: SourceStatement, code: Sour
 
 
 def _bottom(state: SourceState, code: SourceWord, z0: float) -> float:
-    word = state.hole_words.get("Z") or state.hole_words.get("W")
+    word = state.hole_cycle_words.get("Z") or state.hole_cycle_words.get("W")
     if word is None:
         raise make_error(code.line_number, code.column, "cycle-word", word="Z")
     value = state.convert_length(word)
@@ -66,7 +66,7 @@ def _plane(state: SourceState, z0: float) -> float:
 
     R is a distance on Fanuc controls and a coordinate on other controls.
     """
-    word = state.hole_words.get("R")
+    word = state.hole_cycle_words.get("R")
     if word is None:
         return z0
     value = state.convert_length(word)
@@ -81,7 +81,7 @@ def _pecks(state: SourceState, code: SourceWord, plane: float, bottom: float, *,
 
     If ``full`` is False, the drill retracts only a short distance to break the chip.
     """
-    q = state.hole_words.get("Q")
+    q = state.hole_cycle_words.get("Q")
     x = state.x
     if q is None:
         state.append_cut(code, x, bottom)
@@ -101,7 +101,7 @@ def _pecks(state: SourceState, code: SourceWord, plane: float, bottom: float, *,
 
 
 def _at_bottom(state: SourceState, code: SourceWord) -> None:
-    p = state.hole_words.get("P")
+    p = state.hole_cycle_words.get("P")
     if p is None or code.value not in {82, 83, 89, 84}:
         return
     append_dwell(state, p._replace(line_number=code.line_number), read_seconds(state, p))

@@ -24,15 +24,15 @@ def read_cycle_target(
     """
     x0, z0 = state.get_position(code)
     x, z = state.find_target(statement)
-    before = state.cycle_end if state.cycle_code == state.motion_code else None
+    before = state.cycle_end_point if state.cycle_code == state.motion_code else None
     given = {each.letter for each in statement.words}
     if before is not None and not given & {"X", "U"}:
         x = before[0]
     if before is not None and not given & {"Z", "W"}:
         z = before[1]
     state.cycle_code = state.motion_code
-    state.cycle_end = (x if x is not None else x0, z if z is not None else z0)
-    return state.cycle_end
+    state.cycle_end_point = (x if x is not None else x0, z if z is not None else z0)
+    return state.cycle_end_point
 
 
 def read_taper(state: SourceState, statement: SourceStatement, letters: str = "RI") -> float:

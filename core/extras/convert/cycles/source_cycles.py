@@ -74,7 +74,7 @@ class SourceCycles:
     def _boxes(self) -> Mapping[int, Callable[[SourceState, SourceStatement, SourceWord], None]]:
         if not self._state.source_control.is_fanuc:
             return {}
-        return _BOXES if self._state.source_control.has_system_a else _BOXES_OF_B
+        return _BOXES if self._state.source_control.uses_code_system_a else _BOXES_OF_B
 
     def _holes(self) -> frozenset[int]:
         return HOLE_CYCLE_CODES - {73} if self._state.source_control.is_fanuc else HOLE_CYCLE_CODES
@@ -177,7 +177,15 @@ class SourceCycles:
     def _trace(self, lines: Sequence[SourceStatement]) -> list[PathStep]:
         """Return the moves of a contour without the rapids at its end, and restore the modal state."""
         state = self._state
-        saved = (state.steps, state.x, state.z, state.feed, state.motion_code, state.nose_code, state.comment)
+        saved = (
+            state.steps,
+            state.x,
+            state.z,
+            state.feed,
+            state.motion_code,
+            state.nose_code,
+            state.pending_comment,
+        )
         spindle, request = state.spindle, state.speed_request
         state.steps, state.feed = [], state.feed or 1.0
         self._execute_contour(lines)
@@ -186,7 +194,15 @@ class SourceCycles:
             if step.kind not in MOVE_KINDS and step.kind is not StepKind.NOSE:
                 word = SourceWord("", 0, False, step.line, 1, "")
                 state.add_warning(word, "contour-action", line=step.line)
-        state.steps, state.x, state.z, state.feed, state.motion_code, state.nose_code, state.comment = saved
+        (
+            state.steps,
+            state.x,
+            state.z,
+            state.feed,
+            state.motion_code,
+            state.nose_code,
+            state.pending_comment,
+        ) = saved
         state.spindle, state.speed_request = spindle, request
         while len(found) > 1 and found[-1].kind is StepKind.RAPID:
             found.pop()

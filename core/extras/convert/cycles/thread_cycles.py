@@ -34,7 +34,7 @@ def read_lead(state: SourceState, statement: SourceStatement, code: SourceWord) 
         )
     word = next((each for letter in letters if (each := statement.find_word(letter))), None)
     if word is not None:
-        if not word.has_point and state.source_control.is_fanuc and state.options.no_point != 1:
+        if not word.has_decimal_point and state.source_control.is_fanuc and state.options.no_point != 1:
             raise make_error(word.line_number, word.column, "feed-no-point", word=word.text)
         state.last_lead_mm = abs(word.value) * state.get_unit_mm(word)
         if word.letter == "F" and state.source_control.is_fanuc:

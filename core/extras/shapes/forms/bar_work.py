@@ -9,7 +9,7 @@ from dataclasses import replace
 from core.extras.shapes.common_fields import (
     check_feeds,
     check_rpm,
-    find_next_tool,
+    find_next_tool_number,
     make_diameter_reader,
     make_feed_field,
     make_rpm_field,
@@ -18,7 +18,7 @@ from core.extras.shapes.common_fields import (
     propose_bar_diameter,
 )
 from core.extras.shapes.cutting_data import Operation
-from core.extras.shapes.editor_shape import FilledShape, Shape
+from core.extras.shapes.editor_shape import Shape, ShapeInstance
 from core.extras.shapes.forms.turning import write_spindle_end, write_spindle_start
 from core.extras.shapes.lines.code_lines import BarFeedLoop, CodeWriter, write_bar_feed_loop
 from core.extras.shapes.shape_fields import (
@@ -63,7 +63,7 @@ def _corner(values: FieldValues, settings: ProgramSettings) -> FieldValue | None
     return RIGHT if shape is not None and shape.direction[0] > 0 else LEFT
 
 
-def get_tool_side(filled_shape: FilledShape) -> float:
+def get_tool_side_sign(filled_shape: ShapeInstance) -> float:
     """Return the sign of X on the tool's side of the axis: -1 for a rear tool, otherwise 1."""
     return -1.0 if filled_shape.get_text("SIDE") == REAR else 1.0
 
@@ -80,10 +80,10 @@ class BladeWriter:
     ``start`` is the radius from which the blade approaches.
     """
 
-    def __init__(self, filled_shape: FilledShape, code: CodeWriter, start: float = 0.0) -> None:
+    def __init__(self, filled_shape: ShapeInstance, code: CodeWriter, start: float = 0.0) -> None:
         self.width = filled_shape.get_number("WIDE")
         self.is_left_corner = filled_shape.get_text("CORNER") == LEFT
-        self._side, self._code = get_tool_side(filled_shape), code
+        self._side, self._code = get_tool_side_sign(filled_shape), code
         self._r, self._z = start, math.inf
 
     def _at(self, r: float | None, z: float | None) -> None:
@@ -98,7 +98,7 @@ class BladeWriter:
         """Return the programmed Z that positions the face-side corner of the blade at ``front``."""
         return self.calculate_z_at_chuck_corner(front - self.width)
 
-    def write_positioning(self, z: float, r: float) -> None:
+    def write_positioning_moves(self, z: float, r: float) -> None:
         """Write a move along Z at the current radius, then a move to radius ``r``.
 
         Unnecessary moves are omitted.
@@ -124,7 +124,7 @@ class BladeWriter:
 
 
 def check_blade(
-    filled_shape: FilledShape, settings: ProgramSettings, depth: float, word: str
+    filled_shape: ShapeInstance, settings: ProgramSettings, depth: float, word: str
 ) -> Iterator[FieldError]:
     """Yield errors if the blade is too short, or if its width differs from the tool data."""
     shape, wide, name = (
@@ -155,12 +155,12 @@ def check_blade(
         )
 
 
-def _part_off(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _part_off(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     free = BLADE_CLEARANCE[setting.metric]
     bar_r, back, feed = filled.get_number("FROM") / 2.0, -filled.get_number("LONG"), filled.get_number("FEED")
     blade = BladeWriter(filled, code)
     kerf = blade.calculate_z_at_face_corner(back)
-    write_spindle_start(filled, setting, code, get_tool_side(filled) * (bar_r + free), None)
+    write_spindle_start(filled, setting, code, get_tool_side_sign(filled) * (bar_r + free), None)
     blade.write_rapid(z=kerf)
     own, following = filled.get_number("BACK"), filled.get_number("NEXT")
     if own or following:
@@ -178,7 +178,7 @@ def _part_off(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -
     write_spindle_end(filled, code)
 
 
-def _part_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+def _part_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
     top, end = filled.get_number("FROM"), filled.get_number("TO")
     if end >= top:
         yield FieldError(
@@ -205,7 +205,7 @@ def _part_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[Fiel
     yield from check_feeds(filled, setting, "FEED")
 
 
-def _part_sketch(_filled: FilledShape) -> Sketch:
+def _part_sketch(_filled: ShapeInstance) -> Sketch:
     solid = make_part_outline(
         (0, 0), (0, 10), (-13, 10), (-14, 9), (-14, 0.4), (-17, 0.4), (-17, 9), (-18, 10), (-27, 10), (-27, 0)
     )
@@ -254,7 +254,7 @@ def _sub(_values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
     return float(setting.free_subroutine_number)
 
 
-def _loop(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter) -> None:
+def _loop(filled: ShapeInstance, _setting: ProgramSettings, code: CodeWriter) -> None:
     write_bar_feed_loop(
         code,
         BarFeedLoop(
@@ -269,7 +269,7 @@ def _loop(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter) -> N
     )
 
 
-def _checks(_filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+def _checks(_filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
     if setting.is_subroutine:
         yield FieldError(
             "COUNT",
@@ -278,7 +278,7 @@ def _checks(_filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldErr
         )
 
 
-def _sketch(_filled: FilledShape) -> Sketch:
+def _sketch(_filled: ShapeInstance) -> Sketch:
     bar = make_part_outline((0, 0), (0, 7), (-30, 7), (-30, 0))
     cuts = [Outline(((z, 0.0), (z, 7.0)), "cut") for z in (-8, -16, -24)]
     return make_sketch(
@@ -294,7 +294,7 @@ def _sketch(_filled: FilledShape) -> Sketch:
     )
 
 
-def _tail(filled: FilledShape) -> tuple[str, ...]:
+def _tail(filled: ShapeInstance) -> tuple[str, ...]:
     return f"}}{filled.get_number('SUB'):.0f}", "M99"
 
 
@@ -307,7 +307,11 @@ BAR_LOOP_SHAPE = Shape(
         ShapeField("LONG", "BAR LENGTH PER PART + CUT-OFF", FieldKind.LENGTH),
         ShapeField("FEEDS", "FEED THE BAR", FieldKind.CHOICE, EACH, (EACH, ONCE)),
         ShapeField(
-            "STOP", "TOOL USED AS STOP", FieldKind.TOOL, lambda _v, s: float(find_next_tool(s)), maximum=32
+            "STOP",
+            "TOOL USED AS STOP",
+            FieldKind.TOOL,
+            lambda _v, s: float(find_next_tool_number(s)),
+            maximum=32,
         ),
         ShapeField(
             "STOCK", "FACING ALLOWANCE", FieldKind.LENGTH, make_length_proposal(0.025, 0.6), allows_zero=True
@@ -322,7 +326,7 @@ BAR_LOOP_SHAPE = Shape(
 )
 
 
-def check_chuck(settings: ProgramSettings, word: str) -> Iterator[FieldError]:
+def check_chuck_codes(settings: ProgramSettings, word: str) -> Iterator[FieldError]:
     """Yield an error if a SINUMERIK program cannot open the chuck of this machine.
 
     ``word`` is the name of the field for which the error is reported.
@@ -335,12 +339,12 @@ def check_chuck(settings: ProgramSettings, word: str) -> Iterator[FieldError]:
         )
 
 
-def _sinumerik_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
-    yield from check_chuck(setting, "FEEDS")
+def _sinumerik_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
+    yield from check_chuck_codes(setting, "FEEDS")
     yield from _checks(filled, setting)
 
 
-def _sinumerik_tail(filled: FilledShape) -> tuple[str, ...]:
+def _sinumerik_tail(filled: ShapeInstance) -> tuple[str, ...]:
     return f"%_N_PART_{filled.get_number('SUB'):.0f}_SPF", "M17"
 
 

@@ -14,7 +14,7 @@ from core.extras.shapes.common_fields import (
     make_tool_field,
 )
 from core.extras.shapes.cutting_data import Operation
-from core.extras.shapes.editor_shape import FilledShape, Shape
+from core.extras.shapes.editor_shape import Shape, ShapeInstance
 from core.extras.shapes.lines.code_lines import CodeWriter
 from core.extras.shapes.shape_fields import (
     FieldError,
@@ -46,7 +46,7 @@ def _peck(values: FieldValues, _settings: ProgramSettings) -> FieldValue | None:
     return round(across, 3) if across and deep - number(values, "START") > 3.0 * across else 0.0
 
 
-def _drill(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _drill(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     start = setting.near / 2.0 - filled.get_number("START")
     code.write_tool_start(filled.get_number("T"), filled.get_number("RPM"), 0.0, start)
     code.write_drilling(
@@ -58,7 +58,7 @@ def _drill(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> N
     code.write_retract()
 
 
-def _drill_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+def _drill_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
     deep, start, peck, across = (filled.get_number(word) for word in ("DEEP", "START", "PECK", "DIA"))
     if start >= deep:
         yield FieldError(
@@ -98,7 +98,7 @@ def _drill_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[Fie
     yield from check_feeds(filled, setting, "FEED")
 
 
-def _drill_sketch(_filled: FilledShape) -> Sketch:
+def _drill_sketch(_filled: ShapeInstance) -> Sketch:
     wall = make_part_outline((0, 0), (0, 10), (-24, 10), (-24, 0))
     return make_sketch(
         wall,

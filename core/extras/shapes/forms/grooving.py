@@ -20,7 +20,7 @@ from core.extras.shapes.common_fields import (
     propose_bar_diameter,
 )
 from core.extras.shapes.cutting_data import Operation
-from core.extras.shapes.editor_shape import FilledShape, Shape
+from core.extras.shapes.editor_shape import Shape, ShapeInstance
 from core.extras.shapes.forms.bar_work import (
     BLADE_CLEARANCE,
     BLADE_CORNER_FIELD,
@@ -30,7 +30,7 @@ from core.extras.shapes.forms.bar_work import (
     REAR,
     BladeWriter,
     check_blade,
-    get_tool_side,
+    get_tool_side_sign,
 )
 from core.extras.shapes.forms.turning import write_spindle_end, write_spindle_start
 from core.extras.shapes.lines.code_lines import CodeWriter, format_short_number, format_sinumerik_number
@@ -49,19 +49,19 @@ from core.sketch import Dimension, Sketch, make_cut_outline, make_part_outline, 
 _OVERLAP = 0.8  # distance between plunges as a fraction of the blade width
 
 
-def _plunges(filled: FilledShape) -> int:
+def _plunges(filled: ShapeInstance) -> int:
     over = filled.get_number("LONG") - filled.get_number("WIDE")
     return 1 + math.ceil(over / (_OVERLAP * filled.get_number("WIDE")) - 1e-9) if over > 1e-9 else 1
 
 
-def _slants(filled_shape: FilledShape) -> tuple[float, float]:
+def _slants(filled_shape: ShapeInstance) -> tuple[float, float]:
     """Return the Z travel per unit of depth for the face-side wall and for the chuck-side wall."""
     return math.tan(math.radians(filled_shape.get_number("FANGLE"))), math.tan(
         math.radians(filled_shape.get_number("CANGLE"))
     )
 
 
-def _groove(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _groove(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     free = (
         -BLADE_CLEARANCE[setting.metric]
         if filled.get_text("SIDE") == INSIDE
@@ -71,7 +71,7 @@ def _groove(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> 
     over = filled.get_number("OVER") / 2.0 + free if filled.get_number("OVER") else outer
     blade, chuck = BladeWriter(filled, code, over), -filled.get_number("AT") - filled.get_number("LONG")
     many, slanted = int(filled.get_number("COUNT")), any(_slants(filled))
-    write_spindle_start(filled, setting, code, get_tool_side(filled) * over, None)
+    write_spindle_start(filled, setting, code, get_tool_side_sign(filled) * over, None)
     plain_ones = _plunges(filled) == 1 and not filled.get_number("EDGE") and not slanted and over == outer
     if many > 1 and plain_ones and code.supports_loops and not setting.is_subroutine:
         _loop(filled, code, outer, blade.calculate_z_at_chuck_corner(chuck))
@@ -84,9 +84,9 @@ def _groove(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> 
     write_spindle_end(filled, code)
 
 
-def _loop(filled_shape: FilledShape, code: CodeWriter, outer: float, first: float) -> None:
+def _loop(filled_shape: ShapeInstance, code: CodeWriter, outer: float, first: float) -> None:
     """Write a loop of incremental moves that cuts several equal grooves, one plunge per groove."""
-    deep = get_tool_side(filled_shape) * (outer - filled_shape.get_number("BOTTOM") / 2.0)
+    deep = get_tool_side_sign(filled_shape) * (outer - filled_shape.get_number("BOTTOM") / 2.0)
     code.write_rapid(z=first)
     code.append_lines(
         "G91",
@@ -99,14 +99,14 @@ def _loop(filled_shape: FilledShape, code: CodeWriter, outer: float, first: floa
     )
 
 
-def _one_groove(filled: FilledShape, blade: BladeWriter, outer: float, chuck: float, free: float) -> None:
+def _one_groove(filled: ShapeInstance, blade: BladeWriter, outer: float, chuck: float, free: float) -> None:
     count, feed, bottom = _plunges(filled), filled.get_number("FEED"), filled.get_number("BOTTOM") / 2.0
     front = chuck + filled.get_number("LONG")
     steps = [
         front - blade.width + (chuck - front + blade.width) * k / max(count - 1, 1) for k in range(count)
     ]
     for at in steps if count > 1 else [chuck]:
-        blade.write_positioning(blade.calculate_z_at_chuck_corner(at), outer)
+        blade.write_positioning_moves(blade.calculate_z_at_chuck_corner(at), outer)
         blade.write_cut(bottom, feed=feed)
         if at == steps[-1] and count > 1:
             blade.write_cut(z=blade.calculate_z_at_face_corner(front))  # cut along the bottom
@@ -127,7 +127,7 @@ def _one_groove(filled: FilledShape, blade: BladeWriter, outer: float, chuck: fl
 
 
 def _slanted_groove(
-    filled_shape: FilledShape, blade: BladeWriter, outer: float, chuck: float, free: float
+    filled_shape: ShapeInstance, blade: BladeWriter, outer: float, chuck: float, free: float
 ) -> None:
     """Write the moves of a groove with sloped walls: plunges, both walls and the bottom.
 
@@ -146,11 +146,11 @@ def _slanted_groove(
         walls.append((at - chuck) / at_chuck if at_chuck else deep)
         here = min(deep, *walls)
         if here > abs(free):
-            blade.write_positioning(blade.calculate_z_at_chuck_corner(at), outer)
+            blade.write_positioning_moves(blade.calculate_z_at_chuck_corner(at), outer)
             blade.write_cut(top - math.copysign(here, free), feed=feed)
             blade.write_rapid(outer)
     back = blade.calculate_z_at_chuck_corner(chuck + deep * at_chuck)
-    blade.write_positioning(blade.calculate_z_at_face_corner(front + abs(free) * at_face), outer)
+    blade.write_positioning_moves(blade.calculate_z_at_face_corner(front + abs(free) * at_face), outer)
     blade.write_cut(bottom, blade.calculate_z_at_face_corner(front - deep * at_face), feed=feed)
     blade.write_cut(z=back)
     blade.write_rapid(outer)
@@ -159,7 +159,7 @@ def _slanted_groove(
     blade.write_rapid(outer)
 
 
-def _groove_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+def _groove_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
     top, bottom, wide, long = (filled.get_number(word) for word in ("TOP", "BOTTOM", "WIDE", "LONG"))
     inside = filled.get_text("SIDE") == INSIDE
     if wide > long + 1e-9:
@@ -225,7 +225,7 @@ def _groove_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[Fi
     yield from check_feeds(filled, setting, "FEED")
 
 
-def _slant_checks(filled: FilledShape, deep: float) -> Iterator[FieldError]:
+def _slant_checks(filled: ShapeInstance, deep: float) -> Iterator[FieldError]:
     wide, long = filled.get_number("WIDE"), filled.get_number("LONG")
     for word in ("FANGLE", "CANGLE"):
         if filled.get_number(word) < 0.0:
@@ -250,7 +250,7 @@ def _slant_checks(filled: FilledShape, deep: float) -> Iterator[FieldError]:
         yield FieldError("EDGE", "Edges of sloped walls cannot be chamfered in this shape: enter 0.")
 
 
-def _groove_sketch(filled: FilledShape) -> Sketch:
+def _groove_sketch(filled: ShapeInstance) -> Sketch:
     slanted = any(_slants(filled)) and filled.get_number("FANGLE") >= 0.0 <= filled.get_number("CANGLE")
     front, back = (-8.0 + 1.5 * bool(slanted), -14.0 - 1.5 * bool(slanted))
     walls = ((front, 10), (-8, 6), (-14, 6), (back, 10))
@@ -314,8 +314,8 @@ def _by_cycle(values: FieldValues) -> bool:
     return number(values, "DN") > 0.0
 
 
-def _sinumerik_groove(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
-    if not _by_cycle(filled.values):
+def _sinumerik_groove(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
+    if not _by_cycle(filled.field_values):
         _groove(filled, setting, code)
         return
     inside, top = filled.get_text("SIDE") == INSIDE, filled.get_number("TOP")
@@ -327,7 +327,7 @@ def _sinumerik_groove(filled: FilledShape, setting: ProgramSettings, code: CodeW
             -filled.get_number("AT") - filled.get_number("LONG")
         )
     )
-    code.write_feed(filled.get_number("FEED"))
+    code.write_feed_line(filled.get_number("FEED"))
     across, width, depth, dwell = (
         format_sinumerik_number(v) for v in (top, filled.get_number("LONG"), deep, filled.get_number("DWELL"))
     )
@@ -352,9 +352,9 @@ def _sinumerik_groove(filled: FilledShape, setting: ProgramSettings, code: CodeW
     write_spindle_end(filled, code)
 
 
-def _sinumerik_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+def _sinumerik_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
     yield from _groove_checks(filled, setting)
-    if not _by_cycle(filled.values):
+    if not _by_cycle(filled.field_values):
         return
     if filled.get_number("DN") == 1.0:
         yield FieldError(

@@ -14,7 +14,7 @@ from core.extras.shapes.common_fields import (
     propose_bar_diameter,
 )
 from core.extras.shapes.cutting_data import Operation
-from core.extras.shapes.editor_shape import FilledShape, Shape
+from core.extras.shapes.editor_shape import Shape, ShapeInstance
 from core.extras.shapes.forms.drilling import _across
 from core.extras.shapes.lines.code_lines import CodeWriter
 from core.extras.shapes.lines.live_lines import (
@@ -49,7 +49,7 @@ from core.sketch import (
 
 _LIVE_RPM = 3000.0  # speed of a small live tool, for which OmniTurn has no word
 _TEETH = 2.0
-ShapeCheck = Callable[[FilledShape, ProgramSettings], Iterator[FieldError]]
+ShapeCheck = Callable[[ShapeInstance, ProgramSettings], Iterator[FieldError]]
 FRONT, REAR = "FRONT", "REAR"
 
 
@@ -59,7 +59,7 @@ def _rate(work: Operation) -> ValueProposal:
     A mill is assumed to have two teeth.
     """
 
-    def proposed(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
+    def propose_feed_per_minute(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
         turns = number(values, "LRPM") or _LIVE_RPM
         if work is Operation.DRILL:
             turn = cutting_data.propose_feed(work, setting, number(values, "T"), number(values, "DIA"))
@@ -67,10 +67,10 @@ def _rate(work: Operation) -> ValueProposal:
         turn = cutting_data.propose_feed(work, setting) * _TEETH
         return round(turn * turns, 0 if setting.metric else 1)
 
-    return proposed
+    return propose_feed_per_minute
 
 
-def _lines(filled_shape: FilledShape, settings: ProgramSettings, code: CodeWriter) -> LiveToolWriter:
+def _lines(filled_shape: ShapeInstance, settings: ProgramSettings, code: CodeWriter) -> LiveToolWriter:
     """Return a live tool writer for the language of the program."""
     kind = SinumerikLiveToolWriter if settings.dialect is Dialect.SINUMERIK else LiveToolWriter
     return kind(code, filled_shape.get_number("LRPM"))
@@ -84,7 +84,7 @@ def _step(values: FieldValues, _setting: ProgramSettings) -> FieldValue | None:
 # --- Cross holes
 
 
-def _cross(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _cross(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     sign = -1.0 if filled.get_text("SIDE") == REAR else 1.0
     surface = filled.get_number("FROM") / 2.0
     holes = RadialHoles(
@@ -99,7 +99,7 @@ def _cross(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> N
     _lines(filled, setting, code).write_holes(filled.get_number("T"), holes)
 
 
-def _cross_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+def _cross_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
     deep, across = filled.get_number("DEEP"), filled.get_number("FROM")
     if deep > across:
         yield FieldError(
@@ -125,7 +125,7 @@ def _cross_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[Fie
     yield from check_flute_length(filled, setting)
 
 
-def _cross_sketch(_filled: FilledShape) -> Sketch:
+def _cross_sketch(_filled: ShapeInstance) -> Sketch:
     solid = make_part_outline((0, -10), (0, 10), (-26, 10), (-26, -10))
     return make_sketch(
         solid,
@@ -169,7 +169,7 @@ CROSS_HOLES_SHAPE = Shape(
 
 
 def _flat_path(
-    filled_shape: FilledShape, settings: ProgramSettings
+    filled_shape: ShapeInstance, settings: ProgramSettings
 ) -> tuple[float, list[tuple[float, float]]]:
     """Return the X of the approach, and the path of the cutter center around the flats.
 
@@ -193,7 +193,7 @@ def _flat_path(
     return max(corner, outside) + settings.near / 2.0, round_
 
 
-def _flats(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _flats(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     entry, path = _flat_path(filled, setting)
     long, deep = filled.get_number("LONG"), filled.get_number("DEEP") or filled.get_number("LONG")
     many = max(1, math.ceil(long / deep - 1e-9))
@@ -202,7 +202,7 @@ def _flats(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> N
     _lines(filled, setting, code).write_face_milling(filled.get_number("T"), faces)
 
 
-def _flats_checks(filled: FilledShape, _setting: ProgramSettings) -> Iterator[FieldError]:
+def _flats_checks(filled: ShapeInstance, _setting: ProgramSettings) -> Iterator[FieldError]:
     across, stock, many = (
         filled.get_number("ACROSS"),
         filled.get_number("FROM"),
@@ -236,7 +236,7 @@ def _flats_checks(filled: FilledShape, _setting: ProgramSettings) -> Iterator[Fi
         )
 
 
-def _flats_sketch(filled: FilledShape) -> Sketch:
+def _flats_sketch(filled: ShapeInstance) -> Sketch:
     many = max(2, int(filled.get_number("FLATS") or 6))
     round_ = [(10 * math.cos(k * math.pi / 24), 10 * math.sin(k * math.pi / 24)) for k in range(48)]
     flat = 8.0
@@ -295,7 +295,7 @@ FLATS_SHAPE = Shape(
 # --- Slots in the plane ZC
 
 
-def _slot(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _slot(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     radius, deep = filled.get_number("FROM") / 2.0, filled.get_number("DEEP")
     levels = max(1, math.ceil(deep / (filled.get_number("PASS") or deep) - 1e-9))
     angles = [
@@ -316,7 +316,7 @@ def _slot(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> No
     _lines(filled, setting, code).write_slots(filled.get_number("T"), slots)
 
 
-def _slot_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+def _slot_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
     if filled.get_number("DEEP") > filled.get_number("FROM") / 2.0:
         yield FieldError(
             "DEEP",
@@ -338,7 +338,7 @@ def _slot_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[Fiel
     yield from check_flute_length(filled, setting)
 
 
-def _slot_sketch(_filled: FilledShape) -> Sketch:
+def _slot_sketch(_filled: ShapeInstance) -> Sketch:
     solid = make_part_outline((0, -10), (0, 10), (-28, 10), (-28, -10))
     return make_sketch(
         solid,
@@ -383,10 +383,10 @@ SLOT_SHAPE = Shape(
 
 
 def _live_checks(checks: ShapeCheck) -> ShapeCheck:
-    def checked(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
-        if not setting.shop.third_axis:
+    def check_live_tool_shape(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
+        if not setting.shop.third_axis_name:
             yield FieldError("T", "This machine has no third axis that holds and turns the part.")
-        elif setting.shop.third_axis.startswith("Y") and filled.shape.name != CROSS_HOLES_SHAPE.name:
+        elif setting.shop.third_axis_name.startswith("Y") and filled.shape.name != CROSS_HOLES_SHAPE.name:
             yield FieldError(
                 "T",
                 "The third axis of this machine is named Y, but the plane of this shape needs a separate Y "
@@ -400,7 +400,7 @@ def _live_checks(checks: ShapeCheck) -> ShapeCheck:
             )
         yield from checks(filled, setting)
 
-    return checked
+    return check_live_tool_shape
 
 
 def _spindle_two(shape: Shape) -> Shape:

@@ -15,7 +15,7 @@ from core.extras.shapes.common_fields import (
 )
 from core.extras.shapes.contour import ContourPoint
 from core.extras.shapes.cutting_data import Operation
-from core.extras.shapes.editor_shape import FilledShape, Shape
+from core.extras.shapes.editor_shape import Shape, ShapeInstance
 from core.extras.shapes.forms.turning import (
     ALLOWANCE_FIELD,
     COMPENSATION_FIELD,
@@ -45,7 +45,7 @@ from core.sketch import Dimension, Sketch, make_cut_outline, make_part_outline, 
 CHAMFER, ROUND = "CHAMFER", "RADIUS"
 
 
-def _taper_rows(filled: FilledShape) -> tuple[ContourPoint, ...]:
+def _taper_rows(filled: ShapeInstance) -> tuple[ContourPoint, ...]:
     begin = -filled.get_number("AT")
     return ContourPoint(filled.get_number("SMALL"), begin), ContourPoint(
         filled.get_number("LARGE"), begin - filled.get_number("LONG")
@@ -59,11 +59,11 @@ def _large(values: FieldValues, _setting: ProgramSettings) -> FieldValue | None:
     return round(number(values, "SMALL") + 2.0 * number(values, "LONG") * math.tan(math.radians(angle)), 5)
 
 
-def _taper(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _taper(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     write_contour(filled, setting, code, _taper_rows(filled), is_inside=False)
 
 
-def _taper_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+def _taper_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
     if filled.get_number("LARGE") < filled.get_number("SMALL"):
         yield FieldError(
             "LARGE", "The taper gets smaller toward the chuck, so a turning tool would run into the stock."
@@ -81,7 +81,7 @@ def _taper_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[Fie
     yield from check_cutting_data(filled, setting)
 
 
-def _taper_sketch(_filled: FilledShape) -> Sketch:
+def _taper_sketch(_filled: ShapeInstance) -> Sketch:
     solid = make_part_outline((0, 0), (0, 5), (-4, 5), (-16, 9), (-24, 9), (-24, 0))
     return make_sketch(
         solid,
@@ -125,7 +125,7 @@ TAPER_SHAPE = Shape(
 )
 
 
-def _edge_rows(filled: FilledShape) -> tuple[ContourPoint, ...]:
+def _edge_rows(filled: ShapeInstance) -> tuple[ContourPoint, ...]:
     across, edge, at = filled.get_number("DIAM"), filled.get_number("EDGE"), -filled.get_number("AT")
     inside = filled.get_text("SIDE") == INSIDE
     begin = across + 2.0 * edge if inside else across - 2.0 * edge
@@ -133,11 +133,11 @@ def _edge_rows(filled: FilledShape) -> tuple[ContourPoint, ...]:
     return ContourPoint(begin, at), ContourPoint(across, at - edge, arc=arc)
 
 
-def _edge(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _edge(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     write_contour(filled, setting, code, _edge_rows(filled), is_inside=filled.get_text("SIDE") == INSIDE)
 
 
-def _edge_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+def _edge_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
     across, edge = filled.get_number("DIAM"), filled.get_number("EDGE")
     yield from check_pass_depth(filled, setting, "EDGE", edge * math.sqrt(0.5))
     if filled.get_text("SIDE") == OUTSIDE and 2.0 * edge > across + 1e-9:
@@ -154,7 +154,7 @@ def _edge_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[Fiel
     yield from check_cutting_data(filled, setting)
 
 
-def _edge_sketch(filled: FilledShape) -> Sketch:
+def _edge_sketch(filled: ShapeInstance) -> Sketch:
     top = ((0, 6), (-4, 10)) if filled.get_text("KIND") == CHAMFER else ((0, 6), (-1.2, 8.8), (-4, 10))
     solid = make_part_outline((0, 0), *top, (-22, 10), (-22, 0))
     return make_sketch(
@@ -188,7 +188,7 @@ EDGE_SHAPE = Shape(
 )
 
 
-def _bore_rows(filled: FilledShape) -> tuple[ContourPoint, ...]:
+def _bore_rows(filled: ShapeInstance) -> tuple[ContourPoint, ...]:
     across, deep, edge = filled.get_number("DIAM"), -filled.get_number("DEEP"), filled.get_number("EDGE")
     mouth = (
         (ContourPoint(across + 2.0 * edge, 0.0), ContourPoint(across, -edge))
@@ -198,11 +198,11 @@ def _bore_rows(filled: FilledShape) -> tuple[ContourPoint, ...]:
     return *mouth, ContourPoint(None, deep), ContourPoint(filled.get_number("HOLE"), None)
 
 
-def _bore(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _bore(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     write_contour(filled, setting, code, _bore_rows(filled), is_inside=True)
 
 
-def _bore_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+def _bore_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
     across, deep, hole = filled.get_number("DIAM"), filled.get_number("DEEP"), filled.get_number("HOLE")
     if hole >= across:
         yield FieldError(
@@ -250,7 +250,7 @@ def _bore_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[Fiel
     yield from check_cutting_data(filled, setting)
 
 
-def _bore_sketch(_filled: FilledShape) -> Sketch:
+def _bore_sketch(_filled: ShapeInstance) -> Sketch:
     wall = make_part_outline((0, 10), (0, 7), (-1.5, 5.5), (-15, 5.5), (-15, 3), (-24, 3), (-24, 10))
     return make_sketch(
         wall,

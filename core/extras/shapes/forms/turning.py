@@ -25,16 +25,16 @@ from core.extras.shapes.contour import (
     find_contour_errors,
     make_outline,
     make_point_label,
-    resolve_points,
+    resolve_contour_points,
 )
 from core.extras.shapes.cutting_data import (
     Operation,
-    find_max_depth,
+    find_max_cutting_depth,
     propose_facing_depth,
     propose_finish_allowance,
     propose_roughing_depth,
 )
-from core.extras.shapes.editor_shape import FilledShape, Shape
+from core.extras.shapes.editor_shape import Shape, ShapeInstance
 from core.extras.shapes.lines.code_lines import CodeWriter, ContourTurning
 from core.extras.shapes.shape_fields import (
     FieldError,
@@ -79,7 +79,7 @@ def _extent(rows: Sequence[ContourPoint]) -> FieldValues:
     Moves square across the face are ignored. The result is empty if roughing along Z cannot cut the
     contour.
     """
-    there = resolve_points(rows)
+    there = resolve_contour_points(rows)
     turned = [r for a, b in pairwise(there) if abs(a[0] - b[0]) > POINT_TOLERANCE for r in (a[1], b[1])]
     if not turned or any(b[0] > a[0] + POINT_TOLERANCE for a, b in pairwise(there)):
         return {}
@@ -136,7 +136,7 @@ LABEL_FIELD = ShapeField(
 
 
 def write_spindle_start(
-    filled_shape: FilledShape, settings: ProgramSettings, code: CodeWriter, x: float, z: float | None
+    filled_shape: ShapeInstance, settings: ProgramSettings, code: CodeWriter, x: float, z: float | None
 ) -> None:
     """Write the tool call, the spindle start and the approach.
 
@@ -150,7 +150,7 @@ def write_spindle_start(
         )
 
 
-def write_spindle_end(filled_shape: FilledShape, code: CodeWriter) -> None:
+def write_spindle_end(filled_shape: ShapeInstance, code: CodeWriter) -> None:
     """Write the retract to the tool change position and the switch back to constant rpm."""
     code.write_retract()
     if filled_shape.get_number("SURF"):
@@ -161,7 +161,7 @@ def write_spindle_end(filled_shape: FilledShape, code: CodeWriter) -> None:
 
 
 def write_contour(
-    filled_shape: FilledShape,
+    filled_shape: ShapeInstance,
     settings: ProgramSettings,
     code: CodeWriter,
     rows: Sequence[ContourPoint],
@@ -172,7 +172,7 @@ def write_contour(
 
     If a roughing depth is specified, roughing passes precede the contour.
     """
-    there = resolve_points(rows)
+    there = resolve_contour_points(rows)
     clear_radius = _calculate_clear_radius(filled_shape, settings, there, is_inside=is_inside)
     rough, comp = filled_shape.get_number("ROUGH"), filled_shape.get_number("COMP")
     write_spindle_start(
@@ -196,7 +196,7 @@ def write_contour(
 
 
 def _calculate_clear_radius(
-    filled_shape: FilledShape,
+    filled_shape: ShapeInstance,
     settings: ProgramSettings,
     there: Sequence[tuple[float, float]],
     *,
@@ -211,12 +211,12 @@ def _calculate_clear_radius(
     return max(stock, *radii) + free
 
 
-def _contour_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+def _contour_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
     inside = filled.get_text("SIDE") == INSIDE
     yield from find_contour_errors(filled.contour_points)
     yield from check_compensation(filled, setting)
     yield from check_cutting_data(filled, setting)
-    there = resolve_points(filled.contour_points)
+    there = resolve_contour_points(filled.contour_points)
     if filled.get_number("ROUGH"):
         for at, (before, here) in enumerate(pairwise(there), 2):
             if here[0] > before[0] + 1e-9:
@@ -261,7 +261,7 @@ def _check_first_move(there: Sequence[tuple[float, float]], *, is_inside: bool) 
         )
 
 
-def check_compensation(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[FieldError]:
+def check_compensation(filled_shape: ShapeInstance, settings: ProgramSettings) -> Iterator[FieldError]:
     """Yield an error if nose compensation (G41) is used in a subroutine, where it has no effect."""
     if filled_shape.get_number("COMP") and settings.is_subroutine and settings.dialect is Dialect.OMNITURN:
         yield FieldError(
@@ -271,7 +271,7 @@ def check_compensation(filled_shape: FilledShape, settings: ProgramSettings) -> 
         )
 
 
-def check_cutting_data(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[FieldError]:
+def check_cutting_data(filled_shape: ShapeInstance, settings: ProgramSettings) -> Iterator[FieldError]:
     """Yield errors for speeds, feeds and depths that the machine or the insert does not permit."""
     yield from check_rpm(filled_shape, settings)
     yield from check_feeds(filled_shape, settings, "FEED", "RFEED")
@@ -286,17 +286,17 @@ def check_cutting_data(filled_shape: FilledShape, settings: ProgramSettings) -> 
             ),
         )
     stock, end = _stock_and_end(
-        {**filled_shape.shape.calculate_extent(filled_shape.contour_points), **filled_shape.values}
+        {**filled_shape.shape.calculate_extent(filled_shape.contour_points), **filled_shape.field_values}
     )
     if filled_shape.shape.find_field("ROUGH") is not None:
         yield from check_pass_depth(filled_shape, settings, "ROUGH", rough or abs(stock - end) / 2.0)
 
 
 def check_pass_depth(
-    filled_shape: FilledShape, settings: ProgramSettings, word: str, depth: float
+    filled_shape: ShapeInstance, settings: ProgramSettings, word: str, depth: float
 ) -> Iterator[FieldError]:
     """Yield an error if a pass is deeper than the insert permits."""
-    most = find_max_depth(settings, filled_shape.get_number("T"))
+    most = find_max_cutting_depth(settings, filled_shape.get_number("T"))
     if depth > most + POINT_TOLERANCE:
         yield FieldError(
             word,
@@ -310,17 +310,17 @@ def check_pass_depth(
         )
 
 
-def _turn(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _turn(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     write_contour(filled, setting, code, filled.contour_points, is_inside=filled.get_text("SIDE") == INSIDE)
 
 
-def _turn_sketch(filled: FilledShape) -> Sketch:
+def _turn_sketch(filled: ShapeInstance) -> Sketch:
     rows = [row for row in filled.contour_points if not row.empty]
     drawn = make_outline(rows)
     if len(drawn) < 2:
         return make_sketch(make_part_outline((0, 0), (0, 5), (-12, 5), (-12, 0)))
     across = max(filled.get_number("FROM"), 2.0 * max(r for _, r in drawn))
-    dims = tuple(Dimension(make_point_label(k), at) for k, at in enumerate(resolve_points(rows), 1))
+    dims = tuple(Dimension(make_point_label(k), at) for k, at in enumerate(resolve_contour_points(rows), 1))
     if filled.get_text("SIDE") == INSIDE:
         back = min(z for z, _ in drawn)
         wall = 1.3 * max(r for _, r in drawn)
@@ -369,7 +369,7 @@ TURNING_SHAPE = Shape(
 # --- Face
 
 
-def _face(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _face(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     at, stock, deep = filled.get_number("AT"), filled.get_number("STOCK"), filled.get_number("DEEP")
     start, end = filled.get_number("FROM") / 2.0 + _BESIDE[setting.metric], filled.get_number("TO") / 2.0
     passes = max(1, math.ceil(stock / deep - 1e-9)) if deep else 1
@@ -395,7 +395,7 @@ def _facing(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
     return propose_facing_depth(setting, number(values, "T"), number(values, "FROM"))
 
 
-def _face_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+def _face_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
     yield from check_pass_depth(
         filled, setting, "DEEP", min(filled.get_number("DEEP"), filled.get_number("STOCK"))
     )
@@ -412,7 +412,7 @@ def _face_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[Fiel
     yield from check_feeds(filled, setting, "FEED")
 
 
-def _face_sketch(_filled: FilledShape) -> Sketch:
+def _face_sketch(_filled: ShapeInstance) -> Sketch:
     solid = make_part_outline((0, 0), (0, 10), (-22, 10), (-22, 0))
     return make_sketch(
         solid,

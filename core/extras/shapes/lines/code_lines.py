@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from core.extras.shapes.contour import POINT_TOLERANCE, ContourPoint, resolve_points
+from core.extras.shapes.contour import POINT_TOLERANCE, ContourPoint, resolve_contour_points
 from core.extras.shapes.shape_fields import ProgramSettings
 from core.language.source import Dialect
 
@@ -19,15 +19,15 @@ from core.language.source import Dialect
 class BarFeedLoop(NamedTuple):
     """A loop that feeds the bar and makes ``part_count`` parts of the length ``part_length``.
 
-    The bar is fed at ``feed_rate`` per minute against the tool ``stop_tool``. ``facing_stock`` is the stock
-    left on the face. If ``feeds_each_part`` is True, the bar is fed for each part, otherwise only once.
-    ``subroutine_number`` is the number of the subroutine that machines the part.
+    The bar is fed at ``feed_rate`` per minute against the tool ``stop_tool_number``. ``facing_stock`` is the
+    stock left on the face. If ``feeds_bar_per_part`` is True, the bar is fed for each part, otherwise only
+    once. ``subroutine_number`` is the number of the subroutine that machines the part.
     """
 
     part_count: int
     part_length: float
-    feeds_each_part: bool
-    stop_tool: float
+    feeds_bar_per_part: bool
+    stop_tool_number: float
     facing_stock: float
     feed_rate: float
     subroutine_number: int
@@ -35,7 +35,7 @@ class BarFeedLoop(NamedTuple):
     @property
     def feed_length(self) -> float:
         """Return the length by which the bar advances at each feed."""
-        return self.part_length if self.feeds_each_part else self.part_count * self.part_length
+        return self.part_length if self.feeds_bar_per_part else self.part_count * self.part_length
 
 
 def write_bar_feed_loop(code: CodeWriter, loop: BarFeedLoop) -> None:
@@ -49,15 +49,15 @@ def _omniturn(code: CodeWriter, bars: BarFeedLoop) -> None:
     The G97 line carries the comment of the loop, because a comment is not permitted inside the loop.
     """
     call, loop = f"P{bars.subroutine_number}", f"LS{bars.part_count}"
-    code.append_lines("G97", loop) if bars.feeds_each_part else code.append_lines("G97")
-    code.append_lines(f"T{bars.stop_tool:.0f}")
+    code.append_lines("G97", loop) if bars.feeds_bar_per_part else code.append_lines("G97")
+    code.append_lines(f"T{bars.stop_tool_number:.0f}")
     _write_stop_move(code, bars)
     code.append_lines(
         "M13", f"G94F{format_short_number(bars.feed_rate)}{code.format_z(bars.facing_stock)}", "M12"
     )
     code.clear_modal_state()
     code.write_retract()
-    if bars.feeds_each_part:
+    if bars.feeds_bar_per_part:
         code.append_lines(call, "LF")
     else:
         code.append_lines(loop, call, f"G10{code.format_point(0.0, -bars.part_length)}", "LF", "T0")
@@ -70,7 +70,9 @@ def _sinumerik(code: CodeWriter, bars: BarFeedLoop) -> None:
     """
     opens, closes = code.settings.shop.chuck_codes or (0, 0)
     begin, end = f"BAR_{bars.subroutine_number}", f"BAR_{bars.subroutine_number}_END"
-    code.append_lines(*([f"{begin}:"] if bars.feeds_each_part else []), f"T{bars.stop_tool:.0f} D1", "M5")
+    code.append_lines(
+        *([f"{begin}:"] if bars.feeds_bar_per_part else []), f"T{bars.stop_tool_number:.0f} D1", "M5"
+    )
     code.clear_modal_state()
     _write_stop_move(code, bars)
     code.append_lines(
@@ -80,13 +82,13 @@ def _sinumerik(code: CodeWriter, bars: BarFeedLoop) -> None:
     )
     code.clear_modal_state()
     code.write_retract()
-    code.append_lines(*([] if bars.feeds_each_part else [f"{begin}:"]), f"PART_{bars.subroutine_number}")
-    if not bars.feeds_each_part:
+    code.append_lines(*([] if bars.feeds_bar_per_part else [f"{begin}:"]), f"PART_{bars.subroutine_number}")
+    if not bars.feeds_bar_per_part:
         code.append_lines(" ".join(("ATRANS", code.format_z(-bars.part_length))))
     code.append_lines(f"{end}:")
     if bars.part_count > 1:
         code.append_lines(" ".join(("REPEAT", begin, end, f"P={bars.part_count - 1}")))
-    if not bars.feeds_each_part:
+    if not bars.feeds_bar_per_part:
         code.append_lines("TRANS")
 
 
@@ -100,9 +102,9 @@ class ContourTurning(NamedTuple):
     """Data for turning a contour: roughing passes, then one pass along the contour.
 
     ``roughing_depth`` is the depth of cut of a roughing pass; 0 means no roughing. The contour ends at
-    ``clear_radius``, which is clear of the stock. ``compensation_offset`` is the offset number of the nose
-    compensation; 0 means no compensation. ``roughing_label`` is a number for the contour in languages that
-    label contours.
+    ``clear_radius``, which is clear of the stock. ``compensation_number`` is the offset number of the nose
+    compensation; 0 means no compensation. ``contour_label_number`` is a number for the contour in languages
+    that label contours.
     """
 
     points: Sequence[ContourPoint]
@@ -112,8 +114,8 @@ class ContourTurning(NamedTuple):
     roughing_depth: float = 0.0
     finish_allowance: float = 0.0
     roughing_feed: float = 0.0
-    compensation_offset: float = 0.0
-    roughing_label: float = 0.0
+    compensation_number: float = 0.0
+    contour_label_number: float = 0.0
 
 
 class TappingCycle(NamedTuple):
@@ -222,11 +224,11 @@ class CodeWriter:
         self._feed, self._rapid = word, False
         return again
 
-    def write_feed(self, feed: float) -> None:
+    def write_feed_line(self, feed: float) -> None:
         """Write a line that contains only a feed, for the following moves."""
         self.append_lines(self.format_feed(feed) or f"F{format_short_number(feed, 6)}")
 
-    def write_line(self, x: float | None, z: float | None, chamfer: float, radius: float) -> None:
+    def write_straight_line(self, x: float | None, z: float | None, chamfer: float, radius: float) -> None:
         """Write a straight line of a contour, with the chamfer or radius at its end."""
         corner = self.format_z(chamfer, "C") if chamfer else self.format_z(radius, "R") if radius else ""
         self.append_lines(self.format_feed(0.0) + self.format_point(x, z) + corner)
@@ -256,10 +258,10 @@ class CodeWriter:
 
         Roughing and nose compensation are written only if they are specified.
         """
-        there = resolve_points(turning.points)
+        there = resolve_contour_points(turning.points)
         first = there[0]
         if turning.roughing_depth:
-            self.write_feed(turning.roughing_feed)
+            self.write_feed_line(turning.roughing_feed)
             self.append_lines(
                 f"G75{self.format_z(turning.roughing_depth, 'I')}"
                 f"{self.format_z(turning.finish_allowance, 'U')}F{_feed(turning.roughing_feed)}"
@@ -268,11 +270,11 @@ class CodeWriter:
             self.write_contour(turning.points)
             self.append_lines("RF")
             self.write_rapid(x=first[1])
-        if turning.compensation_offset:
-            self.write_feed(turning.feed)
+        if turning.compensation_number:
+            self.write_feed_line(turning.feed)
             self.append_lines(
                 "G42" if turning.is_inside else "G41",
-                f"{self.format_z(first[0])}D{turning.compensation_offset:.0f}",
+                f"{self.format_z(first[0])}D{turning.compensation_number:.0f}",
             )
         else:
             self.write_cut(z=first[0], feed=turning.feed)
@@ -282,7 +284,7 @@ class CodeWriter:
 
     def write_contour(self, points: Sequence[ContourPoint]) -> None:
         """Write the lines of a contour from its first point, which the tool has already reached."""
-        for (_, before), (row, here) in pairwise(zip(points, resolve_points(points), strict=True)):
+        for (_, before), (row, here) in pairwise(zip(points, resolve_contour_points(points), strict=True)):
             x = (
                 here[1]
                 if row.x is not None and (row.arc or abs(here[1] - before[1]) > POINT_TOLERANCE)
@@ -296,7 +298,7 @@ class CodeWriter:
             if row.arc:
                 self.write_arc(here[1], here[0], abs(row.arc), is_convex=row.arc > 0)
             elif x is not None or z is not None:
-                self.write_line(x, z, row.chamfer, row.radius)
+                self.write_straight_line(x, z, row.chamfer, row.radius)
 
     def cancel_compensation(self, offset: float) -> None:
         """Write the end of nose compensation, if the contour used compensation.

@@ -31,15 +31,15 @@ class RadialHoles(NamedTuple):
 class FaceMilling(NamedTuple):
     """Data for milling around the end of a part, repeated at each depth.
 
-    ``path`` contains the positions of the tool center as (x, y) from the axis. ``entry_x`` is an X at Y 0
-    that is clear of the part. If ``is_closed`` is False, the tool returns to it after each round. If
+    ``path_points`` contains the positions of the tool center as (x, y) from the axis. ``entry_x`` is an X at
+    Y 0 that is clear of the part. If ``is_closed`` is False, the tool returns to it after each round. If
     ``is_closed`` is True, the path leads around the part, and the tool moves directly to its first point,
     which is also clear of the part.
     """
 
     entry_x: float
-    path: list[tuple[float, float]]
-    depths_z: list[float]
+    path_points: list[tuple[float, float]]
+    z_levels: list[float]
     feed_rate: float
     is_closed: bool
 
@@ -91,7 +91,7 @@ class LiveToolWriter:
 
     def _angle(self, word: str, degrees: float) -> None:
         if word == "CA" or degrees:
-            wait = f"G04F{format_short_number(_wait(degrees, self._setting.shop.max_c_rpm), 1)}"
+            wait = f"G04F{format_short_number(_wait(degrees, self._setting.shop.max_c_axis_rpm), 1)}"
             self._code.append_lines(f"{word}{format_short_number(degrees, 3)}", wait)
 
     def write_holes(self, tool: float, holes: RadialHoles) -> None:
@@ -113,13 +113,13 @@ class LiveToolWriter:
     def write_face_milling(self, tool: float, faces: FaceMilling) -> None:
         """Write the moves that mill around the face in the XC plane, starting at negative X."""
         code, rate = self._code, f"F{format_short_number(faces.feed_rate)}"
-        entry, (first, *rest) = format_short_number(faces.entry_x, 4), faces.path
+        entry, (first, *rest) = format_short_number(faces.entry_x, 4), faces.path_points
         begin = f"X{format_short_number(first[0], 4)}Y{format_short_number(first[1], 4)}"
         self._write_live_tool_start(tool, -faces.entry_x, self._setting.near)
         code.append_lines(
             f"G94{rate}", "(~PLXC)"
         )  # an earlier shape may have left feed per revolution in force
-        for k, z in enumerate(faces.depths_z):
+        for k, z in enumerate(faces.z_levels):
             if k:
                 code.append_lines(f"({begin if faces.is_closed else f'X{entry}Y0'}{self._quick})")
             code.append_lines(f"({code.format_z(z)}{rate})", f"({begin}{rate})")
@@ -178,7 +178,7 @@ class SinumerikLiveToolWriter(LiveToolWriter):
         self._code.append_lines("M2=5")
 
     def _c(self, degrees: float) -> str:
-        name = self._setting.shop.third_axis
+        name = self._setting.shop.third_axis_name
         return f"{name}{'' if len(name) == 1 else '='}{format_sinumerik_number(degrees, 3)}"
 
     def _words(self, degrees: bool) -> None:
@@ -206,11 +206,11 @@ class SinumerikLiveToolWriter(LiveToolWriter):
         self._write_live_tool_start(tool, faces.entry_x, self._setting.near)
         self._words(degrees=False)
         code.append_lines("G17", "TRANSMIT")
-        for k, z in enumerate(faces.depths_z):
+        for k, z in enumerate(faces.z_levels):
             if k and faces.is_closed:
-                code.append_lines(f"G0 {self._xy(*faces.path[0])}")
+                code.append_lines(f"G0 {self._xy(*faces.path_points[0])}")
             code.append_lines(f"G1 {code.format_z(z)} {rate}")
-            code.lines += [self._xy(x, y) for x, y in faces.path]
+            code.lines += [self._xy(x, y) for x, y in faces.path_points]
             if not faces.is_closed:
                 code.append_lines(self._xy(faces.entry_x, 0.0))
         code.append_lines(f"G0 {code.format_z(self._setting.near)}", "TRAFOOF", "G18")

@@ -5,7 +5,7 @@ Grooves are cut with G1, or with CYCLE93 if the form specifies the second cuttin
 
 from __future__ import annotations
 
-from core.extras.shapes.contour import resolve_points
+from core.extras.shapes.contour import resolve_contour_points
 from core.extras.shapes.lines.code_lines import (
     CodeWriter,
     ContourTurning,
@@ -99,11 +99,11 @@ class SinumerikCodeWriter(CodeWriter):
         said, self._feed = ("" if word == self._feed else word), word
         return said
 
-    def write_feed(self, feed: float) -> None:
+    def write_feed_line(self, feed: float) -> None:
         """Write a line that contains only a feed, for the following cycle."""
         self.append_lines(self._fresh(feed) or f"F{format_sinumerik_number(feed, 6)}")
 
-    def write_line(self, x: float | None, z: float | None, chamfer: float, radius: float) -> None:
+    def write_straight_line(self, x: float | None, z: float | None, chamfer: float, radius: float) -> None:
         """Write a straight line of a contour, with the chamfer or radius at its end."""
         corner = (
             self.format_z(chamfer, "CHR=") if chamfer else self.format_z(radius, "RND=") if radius else ""
@@ -132,7 +132,10 @@ class SinumerikCodeWriter(CodeWriter):
         CYCLE95 finds the contour between two labels. The cycle removes stock only up to the outermost point
         of its contour, so the contour includes the retract move.
         """
-        there, name = resolve_points(turning.points), f"CONTOUR_{turning.roughing_label or 1.0:.0f}"
+        there, name = (
+            resolve_contour_points(turning.points),
+            f"CONTOUR_{turning.contour_label_number or 1.0:.0f}",
+        )
         (z, x), feed = there[0], self._fresh(turning.feed)
         if turning.roughing_depth:
             fast = format_sinumerik_number(turning.roughing_feed, 6)
@@ -151,7 +154,7 @@ class SinumerikCodeWriter(CodeWriter):
             )
             self.clear_modal_state()
             self.write_rapid(x, z + self.settings.near)
-        if turning.compensation_offset:
+        if turning.compensation_number:
             self.append_lines("G41" if turning.is_inside else "G42")
         if turning.roughing_depth:
             self.append_lines(f"{name}:")
@@ -159,7 +162,7 @@ class SinumerikCodeWriter(CodeWriter):
         self._move("G1", self.format_point(x, z), feed or f"F{format_sinumerik_number(turning.feed, 6)}")
         self.write_contour(turning.points)
         off, leaves = (
-            "G40" if turning.compensation_offset else "",
+            "G40" if turning.compensation_number else "",
             abs(turning.clear_radius - there[-1][1]) > 1e-9,
         )
         if turning.roughing_depth:

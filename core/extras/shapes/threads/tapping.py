@@ -9,7 +9,7 @@ from fractions import Fraction
 
 from core.extras.shapes.common_fields import MAX_RPM, check_flute_length, check_rpm, make_tool_field
 from core.extras.shapes.cutting_data import Operation, rpm
-from core.extras.shapes.editor_shape import FilledShape, Shape
+from core.extras.shapes.editor_shape import Shape, ShapeInstance
 from core.extras.shapes.lines.code_lines import CodeWriter, TappingCycle, format_short_number
 from core.extras.shapes.shape_fields import (
     FieldError,
@@ -34,8 +34,8 @@ from core.extras.shapes.threads.thread_values import (
     RIGHT,
     check_thread_name,
     find_thread_limits,
-    get_series,
-    list_classes_for_side,
+    get_thread_series,
+    list_side_tolerance_classes,
 )
 from core.message import Message
 from core.part.tool_shape import ToolKind
@@ -91,21 +91,21 @@ def _rigid(values: FieldValues) -> bool:
 
 
 def _named(values: FieldValues) -> bool:
-    return get_series(values) is not ThreadSeries.CUSTOM
+    return get_thread_series(values) is not ThreadSeries.CUSTOM
 
 
 def _pitch(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
-    found = find_thread_size(get_series(values), text(values, "SIZE"))
+    found = find_thread_size(get_thread_series(values), text(values, "SIZE"))
     if found is None:
         return None
-    return round(convert_length(found.pitch, get_series(values), is_metric=setting.metric), 6)
+    return round(convert_length(found.pitch, get_thread_series(values), is_metric=setting.metric), 6)
 
 
 def _across(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
-    found = find_thread_size(get_series(values), text(values, "SIZE"))
+    found = find_thread_size(get_thread_series(values), text(values, "SIZE"))
     if found is None:
         return None
-    return round(convert_length(found.diameter, get_series(values), is_metric=setting.metric), 4)
+    return round(convert_length(found.diameter, get_thread_series(values), is_metric=setting.metric), 4)
 
 
 def _turns(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
@@ -115,12 +115,12 @@ def _turns(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
     return max(50.0, 50.0 * math.floor(min(_SLOW * rpm(Operation.DRILL, across, setting), _MOST_RPM) / 50.0))
 
 
-def _tap(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _tap(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     pitch = filled.get_number("PITCH")
     start = math.ceil(max(setting.near, 3.0 * pitch) * 100.0 - 1e-6) / 100.0
     into = "M04" if filled.get_text("HAND") == LEFT else "M03"
-    end = -(filled.get_number("DEEP") - (0.0 if _rigid(filled.values) else filled.get_number("SHORT")))
-    held = _rigid(filled.values)
+    end = -(filled.get_number("DEEP") - (0.0 if _rigid(filled.field_values) else filled.get_number("SHORT")))
+    held = _rigid(filled.field_values)
     code.write_tapping(
         filled.get_number("T"),
         TappingCycle(start, end, pitch, filled.get_number("RPM"), into, filled.get_number("DWELL"), held),
@@ -128,8 +128,8 @@ def _tap(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> Non
     code.write_retract()
 
 
-def _checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
-    series, pitch = get_series(filled.values), filled.get_number("PITCH")
+def _checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
+    series, pitch = get_thread_series(filled.field_values), filled.get_number("PITCH")
     if series in TAPERED_SERIES or series is ThreadSeries.ACME:
         yield FieldError(
             "SERIES",
@@ -147,7 +147,7 @@ def _checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldErro
                 maximum=f"{most:g}",
             ),
         )
-    if filled.get_number("SHORT") >= filled.get_number("DEEP") and not _rigid(filled.values):
+    if filled.get_number("SHORT") >= filled.get_number("DEEP") and not _rigid(filled.field_values):
         yield FieldError(
             "SHORT",
             Message(
@@ -183,11 +183,13 @@ def _checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldErro
     yield from check_rpm(filled, setting)
 
 
-def _says(filled: FilledShape, setting: ProgramSettings) -> tuple[str, ...]:
-    known = find_thread_limits({**filled.values, "SIDE": INSIDE, "CLASS": _usual_class(filled)}, setting)
+def _says(filled: ShapeInstance, setting: ProgramSettings) -> tuple[str, ...]:
+    known = find_thread_limits(
+        {**filled.field_values, "SIDE": INSIDE, "CLASS": _usual_class(filled)}, setting
+    )
     if known is None:
         return ()
-    series = get_series(filled.values)
+    series = get_thread_series(filled.field_values)
     places, unit = (2 if setting.metric else 4), convert_length(1.0, series, is_metric=setting.metric)
     least, most = (format_short_number(value * unit, places) for value in known.minor_diameter)
     hole_size_text = Message(
@@ -219,12 +221,12 @@ def _called(name: str, size: float, series: ThreadSeries, settings: ProgramSetti
     )
 
 
-def _usual_class(filled: FilledShape) -> str:
-    allowed = list_classes_for_side({**filled.values, "SIDE": INSIDE})
+def _usual_class(filled: ShapeInstance) -> str:
+    allowed = list_side_tolerance_classes({**filled.field_values, "SIDE": INSIDE})
     return allowed[0] if allowed else ""
 
 
-def _sketch(_filled: FilledShape) -> Sketch:
+def _sketch(_filled: ShapeInstance) -> Sketch:
     wall = make_part_outline((0, 0), (0, 10), (-24, 10), (-24, 0))
     teeth = [(-k, 4.0 if k % 2 else 3.4) for k in range(15)]
     body = make_tool_outline((-14, -3.4), (-14, 3.4), (8, 3.4), (8, -3.4))
@@ -272,18 +274,18 @@ TAPPING_SHAPE = Shape(
 )
 
 
-def _sinumerik_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+def _sinumerik_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
     yield from _checks(filled, setting)
-    if not _rigid(filled.values):
+    if not _rigid(filled.field_values):
         return
-    if not setting.shop.has_spindle_as_c:
+    if not setting.shop.is_spindle_c_axis:
         yield FieldError(
             "HOLDER",
             "The spindle of this machine cannot be positioned and turned in sync with Z: "
             "use a floating tap holder.",
         )
-    elif filled.get_number("RPM") > setting.shop.max_c_rpm:
-        most = f"{setting.shop.max_c_rpm:g}"
+    elif filled.get_number("RPM") > setting.shop.max_c_axis_rpm:
+        most = f"{setting.shop.max_c_axis_rpm:g}"
         yield FieldError(
             "RPM",
             Message(
@@ -297,7 +299,7 @@ def _sinumerik_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator
 def _propose_tapping_rpm(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
     """Return the proposed rpm; for a rigid tap it is limited to the maximum rpm of the C axis."""
     turns = _turns(values, settings)
-    most = settings.shop.max_c_rpm if _rigid(values) else math.inf
+    most = settings.shop.max_c_axis_rpm if _rigid(values) else math.inf
     return min(turns, most) if isinstance(turns, float) else turns
 
 
@@ -308,7 +310,7 @@ SINUMERIK_TAPPING_SHAPE = replace(
         TAPPING_SHAPE.fields[0],
         ShapeField("HOLDER", "HOLDER", FieldKind.CHOICE, FLOATING, (FLOATING, RIGID)),
         *(
-            replace(each, default=_propose_tapping_rpm) if each.word == "RPM" else each
+            replace(each, default=_propose_tapping_rpm) if each.name == "RPM" else each
             for each in TAPPING_SHAPE.fields[1:]
         ),
     ),

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from core.extras.shapes.common_fields import check_rpm
 from core.extras.shapes.cutting_data import Operation, rpm
-from core.extras.shapes.editor_shape import FilledShape
+from core.extras.shapes.editor_shape import ShapeInstance
 from core.extras.shapes.shape_fields import (
     FieldError,
     FieldValue,
@@ -40,7 +40,7 @@ _TURNS_BEFORE = 3.0  # revolutions of run-up if the acceleration of the axis is 
 _TAPER = 1.0 / 16.0
 
 
-def get_series(values: FieldValues) -> ThreadSeries:
+def get_thread_series(values: FieldValues) -> ThreadSeries:
     """Return the thread series that the operator has chosen."""
     return ThreadSeries(text(values, "SERIES") or ThreadSeries.CUSTOM)
 
@@ -50,7 +50,7 @@ def find_thread_limits(values: FieldValues, settings: ProgramSettings) -> Thread
 
     The limits are in the unit of the series.
     """
-    series, inside = get_series(values), text(values, "SIDE") == INSIDE
+    series, inside = get_thread_series(values), text(values, "SIDE") == INSIDE
     found = find_thread_size(series, text(values, "SIZE"))
     if found is None:
         return None
@@ -69,22 +69,22 @@ def make_diameter_proposal(limit_name: str) -> ValueProposal:
     ``limit_name`` is ``crest`` or ``root``.
     """
 
-    def proposed(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
+    def propose_diameter(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
         known = find_thread_limits(values, setting)
         if known is None:
             return None
         value = known.crest_diameter if limit_name == "crest" else known.root_diameter
         return round(
-            convert_length(value, get_series(values), is_metric=setting.metric),
+            convert_length(value, get_thread_series(values), is_metric=setting.metric),
             4 if not setting.metric else 3,
         )
 
-    return proposed
+    return propose_diameter
 
 
 def propose_pitch(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
     """Propose the pitch that the standard specifies for the thread size."""
-    series = get_series(values)
+    series = get_thread_series(values)
     found = find_thread_size(series, text(values, "SIZE"))
     if found is None:
         return None
@@ -93,28 +93,28 @@ def propose_pitch(values: FieldValues, settings: ProgramSettings) -> FieldValue 
 
 def propose_tolerance_class(values: FieldValues, _settings: ProgramSettings) -> FieldValue | None:
     """Propose the usual tolerance class of the series."""
-    allowed = list_tolerance_classes(get_series(values), is_inside=text(values, "SIDE") == INSIDE)
+    allowed = list_tolerance_classes(get_thread_series(values), is_inside=text(values, "SIDE") == INSIDE)
     return allowed[0] if allowed else ""
 
 
-def list_classes_for_side(values: FieldValues) -> tuple[str, ...]:
+def list_side_tolerance_classes(values: FieldValues) -> tuple[str, ...]:
     """Return the tolerance classes of the series for the chosen side, inside or outside."""
-    return list_tolerance_classes(get_series(values), is_inside=text(values, "SIDE") == INSIDE)
+    return list_tolerance_classes(get_thread_series(values), is_inside=text(values, "SIDE") == INSIDE)
 
 
 def has_standard_series(values: FieldValues) -> bool:
     """Return whether the thread belongs to a standard series and therefore has a size."""
-    return get_series(values) is not ThreadSeries.CUSTOM
+    return get_thread_series(values) is not ThreadSeries.CUSTOM
 
 
-def propose_taper(values: FieldValues, _settings: ProgramSettings) -> FieldValue | None:
+def propose_thread_taper(values: FieldValues, _settings: ProgramSettings) -> FieldValue | None:
     """Propose the taper that the thread series specifies."""
-    return _TAPER if get_series(values) in TAPERED_SERIES else 0.0
+    return _TAPER if get_thread_series(values) in TAPERED_SERIES else 0.0
 
 
-def propose_length(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
+def propose_thread_length(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
     """Propose the thread length of a pipe thread."""
-    series = get_series(values)
+    series = get_thread_series(values)
     found = find_thread_size(series, text(values, "SIZE"))
     long = get_pipe_thread_length(series, found) if found is not None else 0.0
     return round(convert_length(long, series, is_metric=settings.metric), 3) if long else None
@@ -136,7 +136,7 @@ def find_flank_angle(values: FieldValues, settings: ProgramSettings) -> float:
     """
     shape = settings.tool(number(values, "T"))
     point = shape.point if shape is not None and shape.kind is ToolKind.THREADING else 0.0
-    return get_flank_angle(get_series(values)) or point or 60.0
+    return get_flank_angle(get_thread_series(values)) or point or 60.0
 
 
 def propose_infeed_angle(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
@@ -168,7 +168,7 @@ def propose_run_up(values: FieldValues, settings: ProgramSettings) -> FieldValue
     return round(max(needed, 2.0 * number(values, "PITCH"), settings.near), 2 if not settings.metric else 1)
 
 
-def calculate_thread_depth(filled_shape: FilledShape) -> float:
+def calculate_thread_depth(filled_shape: ShapeInstance) -> float:
     """Return the depth of the thread per side."""
     return abs(filled_shape.get_number("CREST") - filled_shape.get_number("ROOT")) / 2.0
 
@@ -176,7 +176,7 @@ def calculate_thread_depth(filled_shape: FilledShape) -> float:
 G35_LEAD_LIMITS_IN = (0.2, 1.0, 2.0)  # in/rev, largest lead without G35, with G35 and with G35F2
 
 
-def check_thread(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[FieldError]:
+def check_thread(filled_shape: ShapeInstance, settings: ProgramSettings) -> Iterator[FieldError]:
     """Yield errors for a thread that is inconsistent or that the machine or the tool cannot cut."""
     inside = filled_shape.get_text("SIDE") == INSIDE
     crest, root, pitch = (
@@ -204,7 +204,7 @@ def check_thread(filled_shape: FilledShape, settings: ProgramSettings) -> Iterat
                 crest=f"{crest:g}",
             ),
         )
-    sharp = pitch / 2.0 / math.tan(math.radians(find_flank_angle(filled_shape.values, settings) / 2.0))
+    sharp = pitch / 2.0 / math.tan(math.radians(find_flank_angle(filled_shape.field_values, settings) / 2.0))
     if calculate_thread_depth(filled_shape) > 1.02 * sharp:
         yield FieldError(
             "ROOT",
@@ -226,12 +226,15 @@ def check_thread(filled_shape: FilledShape, settings: ProgramSettings) -> Iterat
     yield from check_rpm(filled_shape, settings)
 
 
-def _flank_checks(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[FieldError]:
+def _flank_checks(filled_shape: ShapeInstance, settings: ProgramSettings) -> Iterator[FieldError]:
     """Yield an error if the infeed angle is larger than the flank angle.
 
     A pass would then cut into the flank of the previous pass.
     """
-    angle, flank = filled_shape.get_number("INFEED"), find_flank_angle(filled_shape.values, settings) / 2.0
+    angle, flank = (
+        filled_shape.get_number("INFEED"),
+        find_flank_angle(filled_shape.field_values, settings) / 2.0,
+    )
     if angle > flank + 1e-9:
         yield FieldError(
             "INFEED",
@@ -245,7 +248,7 @@ def _flank_checks(filled_shape: FilledShape, settings: ProgramSettings) -> Itera
         )
 
 
-def _lead_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+def _lead_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
     lead = filled.get_number("PITCH") * filled.get_number("STARTS")
     inch = lead * setting.mm / 25.4
     if inch > G35_LEAD_LIMITS_IN[2]:
@@ -272,7 +275,7 @@ def _lead_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[Fiel
         )
 
 
-def _relief(filled_shape: FilledShape) -> Iterator[FieldError]:
+def _relief(filled_shape: ShapeInstance) -> Iterator[FieldError]:
     """Yield an error if a pass ends without a pull-out and there is no relief groove."""
     lead = filled_shape.get_number("PITCH") * filled_shape.get_number("STARTS")
     relief = filled_shape.get_number("RELIEF")
@@ -295,11 +298,11 @@ def _relief(filled_shape: FilledShape) -> Iterator[FieldError]:
         )
 
 
-def _by_sheet(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
+def _by_sheet(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
     shape, name = setting.tool(filled.get_number("T")), f"T{filled.get_number('T'):.0f}"
     if shape is None:
         return
-    angle = find_flank_angle(filled.values, setting)
+    angle = find_flank_angle(filled.field_values, setting)
     if shape.kind is ToolKind.THREADING and shape.point and abs(shape.point - angle) > 0.5:
         words = Message(
             "{name} cuts a thread angle of {point}°, but this thread needs {angle}°: use another insert.",
@@ -335,12 +338,15 @@ def _by_sheet(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldEr
         )
 
 
-def check_thread_name(filled_shape: FilledShape, _settings: ProgramSettings) -> Iterator[FieldError]:
+def check_thread_name(filled_shape: ShapeInstance, _settings: ProgramSettings) -> Iterator[FieldError]:
     """Yield an error if the thread series does not contain the entered size or class.
 
     Without a standard size and class, no values can be proposed.
     """
-    series, allowed = get_series(filled_shape.values), list_classes_for_side(filled_shape.values)
+    series, allowed = (
+        get_thread_series(filled_shape.field_values),
+        list_side_tolerance_classes(filled_shape.field_values),
+    )
     size, tolerance = filled_shape.get_text("SIZE"), filled_shape.get_text("CLASS")
     if series is not ThreadSeries.CUSTOM and size and find_thread_size(series, size) is None:
         yield FieldError(
@@ -362,7 +368,7 @@ def check_thread_name(filled_shape: FilledShape, _settings: ProgramSettings) -> 
         )
 
 
-def find_coarse_step(filled_shape: FilledShape, settings: ProgramSettings) -> float:
+def find_coarse_feed_step(filled_shape: ShapeInstance, settings: ProgramSettings) -> float:
     """Return the axis resolution of the G35 or G35F2 code that a coarse lead requires.
 
     The result is in the program's unit. It is 0 if the lead requires neither code.

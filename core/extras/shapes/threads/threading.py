@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import partial
 
 from core.extras.shapes.common_fields import MAX_RPM, make_tool_field
-from core.extras.shapes.editor_shape import FilledShape, Shape
+from core.extras.shapes.editor_shape import Shape, ShapeInstance
 from core.extras.shapes.lines.code_lines import (
     CodeWriter,
     format_short_number,
@@ -35,18 +35,18 @@ from core.extras.shapes.threads.thread_values import (
     calculate_thread_depth,
     check_thread,
     check_thread_name,
-    find_coarse_step,
+    find_coarse_feed_step,
     find_thread_limits,
-    get_series,
+    get_thread_series,
     has_standard_series,
-    list_classes_for_side,
+    list_side_tolerance_classes,
     make_diameter_proposal,
     propose_infeed_angle,
-    propose_length,
     propose_pass_count,
     propose_pitch,
     propose_run_up,
-    propose_taper,
+    propose_thread_length,
+    propose_thread_taper,
     propose_threading_rpm,
     propose_tolerance_class,
 )
@@ -55,7 +55,7 @@ from core.part.tool_shape import ToolKind
 from core.sketch import Dimension, Sketch, make_cut_outline, make_part_outline, make_sketch
 
 
-def calculate_first_depth(filled_shape: FilledShape) -> float:
+def calculate_first_depth(filled_shape: ShapeInstance) -> float:
     """Return the depth per side of the first pass, for passes of equal chip area.
 
     The depth is the depth of the thread divided by √N for N passes.
@@ -63,9 +63,9 @@ def calculate_first_depth(filled_shape: FilledShape) -> float:
     return calculate_thread_depth(filled_shape) / math.sqrt(max(1.0, filled_shape.get_number("PASSES")))
 
 
-def round_first_depth(filled_shape: FilledShape, settings: ProgramSettings) -> float:
+def round_first_depth(filled_shape: ShapeInstance, settings: ProgramSettings) -> float:
     """Return the depth of the first pass, rounded up to the resolution of its word."""
-    deep, coarse = calculate_first_depth(filled_shape), find_coarse_step(filled_shape, settings)
+    deep, coarse = calculate_first_depth(filled_shape), find_coarse_feed_step(filled_shape, settings)
     return (
         math.ceil(deep / coarse - 1e-6) * coarse
         if coarse
@@ -73,7 +73,7 @@ def round_first_depth(filled_shape: FilledShape, settings: ProgramSettings) -> f
     )
 
 
-def _cycle97(filled_shape: FilledShape, _settings: ProgramSettings, code: CodeWriter) -> None:
+def _cycle97(filled_shape: ShapeInstance, _settings: ProgramSettings, code: CodeWriter) -> None:
     """Write a thread with CYCLE97.
 
     The cycle stops at the end of the thread and therefore needs a relief groove.
@@ -93,7 +93,7 @@ def _cycle97(filled_shape: FilledShape, _settings: ProgramSettings, code: CodeWr
     code.write_retract()
 
 
-def _far(filled_shape: FilledShape) -> float:
+def _far(filled_shape: ShapeInstance) -> float:
     """Return the diameter before threading at the far end of the thread.
 
     For a tapered thread it differs from the diameter at the start.
@@ -104,7 +104,7 @@ def _far(filled_shape: FilledShape) -> float:
     ) * filled_shape.get_number("LONG")
 
 
-def write_cycle97(filled_shape: FilledShape, code: CodeWriter) -> None:
+def write_cycle97(filled_shape: ShapeInstance, code: CodeWriter) -> None:
     """Write CYCLE97 with passes of equal chip area."""
     starts = max(1.0, filled_shape.get_number("STARTS"))
     begin, end = (
@@ -135,10 +135,10 @@ def write_cycle97(filled_shape: FilledShape, code: CodeWriter) -> None:
     code.clear_modal_state()
 
 
-def _thread(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
+def _thread(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> None:
     inside = filled.get_text("SIDE") == INSIDE
     outwards = -1.0 if inside else 1.0
-    near = partial(_on_step, step=find_coarse_step(filled, setting))
+    near = partial(_on_step, step=find_coarse_feed_step(filled, setting))
     starts = max(1, int(filled.get_number("STARTS")))
     lead, first = filled.get_number("PITCH") * starts, round_first_depth(filled, setting)
     begin, end = (
@@ -185,17 +185,17 @@ def _thread(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> 
     code.write_retract()
 
 
-def _make_remarks(filled_shape: FilledShape, settings: ProgramSettings) -> tuple[str, ...]:
+def _make_remarks(filled_shape: ShapeInstance, settings: ProgramSettings) -> tuple[str, ...]:
     """Return notes about the measured diameters and about the taper to turn before threading."""
-    known = find_thread_limits(filled_shape.values, settings)
+    known = find_thread_limits(filled_shape.field_values, settings)
     if known is None:
         return ()
     places = 3 if settings.metric else 4
-    unit = convert_length(1.0, get_series(filled_shape.values), is_metric=settings.metric)
+    unit = convert_length(1.0, get_thread_series(filled_shape.field_values), is_metric=settings.metric)
     inside = filled_shape.get_text("SIDE") == INSIDE
     pairs = (known.minor_diameter if inside else known.major_diameter, known.pitch_diameter)
     least, most, low, high = (format_short_number(value * unit, places) for pair in pairs for value in pair)
-    if get_series(filled_shape.values) in TAPERED_SERIES:
+    if get_thread_series(filled_shape.field_values) in TAPERED_SERIES:
         far = format_short_number(_far(filled_shape), places)
         return (
             Message("pitch diameter {low} at the start of the thread", low=low),
@@ -232,7 +232,7 @@ def _on_step(value: float, step: float) -> float:
     return round(value / step) * step if step else value
 
 
-def _sketch(filled: FilledShape) -> Sketch:
+def _sketch(filled: ShapeInstance) -> Sketch:
     teeth: list[tuple[float, float]] = [(0.0, 6.6)]
     for k in range(7):
         teeth += [(-1.0 - 2 * k, 8.0), (-2.0 - 2 * k, 6.6)]
@@ -294,9 +294,9 @@ THREAD_SHAPE = Shape(
             FieldKind.CHOICE,
             propose_tolerance_class,
             _ALL_CLASSES,
-            applies_to=lambda v: bool(list_classes_for_side(v)),
+            applies_to=lambda v: bool(list_side_tolerance_classes(v)),
         ),
-        ShapeField("LONG", "LENGTH", FieldKind.LENGTH, propose_length),
+        ShapeField("LONG", "LENGTH", FieldKind.LENGTH, propose_thread_length),
         ShapeField("AT", "DISTANCE FROM Z0 TO START", FieldKind.LENGTH, 0.0, allows_zero=True),
         ShapeField("PULL", "PULL OUT WHILE FEEDING", FieldKind.CHOICE, YES, (YES, NO)),
         ShapeField(
@@ -313,7 +313,12 @@ THREAD_SHAPE = Shape(
         ShapeField("CREST", "DIAMETER BEFORE THREADING", FieldKind.DIAMETER, make_diameter_proposal("crest")),
         ShapeField("ROOT", "DIAMETER AT LAST PASS", FieldKind.DIAMETER, make_diameter_proposal("root")),
         ShapeField(
-            "TAPER", "TAPER ON THE DIAMETER", FieldKind.RATIO, propose_taper, allows_zero=True, maximum=1.0
+            "TAPER",
+            "TAPER ON THE DIAMETER",
+            FieldKind.RATIO,
+            propose_thread_taper,
+            allows_zero=True,
+            maximum=1.0,
         ),
         ShapeField("PASSES", "PASSES", FieldKind.COUNT, propose_pass_count, maximum=60),
         ShapeField(
@@ -331,13 +336,13 @@ THREAD_SHAPE = Shape(
 
 
 def _of_cycle97(each: ShapeField) -> ShapeField:
-    return replace(each, applies_to=lambda _values: True) if each.word == "RELIEF" else each
+    return replace(each, applies_to=lambda _values: True) if each.name == "RELIEF" else each
 
 
 SINUMERIK_THREAD_SHAPE = replace(
     THREAD_SHAPE,
     write_lines=_cycle97,
-    fields=tuple(_of_cycle97(each) for each in THREAD_SHAPE.fields if each.word != "PULL"),
+    fields=tuple(_of_cycle97(each) for each in THREAD_SHAPE.fields if each.name != "PULL"),
 )
 """Threading form for SINUMERIK, with CYCLE97.
 

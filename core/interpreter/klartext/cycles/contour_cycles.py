@@ -15,15 +15,15 @@ from core.geometry.contour_offset import GougeError, offset_known_contour
 from core.geometry.lines_and_arcs import SAME_POINT_TOLERANCE_MM, Arc, Element, Point, get_left_normal
 from core.geometry.pocket_area import (
     AreaChecker,
-    AreaError,
     ElementLoop,
+    PocketAreaError,
     close_loop,
     make_inset_loops,
+    move_loop_start_to,
     split_loop,
-    start_loop_at,
 )
 from core.interpreter.klartext.cycles.cycle_moves import CycleTool
-from core.interpreter.klartext.cycles.hole_cycles import MIN_LENGTH_MM, compute_levels
+from core.interpreter.klartext.cycles.hole_cycles import MIN_LENGTH_MM, compute_z_levels
 from core.interpreter.klartext.cycles.sl_contours import MAX_CLOSING_GAP_MM, SlContour, find_area_boundary
 from core.interpreter.klartext.klartext_state import State
 from core.interpreter.shared.elementary_blocks import Block
@@ -76,21 +76,25 @@ class ClearingData:
         The distance is at most the tool radius, so that no material remains. Raises ProgramError for an
         invalid Q2.
         """
-        overlap = self.tool.read_value(2, 1.0)
+        overlap = self.tool.read_parameter(2, 1.0)
         text = "With path overlap {named}={overlap}, the cycle cannot clear the area."
         hint = "Enter a value between 0.0001 and 1.9999."
         self.tool.check_condition(
-            0.0 < overlap < _MAX_OVERLAP, text, hint, named=self.tool.format_name(2), overlap=overlap
+            0.0 < overlap < _MAX_OVERLAP,
+            text,
+            hint,
+            named=self.tool.format_parameter_name(2),
+            overlap=overlap,
         )
         return min(overlap, 1.0) * self.tool.radius_mm
 
-    def compute_levels(self, bottom_z_mm: float) -> list[float]:
+    def compute_z_levels(self, bottom_z_mm: float) -> list[float]:
         """Return the Z heights of all infeeds in mm, from the top to the bottom of the pocket."""
-        return compute_levels(
+        return compute_z_levels(
             self.tool, self.surface_z_mm, bottom_z_mm, lambda: abs(self.tool.read_length_mm(10))
         )
 
-    def plan_level(self, tool_radius_mm: float) -> list[ClearingRing]:
+    def plan_level_rings(self, tool_radius_mm: float) -> list[ClearingRing]:
         """Return the rings that clear one level with a tool of this radius in mm."""
         share = self.stepover_mm / self.tool.radius_mm * tool_radius_mm
         here = self.tool.xy_position
@@ -103,10 +107,10 @@ class ClearingData:
                 is_conventional=self.is_up_cut,
                 position=here,
             )
-        except AreaError as problem:
+        except PocketAreaError as problem:
             raise self.make_fit_error(problem) from None
 
-    def make_fit_error(self, problem: AreaError | GougeError) -> ProgramError:
+    def make_fit_error(self, problem: PocketAreaError | GougeError) -> ProgramError:
         """Return the error for a contour that cannot be milled with this tool radius."""
         text = "The contour cannot be milled with tool radius {radius} mm plus the allowance: {problem}."
         hint, radius = "Use a smaller tool, or correct the contour.", f"{self.tool.radius_mm:.10g}"
@@ -119,7 +123,7 @@ class ClearingData:
     def retract_tool(self) -> Iterator[Block]:
         """Yield the retract to the clearance height at the feed Q208."""
         tool = self.tool
-        asked = tool.read_value(208, MAX_FEED_VALUE)
+        asked = tool.read_parameter(208, MAX_FEED_VALUE)
         back = (
             None if asked >= MAX_FEED_VALUE else tool.read_feed(208) if asked else tool.read_cutting_feed(12)
         )
@@ -138,7 +142,7 @@ def check_contour_data(tool: CycleTool) -> None:
     )
     text = "With the programmed path overlap Q2, the cycle cannot clear the area."
     tool.check_condition(
-        0.0 < tool.read_value(2, 1.0) < _MAX_OVERLAP, text, "Set Q2 to a value between 0.0001 and 1.9999."
+        0.0 < tool.read_parameter(2, 1.0) < _MAX_OVERLAP, text, "Set Q2 to a value between 0.0001 and 1.9999."
     )
 
 
@@ -154,15 +158,17 @@ def run_pilot_drilling(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator
     radius = tool.find_radius_mm(tool.read_whole_number(13))
     if radius is None or radius <= MIN_LENGTH_MM:
         text = "Rough-out tool {plain} (Q13) has no radius in the tool table."
-        raise tool.make_error(text, "Set Q13 to the number of a measured tool.", plain=tool.read_value(13))
+        raise tool.make_error(
+            text, "Set Q13 to the number of a measured tool.", plain=tool.read_parameter(13)
+        )
     feed, bottom = clearing.tool.read_cutting_feed(11), clearing.bottom_z_mm + clearing.floor_allowance_mm
     yield from clearing.move_to_safe_z()
-    for cut in clearing.plan_level(radius):
+    for cut in clearing.plan_level_rings(radius):
         if cut.moves_at_depth:
             continue
         yield tool.move_straight(cut.ramp_loop[0].start)
         yield tool.move_to_z(clearing.clearance_z_mm)
-        for z in clearing.compute_levels(bottom):
+        for z in clearing.compute_z_levels(bottom):
             yield tool.move_to_z(z, feed)
             yield tool.move_to_z(clearing.clearance_z_mm)
         yield tool.move_to_z(clearing.safe_z_mm)
@@ -174,17 +180,17 @@ def run_roughing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator[Block
     The allowances of cycle 20 remain as stock. Q401 reduces the feed in full-width cuts.
     """
     clearing = ClearingData(tool, area)
-    if tool.read_value(18, 0.0):
+    if tool.read_parameter(18, 0.0):
         tool.log_note(
             "the whole pocket is milled again, including the area that the coarse roughing tool "
             "(Q18) has cleared."
         )
     feed = clearing.tool.read_cutting_feed(12)
-    slow = feed * min(max(tool.read_value(401, 100.0), 1.0), 100.0) / 100.0
-    plan = clearing.plan_level(tool.radius_mm)
+    slow = feed * min(max(tool.read_parameter(401, 100.0), 1.0), 100.0) / 100.0
+    plan = clearing.plan_level_rings(tool.radius_mm)
     yield from clearing.move_to_safe_z()
     top = clearing.surface_z_mm
-    for z in clearing.compute_levels(clearing.bottom_z_mm + clearing.floor_allowance_mm):
+    for z in clearing.compute_z_levels(clearing.bottom_z_mm + clearing.floor_allowance_mm):
         for cut in plan:
             yield from _move_to_depth(clearing, cut, top, z, slow)
             yield from _along(tool, cut.loop, feed if cut.moves_at_depth else slow)
@@ -198,7 +204,7 @@ def _move_to_depth(
     """Yield the moves to the start of a ring at the depth ``z``, with a plunge if necessary."""
     tool = clearing.tool
     if not cut.moves_at_depth:
-        yield from tool.move_above(cut.ramp_loop[0].start, clearing.clearance_z_mm)
+        yield from tool.move_above_position(cut.ramp_loop[0].start, clearing.clearance_z_mm)
         yield from _ramp(clearing, cut, top, z, reduced_feed)
     elif math.dist(tool.xy_position, cut.loop[0].start) > SAME_POINT_TOLERANCE_MM:
         yield tool.move_straight(cut.loop[0].start, None, reduced_feed)
@@ -214,7 +220,7 @@ def _ramp(
     """
     tool = clearing.tool
     yield tool.move_to_z(top, clearing.tool.read_cutting_feed(11))
-    if not tool.read_value(19, 0.0):
+    if not tool.read_parameter(19, 0.0):
         yield tool.move_to_z(z, clearing.tool.read_cutting_feed(11))
     else:
         feed, length, ring = (
@@ -253,12 +259,12 @@ def run_floor_finishing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterato
     """Yield the blocks of cycle 23, which finishes the floor and leaves the allowance on the walls."""
     clearing = ClearingData(tool, area)
     feed, plunge = clearing.tool.read_cutting_feed(12), clearing.tool.read_cutting_feed(11)
-    plan = clearing.plan_level(tool.radius_mm)
+    plan = clearing.plan_level_rings(tool.radius_mm)
     yield from clearing.move_to_safe_z()
     for cut in plan if clearing.surface_z_mm - clearing.bottom_z_mm > MIN_LENGTH_MM else ():
         start = cut.loop[0].start
         if not cut.moves_at_depth:
-            yield from tool.move_above(start, clearing.clearance_z_mm)
+            yield from tool.move_above_position(start, clearing.clearance_z_mm)
             yield tool.move_to_z(clearing.bottom_z_mm, plunge)
         elif math.dist(tool.xy_position, start) > SAME_POINT_TOLERANCE_MM:
             yield tool.move_straight(start, None, feed)
@@ -279,10 +285,10 @@ def run_side_finishing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator
     apart = tool.radius_mm + tool.read_length_mm(14, 0.0)
     try:
         loops = make_inset_loops(area, apart)
-    except AreaError as problem:
+    except PocketAreaError as problem:
         raise clearing.make_fit_error(problem) from None
     if not loops:
-        raise clearing.make_fit_error(AreaError("the tool does not fit anywhere inside the contour"))
+        raise clearing.make_fit_error(PocketAreaError("the tool does not fit anywhere inside the contour"))
     room = AreaChecker(area)
     yield from clearing.move_to_safe_z()
     for loop in loops:
@@ -290,8 +296,10 @@ def run_side_finishing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator
         ring, to_it, off_it = _add_approach_arcs(
             ring, room, apart, tool.radius_mm, is_up_cut=clearing.is_up_cut
         )
-        for z in clearing.compute_levels(clearing.bottom_z_mm):
-            yield from tool.move_above(to_it.start if to_it else ring[0].start, clearing.clearance_z_mm)
+        for z in clearing.compute_z_levels(clearing.bottom_z_mm):
+            yield from tool.move_above_position(
+                to_it.start if to_it else ring[0].start, clearing.clearance_z_mm
+            )
             yield tool.move_to_z(z, plunge)
             yield from _along(tool, [each for each in (to_it, *ring, off_it) if each is not None], feed)
         yield tool.move_to_z(clearing.clearance_z_mm)
@@ -308,13 +316,13 @@ def _add_approach_arcs(
     order = sorted(range(len(ring)), key=lambda at: (isinstance(ring[at], Arc), -ring[at].length))
     for size in (radius / 2.0**tries for tries in range(_MAX_TRIES)):
         for at in order:
-            begun = start_loop_at(ring, at, ring[at].length / 2.0)
+            begun = move_loop_start_to(ring, at, ring[at].length / 2.0)
             to_it, off_it = _make_quarter_arcs(
                 begun[0].start, begun[0].start_direction, size, is_left=not is_up_cut
             )
             if room.contains_element(to_it, offset_mm) and room.contains_element(off_it, offset_mm):
                 return begun, to_it, off_it
-    return start_loop_at(ring, order[0], ring[order[0]].length / 2.0), None, None
+    return move_loop_start_to(ring, order[0], ring[order[0]].length / 2.0), None, None
 
 
 def _make_quarter_arcs(
@@ -348,7 +356,7 @@ def run_contour_train(tool: CycleTool, contours: ContourSequence) -> Iterator[Bl
         tool_path = [element.make_reversed() for element in reversed(tool_path)]
     feed, plunge = clearing.tool.read_cutting_feed(12), clearing.tool.read_cutting_feed(11)
     yield from clearing.move_to_safe_z()
-    for index, z in enumerate(clearing.compute_levels(clearing.bottom_z_mm)):
+    for index, z in enumerate(clearing.compute_z_levels(clearing.bottom_z_mm)):
         if kind or index == 0:
             yield tool.move_to_z(max(clearing.clearance_z_mm, tool.z_position) if index else tool.z_position)
             yield tool.move_straight(tool_path[0].start)

@@ -129,7 +129,7 @@ class ActiveCycle:
         )
         if not known:
             raise self._not_supported(node)
-        for each in node.values:
+        for each in node.parameters:
             state.q_values[each.parameter_number] = value(state, each.formula)
         if node.cycle_number == _PRESET:
             self._preset(node.column)
@@ -183,7 +183,7 @@ class ActiveCycle:
         elif number:
             text = "This machine has no preset table, so preset {number} uses the zero from the machine file."
             hint = "Set the preset on the PRESETS page."
-            state.log_once(column, Severity.WARNING, "preset", text, hint, number=number)
+            state.log_finding_once(column, Severity.WARNING, "preset", text, hint, number=number)
         state.reset_transformations()
 
     def add_cycle_line(self, node: CycleLine) -> Iterator[Block]:
@@ -363,7 +363,7 @@ class ActiveCycle:
             )
         if self._state.plunging_feed_factor is not None:
             text = "M103 does not change the feed rates of a cycle."
-            self._state.log_once(column, Severity.WARNING, "cycle-feeds", text)
+            self._state.log_finding_once(column, Severity.WARNING, "cycle-feeds", text)
 
     def call_pattern(self, node: CycleCall) -> Iterator[Block]:
         """Yield the blocks of CYCL CALL PAT, which executes the cycle at each point of the pattern.
@@ -408,7 +408,7 @@ class ActiveCycle:
             what = Message("CYCL CALL POS with cycle {number}", number=self._number)
             raise make_unsupported_error(self._state.line_number, node.column, what)
         x, y = tool.xy_position
-        for word in node.axes:
+        for word in node.axis_words:
             at = word_values.evaluate_coordinate(self._state, word)
             if word.axis == "Z" and (at or word.is_incremental):
                 text = "CYCL CALL POS with a Z other than +0 is not supported."

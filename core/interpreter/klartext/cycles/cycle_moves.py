@@ -68,15 +68,15 @@ class CycleTool:
         in the program's unit. Parameters that are not listed are undefined.
         """
 
-        def value(q: int) -> float | None:
+        def find_parameter_value(q: int) -> float | None:
             found = parameters.get(q)
             return self._value(found) if isinstance(found, int) else found
 
-        other = CycleTool(self._state, self._number, value, self._column)
+        other = CycleTool(self._state, self._number, find_parameter_value, self._column)
         other._told_as = parameters
         return other
 
-    def format_name(self, q: int) -> str:
+    def format_parameter_name(self, q: int) -> str:
         """Return the name of a parameter as it appears in the program, such as Q200."""
         found = self._told_as.get(q, q)
         return f"Q{found if isinstance(found, int) else q}"
@@ -88,7 +88,7 @@ class CycleTool:
 
     # --- parameters of the cycle ----------------------------------------------------------------------------
 
-    def read_value(self, q: int, default: float | None = None) -> float:
+    def read_parameter(self, q: int, default: float | None = None) -> float:
         """Return a parameter as programmed.
 
         Raises ProgramError if the parameter is missing and no ``default`` is given.
@@ -98,7 +98,7 @@ class CycleTool:
             found = default
         if found is None:
             text, hint = "Cycle {number} needs {parameter}.", "Add the parameter to CYCL DEF."
-            raise self.make_error(text, hint, CYCLE_MISSING, parameter=self.format_name(q))
+            raise self.make_error(text, hint, CYCLE_MISSING, parameter=self.format_parameter_name(q))
         return found
 
     def read_whole_number(self, q: int, default: float | None = None) -> int:
@@ -107,11 +107,13 @@ class CycleTool:
         Raises ProgramError if the number is not whole, or if the parameter is missing and no ``default`` is
         given.
         """
-        value = self.read_value(q, default)
+        value = self.read_parameter(q, default)
         found = convert_to_whole_number(value)
         if found is None:
             text = "{parameter}={value} of cycle {number} must be a whole number."
-            raise self.make_error(text, "Correct the value.", parameter=self.format_name(q), value=value)
+            raise self.make_error(
+                text, "Correct the value.", parameter=self.format_parameter_name(q), value=value
+            )
         return found
 
     def read_choice(self, q: int, choices: Sequence[int], default: float | None = None) -> int:
@@ -127,7 +129,7 @@ class CycleTool:
             found in choices,
             text,
             "Correct the value.",
-            parameter=self.format_name(q),
+            parameter=self.format_parameter_name(q),
             value=found,
             choices=choice_list,
         )
@@ -140,17 +142,19 @@ class CycleTool:
         """
         if default_mm is not None and self._value(q) is None:
             return default_mm
-        return self.read_value(q) * self._state.mm_per_unit
+        return self.read_parameter(q) * self._state.mm_per_unit
 
     def read_feed(self, q: int) -> float | None:
         """Return a feed parameter as programmed, or None if it specifies a rapid."""
-        found = self.read_value(q)
+        found = self.read_parameter(q)
         if found == TOOL_FEED_VALUE and self._state.tool_feed is not None:
             return convert_to_feed_per_minute(
                 self._state, self._state.tool_feed, self._state.tool_feed_base, self._column
             )
         text = "{parameter} of cycle {number} is not a valid feed rate."
-        self.check_condition(found > 0.0, text, "Enter a feed rate above 0.", parameter=self.format_name(q))
+        self.check_condition(
+            found > 0.0, text, "Enter a feed rate above 0.", parameter=self.format_parameter_name(q)
+        )
         return None if found >= MAX_FEED_VALUE else found
 
     def read_cutting_feed(self, q: int) -> float:
@@ -161,7 +165,7 @@ class CycleTool:
         found = self.read_feed(q)
         if found is None:
             text = "{parameter} is set to rapid, but this is a cutting move."
-            raise self.make_error(text, "Enter a feed rate.", parameter=self.format_name(q))
+            raise self.make_error(text, "Enter a feed rate.", parameter=self.format_parameter_name(q))
         return found
 
     def make_error(
@@ -199,7 +203,7 @@ class CycleTool:
 
     def _tell(self, severity: Severity, code: str, text: str, hint: str = "", /, **values: object) -> None:
         values = {"number": self._number, **values}
-        self._state.log_once(self._column, severity, code, text, hint, **values)
+        self._state.log_finding_once(self._column, severity, code, text, hint, **values)
 
     @property
     def point_angle_deg(self) -> float:
@@ -279,7 +283,7 @@ class CycleTool:
         """Return a move to the height ``z``, which is a rapid if ``feed`` is None."""
         return self.move_straight(self.xy_position, z, feed)
 
-    def move_above(self, position: Point, clearance_z_mm: float) -> Iterator[Block]:
+    def move_above_position(self, position: Point, clearance_z_mm: float) -> Iterator[Block]:
         """Yield a rapid to a point above ``position``, and a rapid down to ``clearance_z_mm``.
 
         The first rapid is at ``clearance_z_mm`` or higher.
@@ -288,7 +292,7 @@ class CycleTool:
         yield self.move_straight(position)
         yield self.move_to_z(clearance_z_mm)
 
-    def make_tap_block(self, z: float, lead_mm: float, *, is_in_hole: bool = False) -> Block:
+    def make_tapping_block(self, z: float, lead_mm: float, *, is_in_hole: bool = False) -> Block:
         """Return a move into or out of a tapped hole at ``lead_mm`` mm/rev, without feed override.
 
         Raises ProgramError if Z cannot move fast enough.
@@ -396,11 +400,11 @@ class CycleTool:
 
         Raises ProgramError for an invalid angle.
         """
-        angle = self.read_value(q, 0.0)
+        angle = self.read_parameter(q, 0.0)
         if not -_TURN <= angle <= _TURN:
             text = "{parameter} is not a valid spindle angle."
             raise self.make_error(
-                text, "Enter an angle from -360 to 360 degrees.", parameter=self.format_name(q)
+                text, "Enter an angle from -360 to 360 degrees.", parameter=self.format_parameter_name(q)
             )
         return make_orientation_block(self._state, angle)
 
@@ -443,7 +447,7 @@ class RoundedRectangle:
     half_side_v_mm: float
     corner_radius_mm: float
 
-    def enlarge(self, margin_mm: float) -> RoundedRectangle:
+    def make_enlarged_rectangle(self, margin_mm: float) -> RoundedRectangle:
         """Return the rectangle enlarged by ``margin_mm`` on all sides, with round corners."""
         return RoundedRectangle(
             self.half_side_u_mm + margin_mm,

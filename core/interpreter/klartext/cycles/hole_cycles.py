@@ -22,15 +22,15 @@ _MAX_PECKS = 10_000
 
 def run_reaming(tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 201 (reaming), which enters and leaves the hole at a feed."""
-    surface, clear, bottom = read_heights(tool)
+    surface, clear, bottom = read_cycle_heights(tool)
     feed = tool.read_feed(206)
     yield tool.move_to_z(clear)
     if abs(bottom - surface) < MIN_LENGTH_MM:
         return
     yield tool.move_to_z(bottom, feed)
-    yield from tool.make_dwell_blocks(tool.read_value(211, 0.0))
+    yield from tool.make_dwell_blocks(tool.read_parameter(211, 0.0))
     yield from retract_from_hole(
-        tool, surface, clear, tool.read_feed(208) if tool.read_value(208, 0.0) else feed
+        tool, surface, clear, tool.read_feed(208) if tool.read_parameter(208, 0.0) else feed
     )
 
 
@@ -41,14 +41,14 @@ def run_boring(tool: CycleTool) -> Iterator[Block]:
     then restarts. If the spindle cannot be oriented, it stops at any angle. If the tool must move off the
     wall, the program then stops so that the operator can rotate the cutting edge away from the wall.
     """
-    surface, clear, bottom = read_heights(tool)
+    surface, clear, bottom = read_cycle_heights(tool)
     rpm, off_wall_direction = tool.running_rpm, read_lateral_direction(tool, (0, 1, 2, 3, 4))
     x, y = tool.xy_position
     yield tool.move_to_z(clear)
     if abs(bottom - surface) < MIN_LENGTH_MM:
         return
     yield tool.move_to_z(bottom, tool.read_feed(206))
-    yield from tool.make_dwell_blocks(tool.read_value(211, 0.0))
+    yield from tool.make_dwell_blocks(tool.read_parameter(211, 0.0))
     yield (
         tool.orient_spindle(336) if tool.can_orient_spindle else tool.stop_spindle(waits_for_standstill=True)
     )
@@ -62,7 +62,7 @@ def run_boring(tool: CycleTool) -> Iterator[Block]:
             tool.read_feed(206),
         )
     yield from retract_from_hole(
-        tool, surface, clear, tool.read_feed(208) if tool.read_value(208, 0.0) else None
+        tool, surface, clear, tool.read_feed(208) if tool.read_parameter(208, 0.0) else None
     )
     if off_wall_direction != (0.0, 0.0):
         yield tool.move_straight((x, y))
@@ -74,7 +74,7 @@ def read_lateral_direction(tool: CycleTool, directions: tuple[int, ...]) -> tupl
 
     Raises ProgramError for an invalid Q214.
     """
-    number = tool.read_value(214, 0.0)
+    number = tool.read_parameter(214, 0.0)
     if number not in directions:
         text = "Q214 must be a whole number from {directions} to {directions2}."
         raise tool.make_error(text, "Correct Q214.", directions=directions[0], directions2=directions[-1])
@@ -113,7 +113,7 @@ def run_back_boring(tool: CycleTool) -> Iterator[Block]:
     yield tool.move_straight((x, y), None, slow)
     yield tool.run_spindle(rpm)
     yield tool.move_to_z(end, tool.read_cutting_feed(254))
-    yield from tool.make_dwell_blocks(tool.read_value(255, 0.0))
+    yield from tool.make_dwell_blocks(tool.read_parameter(255, 0.0))
     yield tool.move_to_z(lowest, slow)
     yield tool.orient_spindle(336)
     yield tool.move_straight(offset_position, None, slow)
@@ -137,13 +137,13 @@ def run_universal_drilling(tool: CycleTool) -> Iterator[Block]:
 
     Q212 reduces each infeed, down to a minimum of Q205.
     """
-    surface, clear, bottom = read_heights(tool)
+    surface, clear, bottom = read_cycle_heights(tool)
     feed, whole = tool.read_feed(206), surface - bottom
     back, breaks = tool.read_length_mm(256, 0.2), tool.read_whole_number(213, 0.0)
     yield tool.move_to_z(clear)
     if whole < MIN_LENGTH_MM:
         return
-    depths = compute_infeeds(
+    depths = compute_infeed_depths(
         tool, whole, tool.read_length_mm(202), tool.read_length_mm(212, 0.0), tool.read_length_mm(205, 0.0)
     )
     for count, depth in enumerate(depths, start=1):
@@ -154,11 +154,11 @@ def run_universal_drilling(tool: CycleTool) -> Iterator[Block]:
             yield tool.move_to_z(surface - depth + back)
         else:
             yield tool.move_to_z(clear)
-            yield from tool.make_dwell_blocks(tool.read_value(210, 0.0))
+            yield from tool.make_dwell_blocks(tool.read_parameter(210, 0.0))
             yield tool.move_to_z(min(clear, surface - depth + tool.read_length_mm(200)))
-    yield from tool.make_dwell_blocks(tool.read_value(211, 0.0))
+    yield from tool.make_dwell_blocks(tool.read_parameter(211, 0.0))
     yield from retract_from_hole(
-        tool, surface, clear, tool.read_feed(208) if tool.read_value(208, 0.0) else None
+        tool, surface, clear, tool.read_feed(208) if tool.read_parameter(208, 0.0) else None
     )
 
 
@@ -168,7 +168,7 @@ def run_deep_drilling(tool: CycleTool) -> Iterator[Block]:
     Drilling starts at Q379. After a full retract, the rapid stops above the last depth, at a distance from
     Q258 to Q259. Q257 is the depth between chip breaks.
     """
-    surface, clear, bottom = read_heights(tool)
+    surface, clear, bottom = read_cycle_heights(tool)
     feed, begin = tool.read_feed(206), surface - max(tool.read_length_mm(379, 0.0), 0.0)
     whole, breaking, back = begin - bottom, tool.read_length_mm(257, 0.0), tool.read_length_mm(256, 0.2)
     yield tool.move_to_z(clear)
@@ -178,7 +178,7 @@ def run_deep_drilling(tool: CycleTool) -> Iterator[Block]:
         yield tool.move_to_z(begin + tool.read_length_mm(200), tool.read_feed(253))
     near, far = tool.read_length_mm(258, 0.2), tool.read_length_mm(259, 0.2)
     broken = 0.0
-    for depth in compute_infeeds(
+    for depth in compute_infeed_depths(
         tool, whole, tool.read_length_mm(202), tool.read_length_mm(212, 0.0), tool.read_length_mm(205, 0.0)
     ):
         while 0.0 < breaking < depth - broken - MIN_LENGTH_MM:
@@ -190,15 +190,15 @@ def run_deep_drilling(tool: CycleTool) -> Iterator[Block]:
         if depth < whole - MIN_LENGTH_MM:
             yield tool.move_to_z(clear)
             yield tool.move_to_z(begin - depth + near + (far - near) * depth / whole)
-    yield from tool.make_dwell_blocks(tool.read_value(211, 0.0))
+    yield from tool.make_dwell_blocks(tool.read_parameter(211, 0.0))
     yield from retract_from_hole(
-        tool, surface, clear, tool.read_feed(208) if tool.read_value(208, 0.0) else None
+        tool, surface, clear, tool.read_feed(208) if tool.read_parameter(208, 0.0) else None
     )
 
 
 def run_floating_tapping(tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 206, which taps at the feed Q206, reverses the spindle and retracts."""
-    surface, clear, bottom = read_heights(tool)
+    surface, clear, bottom = read_cycle_heights(tool)
     lead = tool.convert_feed_to_lead(tool.read_cutting_feed(206))
     yield from _tapped(tool, surface, clear, bottom, lead, tool.running_rpm)
 
@@ -209,24 +209,24 @@ def run_rigid_tapping(tool: CycleTool) -> Iterator[Block]:
     The sign of the pitch determines the direction. At the end, the spindle resumes its previous speed and
     direction.
     """
-    surface, clear, bottom = read_heights(tool)
+    surface, clear, bottom = read_cycle_heights(tool)
     lead, rpm = _thread(tool)
     yield from _tapped(tool, surface, clear, bottom, lead, rpm)
 
 
 def run_chip_breaking_tapping(tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 209, which is rigid tapping with a spindle reversal after each depth Q257."""
-    surface, clear, bottom = read_heights(tool)
+    surface, clear, bottom = read_cycle_heights(tool)
     (lead, rpm), before = _thread(tool), tool.signed_rpm
     back, step = tool.read_length_mm(256, 0.0), tool.read_length_mm(257, 0.0)
     yield tool.move_to_z(clear)
     yield from tool.set_spindle_speed(rpm)
-    for depth in compute_infeeds(tool, surface - bottom, step or surface - bottom):
+    for depth in compute_infeed_depths(tool, surface - bottom, step or surface - bottom):
         last = depth >= surface - bottom - MIN_LENGTH_MM
         stays = not last and bool(back)
-        yield tool.make_tap_block(surface - depth, lead, is_in_hole=True)
+        yield tool.make_tapping_block(surface - depth, lead, is_in_hole=True)
         yield tool.run_spindle(-rpm, is_in_hole=True)
-        yield tool.make_tap_block(surface - depth + back if stays else clear, lead, is_in_hole=stays)
+        yield tool.make_tapping_block(surface - depth + back if stays else clear, lead, is_in_hole=stays)
         if not last:
             yield tool.run_spindle(rpm, is_in_hole=stays)
     yield from tool.set_spindle_speed(before)
@@ -253,10 +253,10 @@ def _tapped(
     if abs(bottom - surface) < MIN_LENGTH_MM:
         return
     yield from tool.set_spindle_speed(rpm)
-    yield tool.make_tap_block(bottom, lead, is_in_hole=True)
-    yield from tool.make_dwell_blocks(tool.read_value(211, 0.0), is_in_hole=True)
+    yield tool.make_tapping_block(bottom, lead, is_in_hole=True)
+    yield from tool.make_dwell_blocks(tool.read_parameter(211, 0.0), is_in_hole=True)
     yield tool.run_spindle(-rpm, is_in_hole=True)
-    yield tool.make_tap_block(clear, lead)
+    yield tool.make_tapping_block(clear, lead)
     yield from tool.set_spindle_speed(before)
     yield from retract_from_hole(tool, surface, clear, None)
 
@@ -266,7 +266,7 @@ def run_bore_milling(tool: CycleTool) -> Iterator[Block]:
 
     The pitch of the helix is Q334. A full circle at the bottom finishes the hole.
     """
-    surface, clear, bottom = read_heights(tool)
+    surface, clear, bottom = read_cycle_heights(tool)
     feed = tool.read_feed(206) or 0.0
     helix_radius_mm = tool.read_length_mm(335) / 2.0 - tool.radius_mm
     x, y = tool.xy_position
@@ -304,10 +304,10 @@ def run_centering(tool: CycleTool) -> Iterator[Block]:
         half = math.radians(tool.point_angle_deg) / 2.0
         bottom = surface - abs(tool.read_length_mm(344)) / 2.0 / math.tan(half)
     else:
-        surface, clear, bottom = read_heights(tool)
+        surface, clear, bottom = read_cycle_heights(tool)
     yield tool.move_to_z(clear)
     yield tool.move_to_z(bottom, tool.read_feed(206))
-    yield from tool.make_dwell_blocks(tool.read_value(211, 0.0))
+    yield from tool.make_dwell_blocks(tool.read_parameter(211, 0.0))
     yield from retract_from_hole(tool, surface, clear, None)
 
 
@@ -317,12 +317,12 @@ def run_single_lip_drilling(tool: CycleTool) -> Iterator[Block]:
     The tool enters at the spindle speed Q427 to the start depth Q379 and drills at the speed Q428 with
     coolant. It leaves the hole at the speed Q427.
     """
-    surface, clear, bottom = read_heights(tool)
+    surface, clear, bottom = read_cycle_heights(tool)
     rpm, sense = tool.running_rpm, {3: 1.0, 4: -1.0, 5: 0.0}.get(tool.read_whole_number(426, 3.0))
     if sense is None:
         raise tool.make_error("Q426 must be 3, 4 or 5.", "Enter the M function for the spindle direction.")
-    drilling = tool.read_value(428, 0.0) * (sense or 1.0) or rpm
-    slow, begin = tool.read_value(427, 0.0) * sense, surface - max(tool.read_length_mm(379, 0.0), 0.0)
+    drilling = tool.read_parameter(428, 0.0) * (sense or 1.0) or rpm
+    slow, begin = tool.read_parameter(427, 0.0) * sense, surface - max(tool.read_length_mm(379, 0.0), 0.0)
     yield tool.move_to_z(clear)
     if begin - bottom < MIN_LENGTH_MM:
         return
@@ -333,18 +333,18 @@ def run_single_lip_drilling(tool: CycleTool) -> Iterator[Block]:
     feed = tool.read_feed(206)
     if 0.0 < (rest := tool.read_length_mm(435, 0.0)) < surface - bottom and begin > surface - rest:
         yield tool.move_to_z(surface - rest, feed)
-        yield from tool.make_dwell_blocks(tool.read_value(211, 0.0))
+        yield from tool.make_dwell_blocks(tool.read_parameter(211, 0.0))
     yield tool.move_to_z(bottom, feed)
-    yield from tool.make_dwell_blocks(tool.read_value(211, 0.0))
+    yield from tool.make_dwell_blocks(tool.read_parameter(211, 0.0))
     yield from tool.switch_coolant(430)
     yield tool.run_spindle(slow) if slow else tool.stop_spindle()
     yield from retract_from_hole(
-        tool, surface, clear, tool.read_feed(208) if tool.read_value(208, 0.0) else None
+        tool, surface, clear, tool.read_feed(208) if tool.read_parameter(208, 0.0) else None
     )
     yield tool.run_spindle(rpm)
 
 
-def read_heights(tool: CycleTool) -> tuple[float, float, float]:
+def read_cycle_heights(tool: CycleTool) -> tuple[float, float, float]:
     """Return the heights of the surface, the set-up clearance and the bottom in mm.
 
     Raises ProgramError for a positive depth Q201, or if Q200 or Q201 is missing.
@@ -355,7 +355,7 @@ def read_heights(tool: CycleTool) -> tuple[float, float, float]:
     return surface, surface + tool.read_length_mm(200), surface + depth
 
 
-def compute_infeeds(
+def compute_infeed_depths(
     tool: CycleTool,
     total_depth_mm: float,
     infeed_mm: float,
@@ -380,7 +380,7 @@ def compute_infeeds(
         infeed_mm = max(infeed_mm - decrement_mm, min_infeed_mm, MIN_LENGTH_MM) if decrement_mm else infeed_mm
 
 
-def compute_levels(
+def compute_z_levels(
     tool: CycleTool, surface_z_mm: float, bottom_z_mm: float, read_infeed_mm: Callable[[], float]
 ) -> list[float]:
     """Return the Z height after each infeed, from the surface to the bottom.
@@ -391,7 +391,7 @@ def compute_levels(
     return (
         []
         if whole < MIN_LENGTH_MM
-        else [surface_z_mm - done for done in compute_infeeds(tool, whole, read_infeed_mm())]
+        else [surface_z_mm - done for done in compute_infeed_depths(tool, whole, read_infeed_mm())]
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from core.interpreter.klartext.cycles.cycle_moves import CycleParameters, CycleTool
-from core.interpreter.klartext.cycles.hole_cycles import read_heights
+from core.interpreter.klartext.cycles.hole_cycles import read_cycle_heights
 from core.interpreter.klartext.cycles.pocket_cycles import (
     mill_circular_pocket,
     mill_circular_slot,
@@ -25,13 +25,13 @@ _WALLS: CycleParameters = {**_HEIGHTS, 202: 202, 206: 206, 207: 207, 215: 2.0, 3
 def _make_centered_cycle(milling: MillingCycle, parameters: CycleParameters) -> MillingCycle:
     """Return a cycle that executes another cycle at the center Q216, Q217 with these parameters."""
 
-    def run(tool: CycleTool) -> Iterator[Block]:
-        surface, clear, _ = read_heights(tool)
+    def run_centered_cycle(tool: CycleTool) -> Iterator[Block]:
+        surface, clear, _ = read_cycle_heights(tool)
         yield tool.move_to_z(max(clear, surface + tool.read_length_mm(204, 0.0), tool.z_position))
         yield tool.move_straight((tool.read_length_mm(216), tool.read_length_mm(217)))
         yield from milling(tool.copy_with_parameters(parameters))
 
-    return run
+    return run_centered_cycle
 
 
 def _round_corners(tool: CycleTool) -> Iterator[Block]:
@@ -50,8 +50,8 @@ def _older_stud(tool: CycleTool) -> Iterator[Block]:
 
     The oversize of the blank is Q221, or the tool diameter if Q221 is missing.
     """
-    more = 2.0 * (tool.read_value(221, 0.0) or tool.radius_mm / tool.mm_per_unit)
-    sides = {424: tool.read_value(218) + more, 425: tool.read_value(219) + more}
+    more = 2.0 * (tool.read_parameter(221, 0.0) or tool.radius_mm / tool.mm_per_unit)
+    sides = {424: tool.read_parameter(218) + more, 425: tool.read_parameter(219) + more}
     yield from _make_centered_cycle(mill_rectangular_stud, {**_WALLS, 218: 218, 219: 219, 220: 220, **sides})(
         tool
     )

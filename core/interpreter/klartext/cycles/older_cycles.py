@@ -121,13 +121,13 @@ def _tapping(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
     lead = data.read_length_mm(3) if rigid else tool.convert_feed_to_lead(data.read_cutting_feed(4))
     rpm, lead = tool.compute_thread_rpm(lead) if rigid else tool.running_rpm, abs(lead)
     yield from tool.set_spindle_speed(rpm)
-    yield tool.make_tap_block(
+    yield tool.make_tapping_block(
         clear - data.read_length_mm(1) - abs(data.read_length_mm(2)), lead, is_in_hole=True
     )
     if not rigid:
         yield from tool.make_dwell_blocks(data.read_number(3), is_in_hole=True)
     yield tool.run_spindle(-rpm, is_in_hole=True)
-    yield tool.make_tap_block(clear, lead)
+    yield tool.make_tapping_block(clear, lead)
     yield from tool.set_spindle_speed(before)
 
 
@@ -231,7 +231,7 @@ def _thread_cutting(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
     text = "Cycle 18 needs a spindle speed and a pitch."
     tool.check_condition(rpm and pitch, text, "Program S in TOOL CALL and PITCH in cycle 18.")
     yield tool.run_spindle(rpm if pitch > 0.0 else -rpm)
-    yield tool.make_tap_block(tool.z_position + depth, abs(pitch), is_in_hole=True)
+    yield tool.make_tapping_block(tool.z_position + depth, abs(pitch), is_in_hole=True)
     yield tool.stop_spindle()
 
 

@@ -25,9 +25,9 @@ from core.interpreter.klartext.cycles.cycle_moves import (
 )
 from core.interpreter.klartext.cycles.hole_cycles import (
     MIN_LENGTH_MM,
-    compute_infeeds,
-    compute_levels,
-    read_heights,
+    compute_infeed_depths,
+    compute_z_levels,
+    read_cycle_heights,
     retract_from_hole,
 )
 from core.interpreter.shared.elementary_blocks import Block
@@ -46,7 +46,7 @@ class _MillingParameters:
 
     def __init__(self, tool: CycleTool) -> None:
         self.tool = tool
-        self.surface_z_mm, self.clearance_z_mm, self.bottom_z_mm = read_heights(tool)
+        self.surface_z_mm, self.clearance_z_mm, self.bottom_z_mm = read_cycle_heights(tool)
         self.safe_z_mm = self.surface_z_mm + max(tool.read_length_mm(204, 0.0), tool.read_length_mm(200))
         self.feed, self.plunge_feed = tool.read_cutting_feed(207), tool.read_cutting_feed(206)
         self.side_allowance_mm, self.floor_allowance_mm = (
@@ -54,7 +54,7 @@ class _MillingParameters:
             tool.read_length_mm(369, 0.0),
         )
         self.scope = tool.read_choice(215, _SCOPES, _ROUGH)
-        overlap = tool.read_value(370, 1.0)
+        overlap = tool.read_parameter(370, 1.0)
         if not 0.0 < overlap <= _MAX_OVERLAP or tool.radius_mm <= MIN_LENGTH_MM:
             text = (
                 "With path overlap Q370={overlap} and tool radius {radius} mm, the cycle cannot clear the "
@@ -65,10 +65,10 @@ class _MillingParameters:
         self.stepover_mm = overlap * tool.radius_mm
         self.is_up_cut = (tool.read_choice(351, (-1, 0, 1), 1.0) < 0) != (tool.running_rpm < 0.0)
 
-    def compute_levels(self) -> list[float]:
+    def compute_z_levels(self) -> list[float]:
         """Return the Z heights of the clearing levels in mm, ending with the deepest."""
         floor = self.bottom_z_mm + (self.floor_allowance_mm if self.scope != _FINISH else 0.0)
-        return compute_levels(self.tool, self.surface_z_mm, floor, lambda: self.tool.read_length_mm(202))
+        return compute_z_levels(self.tool, self.surface_z_mm, floor, lambda: self.tool.read_length_mm(202))
 
     @property
     def has_finishing(self) -> bool:
@@ -80,9 +80,9 @@ class _MillingParameters:
     @property
     def finishing_feed(self) -> float:
         """Return the feed of the finishing passes as programmed."""
-        return self.tool.read_cutting_feed(385) if self.tool.read_value(385, 0.0) else self.feed
+        return self.tool.read_cutting_feed(385) if self.tool.read_parameter(385, 0.0) else self.feed
 
-    def compute_wall_levels(self) -> list[float]:
+    def compute_wall_z_levels(self) -> list[float]:
         """Return the Z heights of the wall finishing passes in mm, in steps of Q338.
 
         If Q338 is 0, there is one pass at the bottom.
@@ -90,7 +90,7 @@ class _MillingParameters:
         step = self.tool.read_length_mm(338, 0.0)
         return [
             self.surface_z_mm - done
-            for done in compute_infeeds(self.tool, self.surface_z_mm - self.bottom_z_mm, step)
+            for done in compute_infeed_depths(self.tool, self.surface_z_mm - self.bottom_z_mm, step)
         ]
 
 
@@ -105,7 +105,7 @@ def mill_rectangular_pocket(tool: CycleTool) -> Iterator[Block]:
     """
     a, b = tool.read_length_mm(218) / 2.0, tool.read_length_mm(219) / 2.0
     corner = {0: (0.0, 0.0), 1: (a, b), 2: (-a, b), 3: (-a, -b), 4: (a, -b)}
-    seat = Placement(tool.xy_position, tool.read_value(224, 0.0)).translate(*_placed(tool, corner))
+    seat = Placement(tool.xy_position, tool.read_parameter(224, 0.0)).translate(*_placed(tool, corner))
     yield from _pocket(tool, seat, RoundedRectangle(a, b, tool.read_length_mm(220, 0.0)))
 
 
@@ -126,7 +126,7 @@ def mill_slot(tool: CycleTool) -> Iterator[Block]:
         a >= b - MIN_LENGTH_MM, "The slot is wider than it is long.", "Correct Q218 and Q219."
     )
     ends = {0: (0.0, 0.0), 1: (a, 0.0), 2: (a - b, 0.0), 3: (b - a, 0.0), 4: (-a, 0.0)}
-    seat = Placement(tool.xy_position, tool.read_value(374, 0.0)).translate(*_placed(tool, ends))
+    seat = Placement(tool.xy_position, tool.read_parameter(374, 0.0)).translate(*_placed(tool, ends))
     yield from _pocket(tool, seat, RoundedRectangle(a, b, b))
 
 
@@ -144,8 +144,8 @@ def _pocket(tool: CycleTool, seat: Placement, wall: RoundedRectangle) -> Iterato
             RoundedRectangle(wall.half_side_v_mm, wall.half_side_u_mm, wall.corner_radius_mm),
         )
     milling = _MillingParameters(tool)
-    last = wall.enlarge(-tool.radius_mm)
-    rough = last.enlarge(-milling.side_allowance_mm) if milling.scope != _FINISH else last
+    last = wall.make_enlarged_rectangle(-tool.radius_mm)
+    rough = last.make_enlarged_rectangle(-milling.side_allowance_mm) if milling.scope != _FINISH else last
     if min(rough.half_side_v_mm, last.half_side_v_mm) < -MIN_LENGTH_MM:
         raise tool.make_error("The tool is wider than the pocket or slot.", "Use a smaller tool.")
     rough, last = (
@@ -157,7 +157,7 @@ def _pocket(tool: CycleTool, seat: Placement, wall: RoundedRectangle) -> Iterato
         return
     if milling.scope != _FINISH:
         above = milling.surface_z_mm
-        for z in milling.compute_levels():
+        for z in milling.compute_z_levels():
             yield from _plunge(milling, seat, rough, above, z)
             yield from _clear_level(milling, seat, rough, milling.feed)
             above = z
@@ -226,7 +226,7 @@ def _clear_level(
         else 0
     )
     for at in range(1, count + 1):
-        each = ring.enlarge(-ring.half_side_v_mm * (1.0 - at / count))
+        each = ring.make_enlarged_rectangle(-ring.half_side_v_mm * (1.0 - at / count))
         yield tool.move_straight(placement.convert_to_program_point(each.half_side_u_mm, 0.0), None, feed)
         yield from each.generate_outline_moves(tool, placement, feed, is_clockwise=milling.is_up_cut)
 
@@ -248,7 +248,7 @@ def _finish_walls(
     if milling.side_allowance_mm <= MIN_LENGTH_MM and milling.scope != _FINISH:
         return
     quarter, side = min(tool.radius_mm / 2.0, ring.half_side_v_mm), -1.0 if milling.is_up_cut else 1.0
-    for z in milling.compute_wall_levels():
+    for z in milling.compute_wall_z_levels():
         yield tool.move_to_z(min(milling.clearance_z_mm, tool.z_position + tool.read_length_mm(200)))
         yield tool.move_straight(
             placement.convert_to_program_point(ring.half_side_u_mm - quarter, -side * quarter)
@@ -292,7 +292,7 @@ def mill_rectangular_stud(tool: CycleTool) -> Iterator[Block]:
     """
     a, b = tool.read_length_mm(218) / 2.0, tool.read_length_mm(219) / 2.0
     corner = {0: (0.0, 0.0), 1: (a, b), 2: (-a, b), 3: (-a, -b), 4: (a, -b)}
-    seat = Placement(tool.xy_position, tool.read_value(224, 0.0)).translate(*_placed(tool, corner))
+    seat = Placement(tool.xy_position, tool.read_parameter(224, 0.0)).translate(*_placed(tool, corner))
     more = max(tool.read_length_mm(424) / 2.0 - a, tool.read_length_mm(425) / 2.0 - b)
     yield from _stud(tool, seat, RoundedRectangle(a, b, tool.read_length_mm(220, 0.0)), more)
 
@@ -303,7 +303,7 @@ def mill_circular_stud(tool: CycleTool) -> Iterator[Block]:
     The diameter is Q223, the diameter of the blank is Q222, and the start angle is Q376.
     """
     radius = tool.read_length_mm(223) / 2.0
-    seat = Placement(tool.xy_position, max(tool.read_value(376, 0.0), 0.0))
+    seat = Placement(tool.xy_position, max(tool.read_parameter(376, 0.0), 0.0))
     yield from _stud(
         tool, seat, RoundedRectangle(radius, radius, radius), tool.read_length_mm(222) / 2.0 - radius
     )
@@ -322,20 +322,20 @@ def _stud(
         "The blank is not larger than the stud.",
         "Correct the blank dimensions.",
     )
-    last = wall.enlarge(tool.radius_mm)
-    rough = last.enlarge(milling.side_allowance_mm if milling.scope != _FINISH else 0.0)
+    last = wall.make_enlarged_rectangle(tool.radius_mm)
+    rough = last.make_enlarged_rectangle(milling.side_allowance_mm if milling.scope != _FINISH else 0.0)
     outside = last.half_side_u_mm + oversize_mm + tool.radius_mm + tool.read_length_mm(200)
     yield tool.move_to_z(max(milling.safe_z_mm, tool.z_position))
     if milling.surface_z_mm - milling.bottom_z_mm < MIN_LENGTH_MM:
         return
     rounds = math.ceil(oversize_mm / milling.stepover_mm - MIN_LENGTH_MM)
-    for z in milling.compute_levels() if milling.scope != _FINISH else ():
+    for z in milling.compute_z_levels() if milling.scope != _FINISH else ():
         for at in range(1, rounds + 1):
-            each = rough.enlarge(oversize_mm * (1.0 - at / rounds))
+            each = rough.make_enlarged_rectangle(oversize_mm * (1.0 - at / rounds))
             yield from _approach_level(milling, placement, outside, z, at == 1)
             yield from _around(milling, placement, each, milling.feed)
     if milling.has_finishing:
-        for z in milling.compute_wall_levels():
+        for z in milling.compute_wall_z_levels():
             yield from _approach_level(milling, placement, outside, z, True)
             yield from _around(milling, placement, last, milling.finishing_feed)
     yield tool.move_to_z(milling.clearance_z_mm)
@@ -349,7 +349,9 @@ def _approach_level(
     tool = milling.tool
     if not down:
         return
-    yield from tool.move_above(placement.convert_to_program_point(outside, 0.0), milling.clearance_z_mm)
+    yield from tool.move_above_position(
+        placement.convert_to_program_point(outside, 0.0), milling.clearance_z_mm
+    )
     yield tool.move_to_z(z, milling.plunge_feed)
 
 
@@ -375,10 +377,10 @@ def mill_circular_slot(tool: CycleTool) -> Iterator[Block]:
     A slot has the width Q219 on a circle with the diameter Q375. It starts at the angle Q376 and spans Q248
     degrees. Q377 is the number of slots, and Q378 is the angle between them.
     """
-    surface, clear, _ = read_heights(tool)
+    surface, clear, _ = read_cycle_heights(tool)
     safe = max(surface + tool.read_length_mm(204, 0.0), clear) / tool.mm_per_unit
     centre, begin, sweep = _slot_place(tool)
-    count, step = tool.read_whole_number(377, 1.0), tool.read_value(378, 0.0)
+    count, step = tool.read_whole_number(377, 1.0), tool.read_parameter(378, 0.0)
     text = "Q377={count} is not a valid number of slots."
     tool.check_condition(1 <= count <= _MAX_SLOTS, text, "Enter a valid number.", count=count)
     scope = tool.read_choice(215, _SCOPES, _BOTH)
@@ -413,16 +415,26 @@ def make_slot_outline(tool: CycleTool, center: Point, start_deg: float, sweep_de
         raise tool.make_error("The ends of the slot overlap.", "Reduce Q248.")
     first, last = sorted((start_deg, start_deg + sweep_deg))
 
-    def at(angle: float, away: float) -> Point:
+    def compute_polar_point(angle: float, away: float) -> Point:
         turned = math.radians(angle)
         return center[0] + away * math.cos(turned), center[1] + away * math.sin(turned)
 
     wide, near = radius + half, radius - half
     return [
-        Arc(at(first, wide), at(last, wide), center, False),
-        Arc(at(last, wide), at(last, near), at(last, radius), False),
-        Arc(at(last, near), at(first, near), center, True),
-        Arc(at(first, near), at(first, wide), at(first, radius), False),
+        Arc(compute_polar_point(first, wide), compute_polar_point(last, wide), center, False),
+        Arc(
+            compute_polar_point(last, wide),
+            compute_polar_point(last, near),
+            compute_polar_point(last, radius),
+            False,
+        ),
+        Arc(compute_polar_point(last, near), compute_polar_point(first, near), center, True),
+        Arc(
+            compute_polar_point(first, near),
+            compute_polar_point(first, wide),
+            compute_polar_point(first, radius),
+            False,
+        ),
     ]
 
 
@@ -431,7 +443,7 @@ def _slot_place(tool: CycleTool) -> tuple[Point, float, float]:
 
     Q367 determines whether they come from the parameters or from the tool position.
     """
-    begin, sweep, radius = tool.read_value(376), tool.read_value(248), tool.read_length_mm(375) / 2.0
+    begin, sweep, radius = tool.read_parameter(376), tool.read_parameter(248), tool.read_length_mm(375) / 2.0
     place = tool.read_whole_number(367, 0.0)
     share = {_LEFT_END: 0.0, _MIDDLE: 0.5, _RIGHT_END: 1.0}.get(place)
     if share is None:
@@ -455,5 +467,5 @@ def _finishing(tool: CycleTool) -> CycleParameters:
 
     If Q338 is 0, finishing takes a single infeed.
     """
-    feed: CycleParameters = {12: 385} if tool.read_value(385, 0.0) else {}
-    return {**feed, 10: 338 if tool.read_value(338, 0.0) else -1e9}
+    feed: CycleParameters = {12: 385} if tool.read_parameter(385, 0.0) else {}
+    return {**feed, 10: 338 if tool.read_parameter(338, 0.0) else -1e9}

@@ -100,10 +100,10 @@ def _count(state: State, part: PatternPart, number: float) -> int:
 def compute_circle_points(tool: CycleTool) -> list[Point]:
     """Return the points of cycle 220. Raises ProgramError for invalid parameters."""
     centre, radius = (tool.read_length_mm(216), tool.read_length_mm(217)), tool.read_length_mm(244) / 2.0
-    count, first = _told_count(tool, 241), tool.read_value(245, 0.0)
-    step = tool.read_value(247, 0.0)
+    count, first = _told_count(tool, 241), tool.read_parameter(245, 0.0)
+    step = tool.read_parameter(247, 0.0)
     if not step:
-        swept = tool.read_value(246, first + 360.0) - first
+        swept = tool.read_parameter(246, first + 360.0) - first
         step = swept / count if abs(swept) >= 360.0 or count == 1 else swept / (count - 1)
     return list(_circle(centre, radius, count, first, step))
 
@@ -126,7 +126,7 @@ def compute_row_points(tool: CycleTool) -> list[Point]:
         count=columns * rows,
         most_points=MAX_POINT_COUNT,
     )
-    angle = math.radians(tool.read_value(224, 0.0))
+    angle = math.radians(tool.read_parameter(224, 0.0))
     c, s, found = math.cos(angle), math.sin(angle), list[Point]()
     for column, row in _alternating_cells(columns, rows):
         u, v = column * tool.read_length_mm(237), row * tool.read_length_mm(238)

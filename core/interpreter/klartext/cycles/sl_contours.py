@@ -15,8 +15,8 @@ from dataclasses import dataclass
 
 from core.geometry.lines_and_arcs import Element, Point, find_intersections
 from core.geometry.pocket_area import (
-    AreaError,
     ElementLoop,
+    PocketAreaError,
     WindingCalculator,
     close_loop,
     find_boundary,
@@ -83,7 +83,7 @@ class ContourCollector(PathRunner):
                 node.column,
                 Message("{form} inside an SL cycle contour", form=node.function_name),
             )
-        if not node.axes and not node.words and node.function_name == "L":
+        if not node.axis_words and not node.words and node.function_name == "L":
             return
         self.side = self.side or node.compensation.strip("0+-")
         made = list(self._elements(node))
@@ -93,7 +93,7 @@ class ContourCollector(PathRunner):
             )
         if self._corner is not None:
             made[0] = self._insert_corner(made[0])
-        if self._begun < 0 and (node.words or any(word.axis in "XY" for word in node.axes)):
+        if self._begun < 0 and (node.words or any(word.axis in "XY" for word in node.axis_words)):
             self._begun = len(self._waiting)
         self._waiting += made
         self._end = made[-1].end
@@ -149,7 +149,7 @@ def _compute_boundary(
     """
     try:
         found = find_boundary(loops, inside)
-    except AreaError as problem:
+    except PocketAreaError as problem:
         text = "The contours cannot be combined: {problem}."
         hint = "Correct the entries named in the message."
         raise state.make_error(column, INPUT_VALUE_INCORRECT, text, hint, problem=problem) from None
@@ -200,14 +200,14 @@ def _inside(pockets: Sequence[ElementLoop], islands: Sequence[ElementLoop]) -> C
         for within, loop in zip(others, pockets[1:], strict=True)
     ]
 
-    def inside(point: Point) -> bool:
+    def is_inside_area(point: Point) -> bool:
         found = first.compute_winding_number(point) != 0
         for within, only_both in zip(others, both, strict=True):
             other = within.compute_winding_number(point) != 0
             found = found and other if only_both else found or other
         return found and not any(within.compute_winding_number(point) for within in stay)
 
-    return inside
+    return is_inside_area
 
 
 def _meet(one: ElementLoop, other: ElementLoop) -> bool:

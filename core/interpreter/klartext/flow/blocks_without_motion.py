@@ -78,7 +78,7 @@ CalculationNode = (
     nodes.Assignment
     | nodes.SystemRead
     | nodes.SystemWrite
-    | nodes.ErrorMessage
+    | nodes.ErrorMessageBlock
     | nodes.IgnoredBlock
     | nodes.GlobalDefinition
 )
@@ -98,14 +98,14 @@ def execute_calculation(state: State, node: CalculationNode) -> None:
             execute_system_read(state, node)
         case nodes.SystemWrite():
             execute_system_write(state, node)
-        case nodes.ErrorMessage():
+        case nodes.ErrorMessageBlock():
             text = Message("The program reports its own error {number} and stops.", number=node.error_number)
             hint = "Check the conditions under which the program reaches this block."
             raise state.make_error(node.column, PROGRAM_RAISED_ERROR, text, hint)
         case nodes.IgnoredBlock():
             state.log_ignored_function(node.function_name, node.column)
         case nodes.GlobalDefinition():
-            for each in node.values:
+            for each in node.parameters:
                 state.global_def_values[each.parameter_number] = word_values.value(state, each.formula)
 
 
@@ -139,8 +139,8 @@ def _read_address(state: State, node: SystemRead | SystemWrite) -> tuple[int, in
 
     Raises ProgramError if one of them is not a whole number.
     """
-    group = word_values.check_whole_number(state, value(state, node.group), "ID", node.column)
-    number = word_values.check_whole_number(state, value(state, node.number), "NR", node.column)
+    group = word_values.check_whole_number(state, value(state, node.group_number), "ID", node.column)
+    number = word_values.check_whole_number(state, value(state, node.data_number), "NR", node.column)
     if node.index is None:
         return group, number, 0
     return group, number, word_values.check_whole_number(state, value(state, node.index), "IDX", node.column)
@@ -209,7 +209,7 @@ def _cell(state: State, column: int, number: int, index: int) -> float:
         raise _not_here(state, column, 18, _TOOL_TABLE, number, index)
     found = _DEFAULT_RADIUS_VALUE if number == _PLANE_OFFSET_GROUP else 0.0
     text = "The tool table has no column {empty}, so FN 18 returns {value} as it does for an empty cell."
-    state.log_once(
+    state.log_finding_once(
         column, Severity.WARNING, "tool-table-column", text, empty=_EMPTY[number], value=f"{found:.9g}"
     )
     return found

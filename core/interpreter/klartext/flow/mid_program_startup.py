@@ -15,12 +15,12 @@ from core.interpreter.klartext.motion.path_functions import PathRunner
 from core.interpreter.klartext.setup.tool_call import update_tool_dimensions
 from core.interpreter.shared.actions import SpindleRun, SpindleStop
 from core.interpreter.shared.checkpoint import (
-    AxesLeg,
     Checkpoint,
     FunctionStep,
+    ModalStateLine,
+    MultiAxisLeg,
     PassStart,
     SavedPass,
-    StateLine,
 )
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.language.klartext.klartext_nodes import KlartextLine
@@ -33,7 +33,7 @@ class InterpreterParts(NamedTuple):
     state: State
     path_runner: PathRunner
     active_cycle: ActiveCycle
-    flow: Flow
+    program_flow: Flow
     pending_line: KlartextLine | None = None
 
 
@@ -61,7 +61,7 @@ def restore_state(state: State, start: PassStart, *, is_inch: bool) -> None:
     state.modal = point.modal._replace(absolute=True, metric=not is_inch)
     if state.modal.tool and not state.tool_axis:
         state.tool_axis = "Z"
-    state.block_count = 0 if start.is_mdi_line else point.blocks - len(start.approach)
+    state.block_count = 0 if start.is_mdi_line else point.blocks - len(start.approach_steps)
     state.set_machine_positions(setup.start)
     update_tool_dimensions(state)
 
@@ -72,12 +72,12 @@ def generate_mill_approach(state: State, start: PassStart) -> Iterator[Block]:
     The blocks are numbered so that later blocks have the same numbers as in a full run.
     """
     wanted = state.modal
-    if start.approach:
+    if start.approach_steps:
         state.modal = wanted._replace(spindle=0)
-    for step in start.approach:
+    for step in start.approach_steps:
         state.line_number, state.text = start.line_number, step.text
         match step:
-            case AxesLeg():
+            case MultiAxisLeg():
                 yield state.make_move_block(
                     BlockKind.RAPID if step.feed is None else BlockKind.FEED,
                     dict(step.target_positions),
@@ -93,27 +93,27 @@ def generate_mill_approach(state: State, start: PassStart) -> Iterator[Block]:
     state.modal = wanted
 
 
-def _lines(state: State) -> Iterator[StateLine]:
+def _lines(state: State) -> Iterator[ModalStateLine]:
     """Yield the modal state as text, with one line for each group of functions."""
     modal, figure = state.modal, state.transformation
-    yield StateLine("tool", f"T{modal.tool} {state.tool_axis}".rstrip() if modal.tool else "")
-    yield StateLine(
+    yield ModalStateLine("tool", f"T{modal.tool} {state.tool_axis}".rstrip() if modal.tool else "")
+    yield ModalStateLine(
         "length", f"L{state.tool_length_mm:+.3f}  R{state.tool_radius_mm:+.3f}" if modal.tool else ""
     )
-    yield StateLine("speed", f"S{modal.rpm:g}" if modal.rpm else "")
+    yield ModalStateLine("speed", f"S{modal.rpm:g}" if modal.rpm else "")
     held = f"M19 {modal.oriented:g}" if modal.oriented is not None else "M5"
-    yield StateLine("spindle", {1: "M3", 0: held, -1: "M4"}[modal.spindle])
-    yield StateLine("feed", f"F{state.feed_base}{state.feed:g}" if state.feed is not None else "")
-    yield StateLine("preset", str(state.setup.preset))
-    yield StateLine("datum", _words(LINEAR_AXES, state.origin) if state.origin != ORIGIN_POINT else "")
-    yield StateLine("plane", _plane(state))
+    yield ModalStateLine("spindle", {1: "M3", 0: held, -1: "M4"}[modal.spindle])
+    yield ModalStateLine("feed", f"F{state.feed_base}{state.feed:g}" if state.feed is not None else "")
+    yield ModalStateLine("preset", str(state.setup.preset))
+    yield ModalStateLine("datum", _words(LINEAR_AXES, state.origin) if state.origin != ORIGIN_POINT else "")
+    yield ModalStateLine("plane", _plane(state))
     turned = f"ROT{figure.rotation_deg:+g}" if figure.rotation_deg else ""
     scaled = f"SCL{figure.scale_factor:g}" if figure.scale_factor != 1.0 else ""
     mirrored = Message("MIRROR {mirrored}", mirrored=figure.mirrored_axes) if figure.mirrored_axes else ""
-    yield StateLine("transform", "  ".join(each for each in (mirrored, turned, scaled) if each))
-    yield StateLine("tcpm", "M128" if state.is_tcpm_active else "M129")
-    yield StateLine("coolant", "M8" if modal.coolant else "M9")
-    yield StateLine("outputs", " ".join(sorted(name.upper() for name in modal.outputs)))
+    yield ModalStateLine("transform", "  ".join(each for each in (mirrored, turned, scaled) if each))
+    yield ModalStateLine("tcpm", "M128" if state.is_tcpm_active else "M129")
+    yield ModalStateLine("coolant", "M8" if modal.coolant else "M9")
+    yield ModalStateLine("outputs", " ".join(sorted(name.upper() for name in modal.outputs)))
 
 
 def _plane(state: State) -> str:

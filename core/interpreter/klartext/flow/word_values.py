@@ -69,7 +69,7 @@ def _predefined(state: State, number: int, column: int) -> float:
 def value(state: State, formula: Formula) -> float:
     """Return the value of a formula. Raises ProgramError if the formula has no value or is out of range."""
 
-    def parameter(asked: Parameter) -> float:
+    def evaluate_parameter(asked: Parameter) -> float:
         assert isinstance(asked.number, int)  # Q parameters have no computed numbers
         if asked.letters == PREDEFINED_WORD:
             return _predefined(state, asked.number, asked.column)
@@ -79,13 +79,13 @@ def value(state: State, formula: Formula) -> float:
             )
         return read_parameter(state, asked.letters, asked.number, asked.column)
 
-    def no_value(column: int, why: str) -> ProgramError:
+    def make_formula_error(column: int, why: str) -> ProgramError:
         text = Message("{what}.", what=why)
         return state.mark_position_error(
             state.make_error(column, ARITHMETIC_ERROR, text, "Correct the formula.")
         )
 
-    found = compute_formula(formula, parameter, no_value)
+    found = compute_formula(formula, evaluate_parameter, make_formula_error)
     if abs(found) > MAX_Q_VALUE:
         text = Message(
             "The result {value} exceeds the limit of {most_q}.",
@@ -214,7 +214,7 @@ def read_programmed_feed(state: State, feed: FeedWord | None, column: int) -> tu
         raise state.make_error(
             feed.column, INPUT_VALUE_INCORRECT, "F must be above zero.", "Enter a feed rate."
         )
-    return found, feed.feed_base or (REVOLUTION if state.is_feed_per_revolution else "")
+    return found, feed.feed_unit_letter or (REVOLUTION if state.is_feed_per_revolution else "")
 
 
 def _missing(state: State, column: int, text: str, hint: str) -> ProgramError:

@@ -77,7 +77,7 @@ def convert_to_feed_per_minute(state: State, feed: float, base: str, column: int
             column, INPUT_VALUE_INCORRECT, text, hint, word=word, feed=feed, rpm=rpm, count=made
         )
     text = "{word} uses the programmed S, so the spindle override does not change the feed rate."
-    state.log_once(column, Severity.NOTE, "feed-by-programmed-speed", text, word=word)
+    state.log_finding_once(column, Severity.NOTE, "feed-by-programmed-speed", text, word=word)
     return made
 
 

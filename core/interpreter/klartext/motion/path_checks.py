@@ -11,7 +11,7 @@ TABLE_TOLERANCE_DEG = 0.001  # degrees; position error of the table above which 
 
 def check_axes(state: State, node: PathFunction) -> None:
     """Raise ProgramError for an axis that the machine does not have."""
-    for word in node.axes:
+    for word in node.axis_words:
         if word.axis not in state.position_by_axis:
             text = "This machine has no {axis} axis."
             raise state.make_error(word.column, WRONG_AXIS, text, "Remove the word.", axis=word.axis)
@@ -37,9 +37,9 @@ def check_surface_normal(state: State, node: PathFunction, *, is_compensated: bo
         )
 
 
-def warn_before_cut(state: State, node: PathFunction) -> None:
+def warn_about_cut_start(state: State, node: PathFunction) -> None:
     """Warn once if a cut starts with the spindle stopped or the table not at the plane's angles."""
-    if all(word.axis not in LINEAR_AXES for word in node.axes) and not node.words:
+    if all(word.axis not in LINEAR_AXES for word in node.axis_words) and not node.words:
         return
     if not state.modal.spindle and "spindle" not in state.reported_findings:
         state.reported_findings.add("spindle")

@@ -140,7 +140,7 @@ def find_pole_plane(node: Pole, previous_plane: AxisOrder) -> AxisOrder:
 
     If CC names only one axis, and the previous plane contains this axis, the plane remains unchanged.
     """
-    named = {word.axis for word in node.axes}
+    named = {word.axis for word in node.axis_words}
     if len(named) < 2:
         return (
             previous_plane

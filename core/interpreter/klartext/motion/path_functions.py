@@ -18,7 +18,11 @@ from core.geometry.working_plane import convert_to_plane_order
 from core.interpreter.klartext.flow import word_values
 from core.interpreter.klartext.klartext_state import LINEAR_AXES, POINT_TOLERANCE, State
 from core.interpreter.klartext.motion.feed_rates import convert_to_feed_per_minute, reduce_plunging_feed
-from core.interpreter.klartext.motion.path_checks import check_axes, check_surface_normal, warn_before_cut
+from core.interpreter.klartext.motion.path_checks import (
+    check_axes,
+    check_surface_normal,
+    warn_about_cut_start,
+)
 from core.interpreter.klartext.motion.path_element_blocks import make_element_block
 from core.interpreter.klartext.motion.path_elements import (
     PathElement,
@@ -51,12 +55,12 @@ BlockGenerator = Callable[[], Iterator[Block]]
 class _InsertedEvent:
     """The blocks of an event, such as an M function, between two buffered elements.
 
-    ``line`` and ``text`` are the line and the text of the event's block.
+    ``line_number`` and ``text`` are the line and the text of the event's block.
     """
 
-    event: BlockGenerator
-    line: int
-    text: str
+    block_generator: BlockGenerator
+    line_number: int
+    block_text: str
 
 
 @dataclass(slots=True)
@@ -108,7 +112,7 @@ class PathRunner:
     def set_pole(self, node: Pole) -> None:
         """Set the pole of CC to its axis words, or to the end of the path if CC has no axis words."""
         here = dict(zip(LINEAR_AXES, self.path_end, strict=True))
-        for word in node.axes:
+        for word in node.axis_words:
             value = word_values.evaluate_coordinate(self._state, word)
             here[word.axis] = here[word.axis] + value if word.is_incremental else value
         self._state.pole_plane = order = find_pole_plane(node, self._state.pole_plane)
@@ -139,7 +143,7 @@ class PathRunner:
             return
         self._waiting.append(_InsertedEvent(event, self._state.line_number, self._state.text))
 
-    def flush_before(self, column: int, next_function: str) -> Iterator[Block]:
+    def flush_blocks_before(self, column: int, next_function: str) -> Iterator[Block]:
         """Yield all buffered blocks before ``next_function`` is executed.
 
         Raises ProgramError if compensation is active, or if the element after a buffered corner is still
@@ -173,7 +177,7 @@ class PathRunner:
 
         Raises ProgramError for an invalid path function.
         """
-        if not node.axes and not node.words and node.function_name == "L":
+        if not node.axis_words and not node.words and node.function_name == "L":
             if node.feed is not None:
                 self._set_block_feed(node)
             yield from self._switch_compensation(node)
@@ -182,7 +186,7 @@ class PathRunner:
         if node.function_name == "LN":
             check_surface_normal(self._state, node, is_compensated=bool(self._side))
         if machine_datum is not None:
-            yield from self.flush_before(node.column, "M91")
+            yield from self.flush_blocks_before(node.column, "M91")
             yield from self._move_in_machine_frame(node, machine_datum)
             return
         made = list(self._elements(node))
@@ -203,7 +207,7 @@ class PathRunner:
     def _elements(self, node: PathFunction) -> Iterator[PathElement]:
         state, feed = self._state, self._set_block_feed(node)
         if feed is not None:
-            warn_before_cut(state, node)
+            warn_about_cut_start(state, node)
         rotary = find_rotary_targets(state, node, state.kinematics.zero_angles)
         if rotary and self._side:
             text = "A rotary axis cannot move while radius compensation is active."
@@ -420,8 +424,8 @@ class PathRunner:
     def _run(self, between: _InsertedEvent) -> Iterator[Block]:
         state = self._state
         line, text = state.line_number, state.text
-        state.line_number, state.text = between.line, between.text
-        yield from between.event()
+        state.line_number, state.text = between.line_number, between.block_text
+        yield from between.block_generator()
         state.line_number, state.text = line, text
 
     def _emit_all(self, made: Iterator[PathElement]) -> Iterator[Block]:
@@ -443,7 +447,7 @@ class PathRunner:
         """
         state, feed = self._state, self._set_block_feed(node)
         if feed is not None:
-            warn_before_cut(state, node)
+            warn_about_cut_start(state, node)
         goals = find_rotary_targets(state, node, dict.fromkeys(state.rotary_axis_names, 0.0))
         for axis, now in zip(LINEAR_AXES, state.linear_position, strict=True):
             if (word := node.find_word(axis)) is not None:
@@ -466,7 +470,7 @@ class PathRunner:
         A rapid applies only to this block.
         """
         state = self._state
-        column = node.axes[0].column if node.axes else node.column
+        column = node.axis_words[0].column if node.axis_words else node.column
         found = word_values.read_programmed_feed(state, node.feed, column)
         if found is None:
             return None

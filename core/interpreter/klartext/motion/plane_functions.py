@@ -27,7 +27,7 @@ from core.geometry.rotation_frames import (
     subtract_vectors,
     transpose_matrix,
 )
-from core.geometry.swivel_angles import SolutionSide, choose_solution, find_reachable_solutions
+from core.geometry.swivel_angles import PrimaryAxisSide, choose_solution, find_reachable_solutions
 from core.interpreter.klartext.flow import word_values
 from core.interpreter.klartext.klartext_state import (
     LINEAR_AXES,
@@ -69,7 +69,7 @@ def make_working_plane(state: State, node: PlaneBlock) -> ActivePlane:
     frame = multiply_matrices(
         _base(state, node), _transform_frame(state, node, _FORMS[node.definition_kind](state, node))
     )
-    side = SolutionSide(node.positioning.solution) if node.positioning.solution else None
+    side = PrimaryAxisSide(node.positioning.solution) if node.positioning.solution else None
     table_rot = node.positioning.rotation_mode == "TABLE ROT"
     found = choose_solution(state.kinematics, frame, state.rotary_angles, side, rotates_table=table_rot)
     if found is None:
@@ -245,7 +245,7 @@ def plane(state: State, node: PlaneBlock) -> Iterator[Block]:
     mode = node.positioning.mode or "STAY"
     feed = word_values.evaluate_feed(state, node.positioning.feed, node.column) if mode != "STAY" else None
     up = compute_retract_length(state, node.positioning.retract)
-    distance = word_values.evaluate_length_mm(state, node.positioning.distance, "DIST")
+    distance = word_values.evaluate_length_mm(state, node.positioning.rotation_center_distance, "DIST")
     _warn_about_shift(state, made)
     for q, name in zip(TARGET_ANGLE_PARAMETERS, ROTARY_AXES, strict=True):
         axis = state.kinematics.find_rotary_axis(name)

@@ -27,11 +27,11 @@ def execute_datum_shift(state: State, node: DatumShift) -> None:
         node = DatumShift(_read_table_row(state, node.table_row, node.column))
     if node.is_reset:
         state.datum = state.shift = ORIGIN_POINT
-    elif node.axes:
+    elif node.axis_words:
         now = dict(
             zip(LINEAR_AXES, state.shift if state.active_plane is not None else state.datum, strict=True)
         )
-        for word in node.axes:
+        for word in node.axis_words:
             value = word_values.evaluate_coordinate(state, word)
             if word.axis not in now:
                 _demand_no_turn(state, word.axis, value, word.column)
@@ -82,7 +82,7 @@ def execute_transformation(state: State, node: CoordinateTransform) -> None:
     """
     figure = state.transformation
     if node.transformation_kind == "MIRROR":
-        state.transformation = replace(figure, mirrored_axes=node.axes)
+        state.transformation = replace(figure, mirrored_axes=node.mirrored_axes)
         return
     if node.value is None:
         state.transformation = (

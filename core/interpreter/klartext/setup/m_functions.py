@@ -79,7 +79,7 @@ def check(state: State, codes: Sequence[MFunction]) -> None:
         | _CODES_AFTER_MOTION
         | _BLOCKWISE_CODES
         | IGNORED_CODES
-        | limits.m_outputs.keys()
+        | limits.m_code_outputs.keys()
         | limits.ignored_m_codes
     )
     known |= _SECOND_DATUM if limits.fixed_points else frozenset()
@@ -114,7 +114,7 @@ def check(state: State, codes: Sequence[MFunction]) -> None:
                 "use."
             )
             hint = "Check the tool life before you start the program."
-            state.log_once(code.column, Severity.WARNING, "no-replacement-tool", text, hint)
+            state.log_finding_once(code.column, Severity.WARNING, "no-replacement-tool", text, hint)
         if any(other.number == code.number for other in codes[:position]):
             text = Message("M{number} is programmed twice in the block.", number=code.number)
             raise make_syntax_error(state.line_number, code.column, text, "Remove one of the two.")
@@ -150,7 +150,7 @@ def read_machine_datum(state: State, codes: Sequence[MFunction]) -> Mapping[str,
 def execute_before_motion(state: State, m_functions: Sequence[MFunction]) -> Iterator[Block]:
     """Yield the blocks of the M functions that act before the motion."""
     for code in m_functions:
-        output = state.setup.limits.m_outputs.get(code.number)
+        output = state.setup.limits.m_code_outputs.get(code.number)
         if code.number in _TURNS:
             yield _start(state, code)
         if code.number in {8, 13, 14}:
@@ -170,7 +170,7 @@ def execute_before_motion(state: State, m_functions: Sequence[MFunction]) -> Ite
 def execute_after_motion(state: State, m_functions: Sequence[MFunction], comment: str) -> Iterator[Block]:
     """Yield the blocks of the M functions that act after the motion."""
     for code in m_functions:
-        output = state.setup.limits.m_outputs.get(code.number)
+        output = state.setup.limits.m_code_outputs.get(code.number)
         if code.number in {0, 5, 6} and state.modal.spindle:
             yield _stop(state)
         if code.number == M19:

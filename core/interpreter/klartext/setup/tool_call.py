@@ -21,7 +21,7 @@ from core.language.klartext.klartext_nodes import ToolCall, ToolDefinition
 from core.language.klartext.klartext_words import Value
 from core.language.klartext.structure_blocks import MAX_TOOL_NUMBER
 from core.message import Message
-from core.tool_edges import FIRST_NAMED_TOOL, NamedTool
+from core.tool_edges import FIRST_NAMED_TOOL, NamedToolNumber
 
 
 def execute_tool_call(state: State, node: ToolCall, usage: ToolUsage) -> Iterator[Block]:
@@ -30,7 +30,7 @@ def execute_tool_call(state: State, node: ToolCall, usage: ToolUsage) -> Iterato
     The axes do not move, but the tip position changes with the new tool length. If ProgramError is raised,
     the state has not changed.
     """
-    words = {"DL": node.length, "DR": node.radius, "DR2": node.corner_radius}
+    words = {"DL": node.delta_length, "DR": node.delta_radius, "DR2": node.corner_radius}
     has_deltas = any(word is not None for word in words.values())
     if state.is_tcpm_active and (node.tool is not None or has_deltas):
         text = "TOOL CALL with a tool or an oversize is not allowed while M128 is active."
@@ -46,7 +46,7 @@ def execute_tool_call(state: State, node: ToolCall, usage: ToolUsage) -> Iterato
     state.tool_axis = node.tool_axis or state.tool_axis
     if feed is not None:
         state.feed = state.tool_feed = feed
-        per = node.feed_base or (REVOLUTION if state.is_feed_per_revolution else "")
+        per = node.feed_unit_letter or (REVOLUTION if state.is_feed_per_revolution else "")
         state.feed_base = state.tool_feed_base = per
     elif node.tool is not None:
         state.tool_feed = None
@@ -82,7 +82,7 @@ def _number(state: State, tool: int | str | Value | None, column: int) -> int | 
         return tool
     names = [each for each in state.tool_definitions if isinstance(each, str)]
     if tool in names:
-        return NamedTool(FIRST_NAMED_TOOL + names.index(tool), tool)
+        return NamedToolNumber(FIRST_NAMED_TOOL + names.index(tool), tool)
     if (found := state.setup.tool_names.get(tool.upper())) is not None:
         return found
     hint = "Give this name to a tool in the tool table, or call the tool by its number."
@@ -152,7 +152,7 @@ def _defined(state: State, tool: int) -> tuple[float, float] | None:
 
 def format_tool(tool: int) -> str:
     """Return the tool number or name in the notation of the program."""
-    return f'"{tool.name}"' if isinstance(tool, NamedTool) else f"{tool}"
+    return f'"{tool.name}"' if isinstance(tool, NamedToolNumber) else f"{tool}"
 
 
 def _name_of(state: State, tool: int) -> str:

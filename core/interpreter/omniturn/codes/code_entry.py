@@ -77,7 +77,7 @@ MAX_FEEDS_PER_REV = tuple(inches * units.MM_PER_INCH for inches in (0.2, 1.0, 2.
 """Maximum feed or lead in mm/rev for G36, G35 and G35F2, in this order."""
 
 
-class RejectCondition(Enum):
+class RejectionCondition(Enum):
     """Condition under which the control rejects a code.
 
     The value of a member is its text on the reference page.
@@ -136,16 +136,16 @@ class WordRule:
     - ``missing_error`` is the error if the word is missing.
     - ``invalid_error`` is the error for an invalid number.
     - ``too_large_error`` is a separate error for a number above the limit.
-    - ``bare_value`` is the value of the letter without a number.
+    - ``value_without_number`` is the value of the letter without a number.
     """
 
     description: str
     minimum: float = -inf
     maximum: float | WordLimit = inf
     excludes_minimum: bool = False
-    is_nonzero: bool = False
-    is_whole: bool = False
-    bare_value: float | None = None
+    requires_nonzero: bool = False
+    requires_whole_number: bool = False
+    value_without_number: float | None = None
     missing_error: ErrorTemplate | None = None
     invalid_error: ErrorTemplate | None = None
     too_large_error: ErrorTemplate | None = None
@@ -160,7 +160,11 @@ class WordRule:
         ``limit`` is the current upper limit if ``maximum`` is a ``WordLimit``.
         """
         too_small = number < self.minimum or (self.excludes_minimum and number == self.minimum)
-        if too_small or (self.is_nonzero and number == 0) or (self.is_whole and number % 1):
+        if (
+            too_small
+            or (self.requires_nonzero and number == 0)
+            or (self.requires_whole_number and number % 1)
+        ):
             return self.invalid_error
         greatest = limit if isinstance(self.maximum, WordLimit) else self.maximum
         return (self.too_large_error or self.invalid_error) if number > greatest else None
@@ -193,11 +197,11 @@ class CodeEntry:
     """Entry of one code in the code table.
 
     - ``example``: program lines between ``EXAMPLE_HEAD`` and ``EXAMPLE_TAIL``.
-    - ``subroutine``: example lines after the program end.
+    - ``example_subroutine``: example lines after the program end.
     - ``allowed_words``: permitted words other than G and M.
     - ``word_rules``: ranges of the numbers of these words.
     - ``required_words``, ``exclusive_words``: words that are required or exclude each other.
-    - ``reject_conditions``: conditions that reject the code, in the order of the checks.
+    - ``rejection_conditions``: conditions that reject the code, in the order of the checks.
     - ``other_diagnostic_codes``: codes of checks that need geometry, other lines or the structure.
 
     Raises CodeEntryError if words, rules and the meaning of F contradict each other, or if a mode has no
@@ -208,17 +212,17 @@ class CodeEntry:
     syntax: str
     description: str
     example: str
-    subroutine: str = ""
+    example_subroutine: str = ""
     action_kind: ActionKind = field(kw_only=True)
     handler: str = field(kw_only=True)
     f_meaning: FMeaning = field(kw_only=True)
     s_meaning: SMeaning = SMeaning.SPEED
     allowed_words: frozenset[str] = frozenset()
-    group: str = ""  # a line may have only one mode of a group
+    mode_group: str = ""  # a line may have only one mode of a group
     word_rules: Mapping[str, WordRule] = field(default_factory=dict)
     required_words: WordGroup | None = None
     exclusive_words: tuple[WordGroup, ...] = ()
-    reject_conditions: Mapping[RejectCondition, ErrorTemplate] = field(default_factory=dict)
+    rejection_conditions: Mapping[RejectionCondition, ErrorTemplate] = field(default_factory=dict)
     required_input: tuple[str, bool] = ("", False)  # the input that the code reads, and the required state
     min_block_count: int = 0  # minimum number of its elementary blocks
     ends_program: bool = False
@@ -236,7 +240,7 @@ class CodeEntry:
             raise CodeEntryError(
                 f"{self.name}: its words and what F means there contradict each other", "f-word"
             )
-        if self.action_kind is ActionKind.MODE and not self.group:
+        if self.action_kind is ActionKind.MODE and not self.mode_group:
             raise CodeEntryError(f"{self.name}: a mode needs its group", "no-group")
         if self.action_kind is not ActionKind.WORD and self.word_rules.keys() - self.allowed_words:
             raise CodeEntryError(
@@ -248,7 +252,7 @@ class CodeEntry:
         """Return the error templates that this entry defines."""
         together = (*self.exclusive_words, *((self.required_words,) if self.required_words else ()))
         of_words = (each for rule in self.word_rules.values() for each in rule.errors)
-        return (*self.reject_conditions.values(), *of_words, *(each.refusal for each in together))
+        return (*self.rejection_conditions.values(), *of_words, *(each.refusal for each in together))
 
     @property
     def diagnostic_codes(self) -> frozenset[str]:
@@ -258,7 +262,7 @@ class CodeEntry:
     @property
     def example_program(self) -> str:
         """Return the example as a complete program."""
-        return f"{EXAMPLE_HEAD}{self.example}\n{EXAMPLE_TAIL}{self.subroutine}"
+        return f"{EXAMPLE_HEAD}{self.example}\n{EXAMPLE_TAIL}{self.example_subroutine}"
 
 
 def names(text: str) -> frozenset[str]:

@@ -12,7 +12,7 @@ from core.interpreter.omniturn.codes.code_entry import (
     MAX_FEEDS_PER_REV,
     CodeEntry,
     ErrorTemplate,
-    RejectCondition,
+    RejectionCondition,
     WordLimit,
     WordRule,
 )
@@ -52,18 +52,18 @@ def refused(
 def number(state: State, statement: Statement, letter: str, code: CodeEntry | None = None) -> float | None:
     """Return the number of a word as written, or None if the line lacks the word.
 
-    For a letter without a number, the ``bare_value`` of the rule is returned if it exists. The rule is that
-    of ``code``, or of the line's code if ``code`` is None. Raises ProgramError if the rule rejects the
-    number, or if the rule requires a word or number that the line lacks.
+    For a letter without a number, the ``value_without_number`` of the rule is returned if it exists. The
+    rule is that of ``code``, or of the line's code if ``code`` is None. Raises ProgramError if the rule
+    rejects the number, or if the rule requires a word or number that the line lacks.
     """
     code = code or statement.code_entry
     rule, word = code.word_rules[letter], statement.words.get(letter)
-    if word is not None and word.value is None and rule.bare_value is not None:
-        return rule.bare_value
-    return check_value(state, statement, letter, None if word is None else word.value, code)
+    if word is not None and word.value is None and rule.value_without_number is not None:
+        return rule.value_without_number
+    return check_word_number(state, statement, letter, None if word is None else word.value, code)
 
 
-def check_value(
+def check_word_number(
     state: State,
     statement: Statement,
     letter: str,
@@ -129,7 +129,7 @@ _LIMITS: dict[WordLimit, Callable[[State], float]] = {
     WordLimit.LEAD: lambda state: MAX_FEEDS_PER_REV[state.modal.coarse],
     WordLimit.SURFACE_SPEED: lambda _: 6000 * MM_S_PER_M_MIN,
     WordLimit.RPM: lambda state: state.setup.limits.max_rpm,
-    WordLimit.C_RPM: lambda state: state.setup.limits.c_max_rpm,
+    WordLimit.C_RPM: lambda state: state.setup.limits.max_c_rpm,
 }
 
 
@@ -147,17 +147,17 @@ def check_word_groups(statement: Statement, code: CodeEntry) -> None:
 
 
 def check_conditions(
-    state: State, statement: Statement, code: CodeEntry, *only: RejectCondition, word: Word | None = None
+    state: State, statement: Statement, code: CodeEntry, *only: RejectionCondition, word: Word | None = None
 ) -> None:
     """Raise ProgramError for the first reject condition of a code that applies.
 
     If ``only`` is not empty, only its conditions are checked. The error is located at ``word``, or at the
     code if ``word`` is None.
     """
-    for when, refusal in code.reject_conditions.items():
+    for when, refusal in code.rejection_conditions.items():
         if (not only or when in only) and _CONDITION_CHECKS[when](state, statement, code):
             line = state.tool_line
-            if when is RejectCondition.TOOL_NOT_MOVED:
+            if when is RejectionCondition.TOOL_NOT_MOVED:
                 state.tool_line = 0  # The error is reported only once.
             raise refused(statement, code, refusal, word, line=line, on=state.modal.compensation_code)
 
@@ -187,32 +187,32 @@ def _collet_open(state: State, _made: Statement, _code: CodeEntry) -> bool:
     return not state.modal.collet_closed and not state.setup.limits.can_start_with_collet_open
 
 
-_CONDITION_CHECKS: dict[RejectCondition, Callable[[State, Statement, CodeEntry], bool]] = {
-    RejectCondition.WITH_OTHER_WORDS: _with_others,
-    RejectCondition.WITH_FEED: lambda _, statement, _code: (
-        (statement.is_f_feed and "F" in statement.words)
+_CONDITION_CHECKS: dict[RejectionCondition, Callable[[State, Statement, CodeEntry], bool]] = {
+    RejectionCondition.WITH_OTHER_WORDS: _with_others,
+    RejectionCondition.WITH_FEED: lambda _, statement, _code: (
+        (statement.is_f_feed_rate and "F" in statement.words)
         or 94 in statement.modal_codes
         or 95 in statement.modal_codes
     ),
-    RejectCondition.WITH_M: lambda _, statement, _code: statement.m_number is not None,
-    RejectCondition.NOSE_COMPENSATION: lambda state, _, _code: state.modal.compensation_code != 40,
-    RejectCondition.COARSE_FEED: lambda state, _, _code: bool(state.modal.coarse),
-    RejectCondition.NO_COARSE_FEED: lambda state, _, _code: not state.modal.coarse,
-    RejectCondition.INCREMENTAL_DIAMETERS: lambda state, _, _code: (
+    RejectionCondition.WITH_M: lambda _, statement, _code: statement.m_number is not None,
+    RejectionCondition.NOSE_COMPENSATION: lambda state, _, _code: state.modal.compensation_code != 40,
+    RejectionCondition.COARSE_FEED: lambda state, _, _code: bool(state.modal.coarse),
+    RejectionCondition.NO_COARSE_FEED: lambda state, _, _code: not state.modal.coarse,
+    RejectionCondition.INCREMENTAL_DIAMETERS: lambda state, _, _code: (
         state.modal.diameter and not state.absolute
     ),
-    RejectCondition.SURFACE_SPEED: lambda state, _, _code: state.modal.css,
-    RejectCondition.FEED_PER_REV: lambda state, _, _code: state.modal.per_rev,
-    RejectCondition.NO_FEED: _no_feed,
-    RejectCondition.NO_CUT_FEED: lambda state, _, _code: state.modal.last_cutting_feed is None,
-    RejectCondition.TOOL_NOT_MOVED: lambda state, _, _code: bool(state.tool_line),
-    RejectCondition.NO_SPEED: _no_speed,
-    RejectCondition.SPINDLE_STOPPED: lambda state, _, _code: not state.compute_rpm_at(state.x),
-    RejectCondition.SPINDLE_TURNING: _turning,
-    RejectCondition.COLLET_OPEN: _collet_open,
-    RejectCondition.C_LOCKED: lambda state, _, _code: state.modal.c_locked,
-    RejectCondition.C_NOT_LOCKED: lambda state, _, _code: not state.modal.c_locked,
-    RejectCondition.C_DISABLED: lambda state, _, _code: not state.setup.limits.is_c_enabled,
+    RejectionCondition.SURFACE_SPEED: lambda state, _, _code: state.modal.css,
+    RejectionCondition.FEED_PER_REV: lambda state, _, _code: state.modal.per_rev,
+    RejectionCondition.NO_FEED: _no_feed,
+    RejectionCondition.NO_CUT_FEED: lambda state, _, _code: state.modal.last_cutting_feed is None,
+    RejectionCondition.TOOL_NOT_MOVED: lambda state, _, _code: bool(state.tool_line),
+    RejectionCondition.NO_SPEED: _no_speed,
+    RejectionCondition.SPINDLE_STOPPED: lambda state, _, _code: not state.compute_rpm_at(state.x),
+    RejectionCondition.SPINDLE_TURNING: _turning,
+    RejectionCondition.COLLET_OPEN: _collet_open,
+    RejectionCondition.C_LOCKED: lambda state, _, _code: state.modal.c_locked,
+    RejectionCondition.C_NOT_LOCKED: lambda state, _, _code: not state.modal.c_locked,
+    RejectionCondition.C_DISABLED: lambda state, _, _code: not state.setup.limits.is_c_enabled,
     # This condition is checked only for lines without a straight move.
-    RejectCondition.NO_STRAIGHT_MOVE: lambda *_: True,
+    RejectionCondition.NO_STRAIGHT_MOVE: lambda *_: True,
 }

@@ -11,7 +11,7 @@ from core.interpreter.omniturn.codes.code_entry import (
     CodeEntry,
     ErrorTemplate,
     FMeaning,
-    RejectCondition,
+    RejectionCondition,
     WordLimit,
     WordRule,
     make_flow_entry,
@@ -22,14 +22,14 @@ from core.interpreter.omniturn.codes.code_entry import (
 _CONTOUR = "X.2Z0\nX.3Z-.1\nZ-.3\nX.55Z-.5"
 _COARSE = "S500\nG35\nG92X.6Z.1\nG33X.57Z-.5I.01K.4\nG36\nG92X.6Z.1"
 _NOT_READY = {
-    RejectCondition.NOSE_COMPENSATION: ErrorTemplate(
+    RejectionCondition.NOSE_COMPENSATION: ErrorTemplate(
         "cycle-nose-comp", "{code} cannot run while nose compensation is active.",
             "Write G40 and a departure move before the cycle."),
-    RejectCondition.TOOL_NOT_MOVED: ErrorTemplate(
+    RejectionCondition.TOOL_NOT_MOVED: ErrorTemplate(
         "tool-first-move",
         "{code} is the first move after the T word on line {line}, so its start point is unknown.",
             "Program a move to X and Z of the start point before the cycle."),
-    RejectCondition.NO_FEED: ErrorTemplate(
+    RejectionCondition.NO_FEED: ErrorTemplate(
         "feed-missing",
         "{code}: no cutting feed is active.", "Write F on the {code} line."),
 }
@@ -70,7 +70,7 @@ _DESCRIBED = WordRule(
 _contour = partial(
     CodeEntry, action_kind=ActionKind.CONTOUR, handler="cycles.roughing_cycles:plan_contour_cycle",
         f_meaning=FMeaning.FEED,
-    reject_conditions=_NOT_READY,
+    rejection_conditions=_NOT_READY,
     mdi_error_text=
                 "{code} cannot cut a contour in MDI, because a contour needs more than one line.",
 )
@@ -108,24 +108,25 @@ _END = WordRule(
 _thread = partial(
     CodeEntry, action_kind=ActionKind.MOTION, handler="cycles.threading_cycles:generate_thread_blocks",
         f_meaning=FMeaning.FEED, min_block_count=4,
-    reject_conditions={
-        RejectCondition.SURFACE_SPEED: ErrorTemplate(
+    rejection_conditions={
+        RejectionCondition.SURFACE_SPEED: ErrorTemplate(
             "thread-under-css",
             "G96 is active, but a thread needs the same spindle speed from the first pass to "
             "the last.",
             "Write G97S before the thread line."),
-        RejectCondition.NOSE_COMPENSATION: ErrorTemplate(
+        RejectionCondition.NOSE_COMPENSATION: ErrorTemplate(
             "thread-under-comp",
             "G{on} is active, but a thread cannot be cut with nose compensation.",
             "Write G40 before this line."),
-        RejectCondition.SPINDLE_STOPPED: ErrorTemplate(
+        RejectionCondition.SPINDLE_STOPPED: ErrorTemplate(
             "spindle-stopped",
             "The spindle is stopped, but it must turn to cut a thread.",
             "Start the spindle with M03 or M04."),
     },
 )
 _coarse = partial(
-    CodeEntry, action_kind=ActionKind.MODE, handler="motion.feeds:execute_coarse_feed", group="coarse feed",
+    CodeEntry, action_kind=ActionKind.MODE, handler="motion.feeds:execute_coarse_feed",
+        mode_group="coarse feed",
     mdi_error_text="{code} needs a G92 on the next line, but MDI runs only one line.",
 )
 _COARSE_ERROR = ErrorTemplate(
@@ -140,13 +141,13 @@ CYCLE_CHAPTERS: tuple[Chapter, ...] = (
             action_kind=ActionKind.CYCLE, handler="cycles.drilling_cycles:plan_drilling",
             allowed_words=names("X Z F S"),
             f_meaning=FMeaning.FEED,
-            reject_conditions=_NOT_READY, word_rules={"Z": _DEPTH}, min_block_count=2,
+            rejection_conditions=_NOT_READY, word_rules={"Z": _DEPTH}, min_block_count=2,
             other_diagnostic_codes=names("cycle-depth")),
         CodeEntry("G83", "G83ZnKnFnRnLnCn", "Drills in pecks of K, retracting to R.",
             "X0Z.1\nG83Z-.65K.2F.004",
             action_kind=ActionKind.CYCLE, handler="cycles.drilling_cycles:plan_pecking",
             allowed_words=names("X Z C K R L F S"),
-            f_meaning=FMeaning.FEED, reject_conditions=_NOT_READY, min_block_count=2,
+            f_meaning=FMeaning.FEED, rejection_conditions=_NOT_READY, min_block_count=2,
             word_rules={
                 "Z": _DEPTH,
                 "K": _make_required_rule("the depth of one peck"),
@@ -163,7 +164,7 @@ CYCLE_CHAPTERS: tuple[Chapter, ...] = (
         "Roughs a rectangle in passes of at most I, leaving an allowance of U in X.",
             "G74X.3Z-.5I.05U.01F.006", action_kind=ActionKind.CYCLE,
             handler="cycles.roughing_cycles:plan_box_cycle",
-            allowed_words=names("X Z I U F S"), f_meaning=FMeaning.FEED, reject_conditions=_NOT_READY,
+            allowed_words=names("X Z I U F S"), f_meaning=FMeaning.FEED, rejection_conditions=_NOT_READY,
             min_block_count=4,
             word_rules={"X": _OPPOSITE_CORNER_RULE, "Z": _OPPOSITE_CORNER_RULE, "I": _CUT, "U": _LEFT},
             other_diagnostic_codes=names("cycle-nothing cycle-passes")),
@@ -195,7 +196,7 @@ CYCLE_CHAPTERS: tuple[Chapter, ...] = (
                     "Z": _END,
                     "I": _FIRST_PASS(),
                     "K": _LEAD,
-                    "C": WordRule("infeed angle in degrees", minimum=0, maximum=30, bare_value=29,
+                    "C": WordRule("infeed angle in degrees", minimum=0, maximum=30, value_without_number=29,
                     invalid_error=ErrorTemplate(
                     "thread-angle",
                     "{word}: the infeed angle must be from 0 to 30 degrees.",
@@ -211,7 +212,7 @@ CYCLE_CHAPTERS: tuple[Chapter, ...] = (
             allowed_words=names("Z I K A P F S T D"),
             word_rules={
                 "Z": _END,
-                "I": _FIRST_PASS(minimum=-inf, is_nonzero=True),
+                "I": _FIRST_PASS(minimum=-inf, requires_nonzero=True),
                 "K": _LEAD,
                 "P": _PULLOUT_RULE,
             },
@@ -225,16 +226,16 @@ CYCLE_CHAPTERS: tuple[Chapter, ...] = (
                 "coarse-range",
                 "{word}: with G35, only F2 is allowed (leads up to 2 in/rev).",
                 "Write G35 or G35F2."))},
-            reject_conditions={RejectCondition.WITH_OTHER_WORDS: _COARSE_ERROR,
-            RejectCondition.COARSE_FEED: ErrorTemplate(
+            rejection_conditions={RejectionCondition.WITH_OTHER_WORDS: _COARSE_ERROR,
+            RejectionCondition.COARSE_FEED: ErrorTemplate(
                 "coarse-order", "G35 is already active.", "Delete the line.", 1)},
             other_diagnostic_codes=names("coarse-preset")),
         _coarse("G36", "G36",
         "Ends G35; the axes must be at the point where G35 started. Write G36 alone on a line, "
         "and G92 on the next line.",
             _COARSE, f_meaning=FMeaning.NONE,
-            reject_conditions={RejectCondition.WITH_OTHER_WORDS: _COARSE_ERROR,
-            RejectCondition.NO_COARSE_FEED: ErrorTemplate(
+            rejection_conditions={RejectionCondition.WITH_OTHER_WORDS: _COARSE_ERROR,
+            RejectionCondition.NO_COARSE_FEED: ErrorTemplate(
                 "coarse-order", "G36 ends G35, but G35 is not active.", "Delete the line.", 1)},
             other_diagnostic_codes=names("coarse-place coarse-preset")),
     )),

@@ -10,7 +10,7 @@ from core.interpreter.omniturn.codes.code_entry import (
     CodeEntry,
     ErrorTemplate,
     FMeaning,
-    RejectCondition,
+    RejectionCondition,
     WordRule,
     make_flow_entry,
     make_letter_entry,
@@ -24,20 +24,20 @@ _plane = partial(
         handler="motion.plane_switching:execute_plane_line",
     mdi_error_text=
                 "{code} cannot be used in MDI, because plane switching needs more than one line.",
-    reject_conditions={
-        RejectCondition.C_NOT_LOCKED: ErrorTemplate(
+    rejection_conditions={
+        RejectionCondition.C_NOT_LOCKED: ErrorTemplate(
             "c-unlocked",
             "(~{name}) rotates the C axis, but the spindle is not locked as the C axis.",
             "Write M19 before the (~PLXC) or (~PLZC) line.", 1),
-        RejectCondition.FEED_PER_REV: ErrorTemplate(
+        RejectionCondition.FEED_PER_REV: ErrorTemplate(
             "plane-feed-mode",
             "(~{name}) needs a feed in inches per minute, but G95 is active.",
             "Write G94 with F before the (~PLXC) or (~PLZC) line.", 1),
-        RejectCondition.NOSE_COMPENSATION: ErrorTemplate(
+        RejectionCondition.NOSE_COMPENSATION: ErrorTemplate(
             "plane-nose-comp",
             "(~{name}) cannot run while nose compensation is active.",
             "Write G40 before the (~PLXC) or (~PLZC) line.", 1),
-        RejectCondition.TOOL_NOT_MOVED: ErrorTemplate(
+        RejectionCondition.TOOL_NOT_MOVED: ErrorTemplate(
             "tool-first-move",
             "No X and Z move is programmed after the T word on line {line}.",
             "Program a move to X and Z before the (~PLXC) or (~PLZC) line.", 1),
@@ -101,12 +101,13 @@ FLOW_CHAPTERS: tuple[Chapter, ...] = (
                 "{code} cannot call a subroutine in MDI; subroutine calls are possible only in a program.",
             word_rules={
                 "C": WordRule(
-                "required state of the input, on (1) or off (0)", minimum=0, maximum=1, is_whole=True,
+                "required state of the input, on (1) or off (0)", minimum=0, maximum=1,
+                requires_whole_number=True,
                 invalid_error=ErrorTemplate(
                     "condition",
                     "The line contains {word}, which is neither C1 (on) nor C0 (off).",
                     "Write C1 or C0.")),
-                    "I": WordRule("the number of the input", minimum=1, is_whole=True,
+                    "I": WordRule("the number of the input", minimum=1, requires_whole_number=True,
                     invalid_error=ErrorTemplate(
                     "input-number",
                     "The line contains {word}, which is not an input number.",
@@ -156,7 +157,7 @@ FLOW_CHAPTERS: tuple[Chapter, ...] = (
             handler="setup.m_codes:switch_collet"),
         make_m_code_entry("M13", "M13", "Unclamps the collet.", "M13\nG04F.5\nM12",
             action_kind=ActionKind.START, handler="setup.m_codes:switch_collet",
-            reject_conditions={RejectCondition.SPINDLE_TURNING: ErrorTemplate(
+            rejection_conditions={RejectionCondition.SPINDLE_TURNING: ErrorTemplate(
                 "unclamp-turning", "M13 opens the collet while the spindle turns.",
                 "Stop the spindle with M05 first.", "M")}),
     )),

@@ -18,7 +18,7 @@ from core.interpreter.omniturn.codes.code_entry import (
 )
 from core.interpreter.omniturn.codes.code_table import CODE_CHAPTERS
 from core.language.omniturn.omniturn_words import VALUE_RANGES, WHOLE_NUMBER_LETTERS
-from core.page_contents import make_contents
+from core.page_contents import make_table_of_contents
 
 _TOP = """\
 # OmniTurn, code by code
@@ -55,7 +55,7 @@ def render_language_reference() -> str:
         f"\n## {title}\n\n" + "".join(_anchor(code, anchors) + _entry(code) for code in codes)
         for title, codes in CODE_CHAPTERS
     )
-    titles = make_contents(["Numbers", *(title for title, _ in CODE_CHAPTERS)])
+    titles = make_table_of_contents(["Numbers", *(title for title, _ in CODE_CHAPTERS)])
     return _TOP.format(head=EXAMPLE_HEAD, tail=EXAMPLE_TAIL, numbers=_numbers(), contents=titles) + chapters
 
 
@@ -86,7 +86,7 @@ def _anchor(entry: CodeEntry, anchors: set[str]) -> str:
 def _entry(entry: CodeEntry) -> str:
     lines = [
         *entry.example.splitlines(),
-        *(["…", *entry.subroutine.splitlines()] if entry.subroutine else []),
+        *(["…", *entry.example_subroutine.splitlines()] if entry.example_subroutine else []),
     ]
     rules = "".join(f"- {line}\n" for line in _rules(entry))
     example = "```\n" + "\n".join(lines) + "\n```\n\n"
@@ -108,7 +108,7 @@ def _rules(entry: CodeEntry) -> list[str]:
     ]
     rules += [
         f"not allowed when {when.value}: `{refusal.diagnostic_code}`"
-        for when, refusal in entry.reject_conditions.items()
+        for when, refusal in entry.rejection_conditions.items()
     ]
     if entry.other_diagnostic_codes:
         rules.append(
@@ -123,13 +123,13 @@ def _rule(rule: WordRule) -> str:
         said.append("required")
     if rule.unwanted_number_error is not None:
         said.append("must be written without a number")
-    if rule.bare_value is not None:
-        said.append(f"{_shown(rule.bare_value)} if no number follows")
-    if rule.is_nonzero:
+    if rule.value_without_number is not None:
+        said.append(f"{_shown(rule.value_without_number)} if no number follows")
+    if rule.requires_nonzero:
         said.append("not 0")
     if rule.minimum > -inf:
         said.append(_range(rule))
-    if rule.is_whole:
+    if rule.requires_whole_number:
         said.append("whole number")
     codes = dict.fromkeys(f"`{each.diagnostic_code}`" for each in rule.errors)
     return ", ".join(said) + (f": {', '.join(codes)}" if codes else "")

@@ -11,7 +11,7 @@ from core.interpreter.omniturn.codes.code_entry import (
     CodeEntry,
     ErrorTemplate,
     FMeaning,
-    RejectCondition,
+    RejectionCondition,
     SMeaning,
     WordGroup,
     WordLimit,
@@ -50,7 +50,7 @@ _arc = partial(
     required_words=WordGroup(("R", "I", "K"), ErrorTemplate(
         "arc-centre-missing", "The arc has neither R nor I and K.", "Add R, or I and K.")),
     exclusive_words=(WordGroup(("R", "I"), _ARC_BOTH), WordGroup(("R", "K"), _ARC_BOTH)),
-    reject_conditions={RejectCondition.INCREMENTAL_DIAMETERS: _ARC_MODE},
+    rejection_conditions={RejectionCondition.INCREMENTAL_DIAMETERS: _ARC_MODE},
     min_block_count=1, is_allowed_with_compensation=True, is_allowed_after_corner=True,
     is_allowed_in_contour=True,
     other_diagnostic_codes=names(
@@ -67,13 +67,13 @@ _ALONE_ERROR = ErrorTemplate(
 )
 _make_compensation_entry = partial(
     CodeEntry, action_kind=ActionKind.MODE, handler="motion.nose_compensation:execute_compensation_code",
-        group="nose compensation", f_meaning=FMeaning.NONE,
+        mode_group="nose compensation", f_meaning=FMeaning.NONE,
     mdi_error_text=
                 "{code} cannot start nose compensation in MDI, because nose compensation needs more "
                 "than one line.",
-    reject_conditions={
-        RejectCondition.WITH_OTHER_WORDS: _ALONE_ERROR,
-        RejectCondition.NOSE_COMPENSATION: ErrorTemplate(
+    rejection_conditions={
+        RejectionCondition.WITH_OTHER_WORDS: _ALONE_ERROR,
+        RejectionCondition.NOSE_COMPENSATION: ErrorTemplate(
             "comp-on",
             "G{number} is not allowed while G{on} is active.",
             "End G{on} first: move off the part, then write G40.", 1),
@@ -86,16 +86,16 @@ _LOCK_PREPARATION = "M05\nG94F30"  # precedes locking the spindle as the C axis
 _start = partial(
     CodeEntry, action_kind=ActionKind.SPINDLE, handler="setup.spindle_and_dwell:run_spindle",
         allowed_words=PLAIN_WORDS, f_meaning=FMeaning.FEED,
-    reject_conditions={
-        RejectCondition.C_LOCKED: ErrorTemplate(
+    rejection_conditions={
+        RejectionCondition.C_LOCKED: ErrorTemplate(
             "spindle-locked",
             "M{number} starts the spindle, but the spindle is locked as the C axis.",
             "Release the spindle with M05 first.", "M"),
-        RejectCondition.NO_SPEED: ErrorTemplate(
+        RejectionCondition.NO_SPEED: ErrorTemplate(
             "speed-missing",
             "M{number} starts the spindle, but no spindle speed S is programmed.",
             "Write S on this line.", "M"),
-        RejectCondition.COLLET_OPEN: ErrorTemplate(
+        RejectionCondition.COLLET_OPEN: ErrorTemplate(
             "collet-open", "M{number} starts the spindle with the collet open.",
             "Close the collet with M12 first.", "M"),
     },
@@ -130,7 +130,7 @@ _c_word = partial(
     exclusive_words=(WordGroup(("C", "CA", "CI"), ErrorTemplate(
         "word-twice",
         "The line contains both {first} and {word}.", "Keep only one of the conflicting words.")),),
-    reject_conditions={RejectCondition.C_NOT_LOCKED: ErrorTemplate(
+    rejection_conditions={RejectionCondition.C_NOT_LOCKED: ErrorTemplate(
         "c-unlocked",
         "{word} rotates the C axis, but the spindle is not locked as the C axis.",
             "Write M19 or M89 before this line.")},
@@ -141,17 +141,17 @@ MOVE_CHAPTERS: tuple[Chapter, ...] = (
         make_mode_entry("G00", "G00 XnZn",
                 "From here on, all moves are rapid moves; the rapid rate is the F in the first "
                 "line of the program.", "G00X.7\nZ.5",
-            handler="motion.feeds:execute_feed_words", group="rapid",
+            handler="motion.feeds:execute_feed_words", mode_group="rapid",
             other_diagnostic_codes=names("title-rapid"),
-            reject_conditions={RejectCondition.WITH_FEED: ErrorTemplate(
+            rejection_conditions={RejectionCondition.WITH_FEED: ErrorTemplate(
                 "rapid-and-feed",
                 "G00 cannot be combined with F, G94 or G95, because each of these words "
                 "cancels the rapid mode.",
                 "Split the line.", 1)}),
         make_mode_entry("G01", "G01 XnZn",
         "Returns to the feed that was active before the rapid.", "Z0\nG00Z.05\nG01Z-.2",
-            handler="motion.feeds:execute_feed_words", group="rapid",
-            reject_conditions={RejectCondition.NO_CUT_FEED: ErrorTemplate(
+            handler="motion.feeds:execute_feed_words", mode_group="rapid",
+            rejection_conditions={RejectionCondition.NO_CUT_FEED: ErrorTemplate(
                 "no-cut-feed",
                 "G01 returns to the last cutting feed, but no cutting feed has been set after "
                 "the first line.",
@@ -190,7 +190,7 @@ MOVE_CHAPTERS: tuple[Chapter, ...] = (
         "Corner radius n, tangent to this straight line and the next one.", "X.3Z0\nX.5R.05\nZ-.3",
             handler="motion.corners:read_corner", word_rules={"R": _CORNER_SIZE},
             exclusive_words=(WordGroup(("R", "C"), _CORNER_BOTH),), other_diagnostic_codes=_CORNER,
-            reject_conditions={RejectCondition.NO_STRAIGHT_MOVE: ErrorTemplate(
+            rejection_conditions={RejectionCondition.NO_STRAIGHT_MOVE: ErrorTemplate(
                 "corner-without-move",
                 "{word} programs a corner at the end of a straight move, but the line does not "
                 "contain a straight move.",
@@ -198,23 +198,23 @@ MOVE_CHAPTERS: tuple[Chapter, ...] = (
     )),
     ("Modes", (
         make_mode_entry("G70", "G70", "Inches.", "G70\nX.5",
-            handler="motion.straight_moves:execute_dimension_modes", group="units",
+            handler="motion.straight_moves:execute_dimension_modes", mode_group="units",
             other_diagnostic_codes=names("finer-than-step")),
         make_mode_entry("G71", "G71",
         "Metric units, active until G70 or a restart.", "G71\nX12.5Z2.5\nG70",
-            handler="motion.straight_moves:execute_dimension_modes", group="units",
+            handler="motion.straight_moves:execute_dimension_modes", mode_group="units",
             other_diagnostic_codes=names("finer-than-step")),
         make_mode_entry("G72", "G72", "X words are diameters.", "G72\nX1.\nG73",
-            handler="motion.straight_moves:execute_dimension_modes", group="X words"),
+            handler="motion.straight_moves:execute_dimension_modes", mode_group="X words"),
         make_mode_entry("G73", "G73",
         "X words are radii; this is the setting at program start.", "G73\nX.5",
-            handler="motion.straight_moves:execute_dimension_modes", group="X words"),
+            handler="motion.straight_moves:execute_dimension_modes", mode_group="X words"),
         make_mode_entry("G90", "G90",
         "Absolute positions; the first line must contain G90 or G91.", "G90\nX.5Z0",
-            handler="motion.straight_moves:execute_dimension_modes", group="distance",
+            handler="motion.straight_moves:execute_dimension_modes", mode_group="distance",
             other_diagnostic_codes=names("first-line")),
         make_mode_entry("G91", "G91", "Incremental.", "G91\nX-.1\nG90",
-            handler="motion.straight_moves:execute_dimension_modes", group="distance",
+            handler="motion.straight_moves:execute_dimension_modes", mode_group="distance",
             other_diagnostic_codes=names("first-line")),
         CodeEntry("G92", "G92XnZn", "Sets the coordinates of the current point; no axis moves.", "G92X.6Z.2",
             action_kind=ActionKind.FRAME, handler="setup.tools_and_offsets:set_preset",
@@ -224,11 +224,11 @@ MOVE_CHAPTERS: tuple[Chapter, ...] = (
             is_allowed_in_contour=True,
             other_diagnostic_codes=names("preset-thread")),
         make_mode_entry("G94", "G94Fn", "Feed in inches per minute.", "G94F5\nZ0",
-            handler="motion.feeds:execute_feed_words", group="feed mode",
+            handler="motion.feeds:execute_feed_words", mode_group="feed mode",
             other_diagnostic_codes=names("feed-over-speed")),
         make_mode_entry("G95", "G95Fn",
         "Feed in inches per revolution; the spindle must be turning.", "G95F.003\nZ0",
-            handler="motion.feeds:execute_feed_words", group="feed mode",
+            handler="motion.feeds:execute_feed_words", mode_group="feed mode",
             other_diagnostic_codes=names("feed-over-speed spindle-stopped")),
     )),
     ("Tools, offsets, nose compensation", (
@@ -236,7 +236,7 @@ MOVE_CHAPTERS: tuple[Chapter, ...] = (
         "Tool offset n, from 1 to 32; the next move must contain X and Z. T0 cancels "
         "the tool offset and the work shift.",
             "T2\nX.6Z.1", handler="setup.tools_and_offsets:change_tool",
-            reject_conditions={RejectCondition.COARSE_FEED: ErrorTemplate(
+            rejection_conditions={RejectionCondition.COARSE_FEED: ErrorTemplate(
                 "coarse-tool",
                 "T is not allowed between G35 and G36.", "Write G36 before the T word.", "T")},
             other_diagnostic_codes=names("tool-first-move tool-offset-missing tool-under-css")),
@@ -257,12 +257,12 @@ MOVE_CHAPTERS: tuple[Chapter, ...] = (
         "Turns nose compensation off; the preceding move is the departure from the "
         "contour.", _COMPENSATED,
             action_kind=ActionKind.MODE, handler="motion.nose_compensation:execute_compensation_code",
-            group="nose compensation",
+            mode_group="nose compensation",
             f_meaning=FMeaning.NONE,
             mdi_error_text=
                 "{code} cannot end nose compensation in MDI, because nose compensation needs more than "
                 "one line.",
-            reject_conditions={RejectCondition.WITH_OTHER_WORDS: _ALONE_ERROR},
+            rejection_conditions={RejectionCondition.WITH_OTHER_WORDS: _ALONE_ERROR},
             other_diagnostic_codes=names("comp-empty")),
         _make_compensation_entry("G41", "G41",
         "Turns nose compensation on, with the nose center to the left of the path. The "
@@ -288,7 +288,7 @@ MOVE_CHAPTERS: tuple[Chapter, ...] = (
             action_kind=ActionKind.STOP, handler="setup.spindle_and_dwell:stop_spindle"),
         make_mode_entry("G96", "G96Sn", "Constant surface speed in ft/min; the rpm changes with the radius.",
             "G96S200\nX.3\nG97S1000", handler="setup.spindle_and_dwell:execute_spindle_modes",
-            group="spindle mode",
+            mode_group="spindle mode",
             word_rules={"S": WordRule(
                 "surface speed in ft/min, or in m/min with G71",
                 minimum=0, maximum=WordLimit.SURFACE_SPEED, invalid_error=_SPEED_SIGN,
@@ -297,13 +297,13 @@ MOVE_CHAPTERS: tuple[Chapter, ...] = (
                     "{word}: this surface speed is too high for any tool.", "Write G97 if S is in rpm."))},
             other_diagnostic_codes=names("surface-speed-missing")),
         make_mode_entry("G97", "G97Sn", "S is in rpm again.", "G97S900",
-            handler="setup.spindle_and_dwell:execute_spindle_modes", group="spindle mode"),
+            handler="setup.spindle_and_dwell:execute_spindle_modes", mode_group="spindle mode"),
         make_mode_entry("G76", "G76Sn", "Minimum rpm under G96.", "G96S200\nG76S300\nX.3\nG97S1000",
-            handler="setup.spindle_and_dwell:execute_spindle_modes", group="speed limits",
+            handler="setup.spindle_and_dwell:execute_spindle_modes", mode_group="speed limits",
             s_meaning=SMeaning.SPEED_LIMIT,
             word_rules={"S": _SPEED_LIMIT}, other_diagnostic_codes=names("speed-limits")),
         make_mode_entry("G77", "G77Sn", "Maximum rpm under G96.", "G96S200\nG77S2000\nX.1\nG97S1000",
-            handler="setup.spindle_and_dwell:execute_spindle_modes", group="speed limits",
+            handler="setup.spindle_and_dwell:execute_spindle_modes", mode_group="speed limits",
             s_meaning=SMeaning.SPEED_LIMIT,
             word_rules={"S": _SPEED_LIMIT}, other_diagnostic_codes=names("speed-limits")),
         CodeEntry("G89", "G89",
@@ -313,20 +313,21 @@ MOVE_CHAPTERS: tuple[Chapter, ...] = (
             allowed_words=names("S"),
             f_meaning=FMeaning.NONE, s_meaning=SMeaning.C_SPEED, is_allowed_after_corner=True,
             word_rules={"S": _C_SPEED},
-            reject_conditions={RejectCondition.C_DISABLED: _NO_C, RejectCondition.WITH_M: ErrorTemplate(
+            rejection_conditions={RejectionCondition.C_DISABLED: _NO_C,
+            RejectionCondition.WITH_M: ErrorTemplate(
                 "not-alone",
                 "G89 locks the spindle and cannot be combined with M codes.", "Split the line.")}),
         make_m_code_entry("M19", "M19Sn",
         "Turns the spindle to angle 0 and locks it until M05.",
             f"{_LOCK_PREPARATION}\nM19S60\nG04F3\nM05", action_kind=ActionKind.SPINDLE_LOCK,
                 handler="motion.c_axis:lock_spindle", s_meaning=SMeaning.C_SPEED,
-            word_rules={"S": _C_SPEED}, reject_conditions={RejectCondition.C_DISABLED: _NO_C}),
+            word_rules={"S": _C_SPEED}, rejection_conditions={RejectionCondition.C_DISABLED: _NO_C}),
         make_m_code_entry("M89", "M89",
         "Stops the spindle and locks it in place.",
             f"{_LOCK_PREPARATION}\nM89\nCI45S60\nG04F2\nM05", action_kind=ActionKind.SPINDLE_LOCK,
                 handler="motion.c_axis:lock_spindle",
             s_meaning=SMeaning.C_SPEED,
-            word_rules={"S": _C_SPEED}, reject_conditions={RejectCondition.C_DISABLED: _NO_C}),
+            word_rules={"S": _C_SPEED}, rejection_conditions={RejectionCondition.C_DISABLED: _NO_C}),
         _c_word("CA", "CAn", "Turns the spindle to angle n.",
             f"{_LOCK_PREPARATION}\nM19S60\nG04F3\nCA90S60\nG04F2\nM05",
             word_rules={"C": _ANGLE, "S": _C_SPEED}),

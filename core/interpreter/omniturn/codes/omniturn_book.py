@@ -45,7 +45,7 @@ def build_code_book() -> CodeBook:
 def _entry(code: CodeEntry) -> CodeBookEntry:
     head = _head(code)
     words = code.syntax.removeprefix(head) if code.syntax.startswith(head) else code.syntax
-    return CodeBookEntry(head, words.strip(), code.description, code.example, behind=code.subroutine)
+    return CodeBookEntry(head, words.strip(), code.description, code.example, behind=code.example_subroutine)
 
 
 def _head(code: CodeEntry) -> str:

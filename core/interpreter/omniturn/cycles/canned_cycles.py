@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from math import hypot
 
 from core.geometry.lines_and_arcs import Arc, Line, Point, compute_arc_length
-from core.interpreter.omniturn.codes.code_rules import check_conditions, check_value
+from core.interpreter.omniturn.codes.code_rules import check_conditions, check_word_number
 from core.interpreter.omniturn.motion.feeds import check_move_feed
 from core.interpreter.omniturn.motion.move_words import format_move
 from core.interpreter.omniturn.motion.straight_moves import round_to_resolution
@@ -41,7 +41,7 @@ def read_length_mm(state: State, statement: Statement, letter: str) -> float:
 
     Raises ProgramError if the rule of the word rejects its number, or if a required word is missing.
     """
-    return check_value(state, statement, letter, round_to_resolution(state, statement, letter)) or 0.0
+    return check_word_number(state, statement, letter, round_to_resolution(state, statement, letter)) or 0.0
 
 
 def check_pass_count(statement: Statement, letter: str, count: int, description: str) -> None:

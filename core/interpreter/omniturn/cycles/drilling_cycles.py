@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.interpreter.omniturn.codes.code_rules import check_value
+from core.interpreter.omniturn.codes.code_rules import check_word_number
 from core.interpreter.omniturn.cycles.canned_cycles import LIFT_MM, check_pass_count, read_length_mm
 from core.interpreter.omniturn.motion.straight_moves import round_to_resolution
 from core.interpreter.omniturn.omniturn_state import State
@@ -103,4 +103,4 @@ def _rate(state: State, statement: Statement) -> float:
     if value is None:
         return min(_RETRACT_RATE, state.setup.limits.max_feed_mm_s)
     rate = value * units.get_mm_per_unit(is_metric=state.modal.metric) / 60
-    return check_value(state, statement, "L", rate) or 0.0
+    return check_word_number(state, statement, "L", rate) or 0.0

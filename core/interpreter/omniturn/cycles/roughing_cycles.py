@@ -22,7 +22,7 @@ from core.interpreter.omniturn.cycles.canned_cycles import (
 )
 from core.interpreter.omniturn.motion.arc_moves import make_arc_block
 from core.interpreter.omniturn.motion.corners import ContourCornerStage, read_corner_size_mm
-from core.interpreter.omniturn.motion.move_words import RewordedMoveFactory
+from core.interpreter.omniturn.motion.move_words import OmniturnMoveFactory
 from core.interpreter.omniturn.motion.straight_moves import (
     execute_dimension_modes,
     round_to_resolution,
@@ -125,7 +125,7 @@ class _Reader:
                 self._state.log.add_warning(self._made.line, self._made.code_column, "cycle-modes", text)
                 break
         state = self._state
-        moves = RewordedMoveFactory(state.setup.limits.max_rpm)
+        moves = OmniturnMoveFactory(state.setup.limits.max_rpm)
         blocks = ContourCornerStage(state.log, moves).insert_corners(self._moves)
         elements = [shift_element(make_element(each), *self._shift(each)) for each in blocks]
         return [element for element in elements if element.length > _SAME]

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import ceil, copysign, radians, tan
 
-from core.interpreter.omniturn.codes.code_rules import check_conditions, check_value, number
-from core.interpreter.omniturn.motion.straight_moves import check_tool_first_move, round_to_resolution
+from core.interpreter.omniturn.codes.code_rules import check_conditions, check_word_number, number
+from core.interpreter.omniturn.motion.straight_moves import check_move_after_tool, round_to_resolution
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
@@ -31,15 +31,15 @@ _NEAR = 1e-6  # mm
 class ThreadCycle:
     """The data of one threading cycle, in mm with X as a radius, and in radians.
 
-    ``x0`` and ``z0`` are the start point. ``x_outward_sign`` is the sign of X away from the part.
+    ``start_x`` and ``start_z`` are the start point. ``x_outward_sign`` is the sign of X away from the part.
     ``z_cutting_sign`` is the sign of Z in the cutting direction. ``depth_mm`` is the depth of the last pass
     from the start point. ``first_infeed_mm`` is the I word per side. ``taper_mm`` is the change of X from
     the start point to the end.
     """
 
-    x0: float
-    z0: float
-    z1: float
+    start_x: float
+    start_z: float
+    end_z: float
     x_outward_sign: float
     z_cutting_sign: float
     depth_mm: float
@@ -56,28 +56,28 @@ class ThreadCycle:
 
         The taper is added if the far end is farther from the part than the start point.
         """
-        return self.x0 + self.x_outward_sign * (
+        return self.start_x + self.x_outward_sign * (
             3 * self.first_infeed_mm + max(self.x_outward_sign * self.taper_mm, 0.0)
         )
 
 
-def read_thread(state: State, statement: Statement) -> ThreadCycle:
+def read_threading_cycle(state: State, statement: Statement) -> ThreadCycle:
     """Return the threading cycle of a line. Raises ProgramError if the cycle is invalid."""
     if state.tool_line:
-        check_tool_first_move(state, statement.line, None, None)
+        check_move_after_tool(state, statement.line, None, None)
     number(state, statement, "P")
     lead = _lead(state, statement)
     _check_spindle(state, statement, lead)
     along, z1 = _cutting_direction(state, statement)
     single = statement.one_shot_code == 34
-    first = check_value(state, statement, "I", _read_radius_word(state, statement, "I")) or 0.0
+    first = check_word_number(state, statement, "I", _read_radius_word(state, statement, "I")) or 0.0
     depth, out = (0.0, copysign(1.0, first)) if single else _depth(state, statement)
     once = single or "O" in statement.words
     angle = radians(number(state, statement, "C") or 0.0) if "C" in statement.words else 0.0
     thread = ThreadCycle(
-        x0=state.x,
-        z0=state.z,
-        z1=z1,
+        start_x=state.x,
+        start_z=state.z,
+        end_z=z1,
         x_outward_sign=out,
         z_cutting_sign=along,
         depth_mm=depth,
@@ -106,7 +106,8 @@ def _lead(state: State, statement: Statement) -> float:
         )
     coarser = ("Use G35 for a larger lead.", "Use G35F2 for a larger lead.", "Correct K.")[state.modal.coarse]
     value = (
-        check_value(state, statement, "K", lead and lead * state.mm_per_z_unit, extra_remedy=coarser) or 0.0
+        check_word_number(state, statement, "K", lead and lead * state.mm_per_z_unit, extra_remedy=coarser)
+        or 0.0
     )
     if value < _MIN_LEAD:
         least = state.modal.format_feed(_MIN_LEAD, is_per_rev=True)
@@ -133,7 +134,7 @@ def _check_spindle(state: State, statement: Statement, lead: float) -> None:
 
 def _cutting_direction(state: State, statement: Statement) -> tuple[float, float]:
     """Return the sign of Z in the cutting direction, and Z of the thread end in mm."""
-    z = check_value(state, statement, "Z", round_to_resolution(state, statement, "Z")) or 0.0
+    z = check_word_number(state, statement, "Z", round_to_resolution(state, statement, "Z")) or 0.0
     z1 = (z if state.absolute else state.pz + z) + state.secondary_z
     if abs(z1 - state.z) <= _NEAR:
         text = "The thread ends at the same Z where it starts."
@@ -143,7 +144,7 @@ def _cutting_direction(state: State, statement: Statement) -> tuple[float, float
 
 def _depth(state: State, statement: Statement) -> tuple[float, float]:
     """Return the depth of the last pass from the start point, and the sign of X away from the part."""
-    x = check_value(state, statement, "X", round_to_resolution(state, statement, "X")) or 0.0
+    x = check_word_number(state, statement, "X", round_to_resolution(state, statement, "X")) or 0.0
     x1 = (x if state.absolute else state.px + x) + state.secondary_x
     here = Message("the tool is at radius {x}", x=state.modal.format_length(state.x))
     if abs(x1 - state.x) <= _NEAR:
@@ -198,7 +199,7 @@ def generate_thread_blocks(state: State, statement: Statement) -> Iterator[Block
 
     Raises ProgramError before the first block is generated.
     """
-    thread = read_thread(state, statement)
+    thread = read_threading_cycle(state, statement)
     _warn(state, statement, thread)
     return _ThreadBlockGenerator(state, statement, thread).generate_blocks()
 
@@ -219,7 +220,7 @@ def compute_start_z(thread: ThreadCycle, depth: float) -> float:
 
     The start is shifted in the cutting direction, along the flank of the thread.
     """
-    return thread.z0 + thread.z_cutting_sign * depth * tan(thread.flank_angle_rad)
+    return thread.start_z + thread.z_cutting_sign * depth * tan(thread.flank_angle_rad)
 
 
 class _ThreadBlockGenerator:
@@ -235,20 +236,20 @@ class _ThreadBlockGenerator:
         depths = compute_pass_depths(thread)
         for k, depth in enumerate(depths, start=1):
             z = compute_start_z(thread, depth)
-            x = thread.x0 - thread.x_outward_sign * depth
-            slope = thread.taper_mm / (thread.z1 - thread.z0)
+            x = thread.start_x - thread.x_outward_sign * depth
+            slope = thread.taper_mm / (thread.end_z - thread.start_z)
             if k > 1:
                 yield from self._rapid(retract, z)
-            yield from self._rapid(x + slope * (z - thread.z0), z)
+            yield from self._rapid(x + slope * (z - thread.start_z), z)
             end = x + thread.taper_mm
-            yield self._cut(end, thread.z1, f"({k}/{len(depths)})")
+            yield self._cut(end, thread.end_z, f"({k}/{len(depths)})")
             if thread.has_pullout:
-                yield self._cut(retract, thread.z1 + thread.z_cutting_sign * abs(retract - end), "P")
+                yield self._cut(retract, thread.end_z + thread.z_cutting_sign * abs(retract - end), "P")
             else:
-                yield from self._rapid(retract, thread.z1)
-        yield from self._rapid(retract, thread.z0)
-        yield from self._rapid(thread.x0, thread.z0)
-        self._state.x, self._state.z = thread.x0, thread.z0
+                yield from self._rapid(retract, thread.end_z)
+        yield from self._rapid(retract, thread.start_z)
+        yield from self._rapid(thread.start_x, thread.start_z)
+        self._state.x, self._state.z = thread.start_x, thread.start_z
 
     def _rapid(self, x: float, z: float) -> Iterator[Block]:
         """Yield a rapid, unless the axes are already at the target."""
@@ -307,6 +308,6 @@ def _run_up(thread: ThreadCycle) -> float:
     because the start of the part is unknown.
     """
     z = compute_start_z(thread, thread.depth_mm)
-    if copysign(1.0, z) != copysign(1.0, thread.z1) and thread.z1 != 0.0:
+    if copysign(1.0, z) != copysign(1.0, thread.end_z) and thread.end_z != 0.0:
         return abs(z)
-    return abs(thread.z1 - z)
+    return abs(thread.end_z - z)

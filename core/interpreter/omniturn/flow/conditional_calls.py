@@ -22,13 +22,13 @@ from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.interpretation import ToolUsage
-from core.interpreter.shared.job_setup import Setup
+from core.interpreter.shared.job_setup import InterpreterSetup
 
 
 class BranchRecord(Protocol):
     """Protocol of a record of the branches that interpreter passes have executed."""
 
-    def is_known(self, branch_pass: BranchingPass) -> bool:
+    def is_state_known(self, branch_pass: BranchingPass) -> bool:
         """Return whether another pass was already in the same state as this pass.
 
         If so, the rest of the program has already been checked.
@@ -47,7 +47,7 @@ class BranchingPass(Interpreter):
     ``has_input_change`` is True if a branch contradicts this assumption.
     """
 
-    def __init__(self, program: Program, setup: Setup, branch_record: BranchRecord) -> None:
+    def __init__(self, program: Program, setup: InterpreterSetup, branch_record: BranchRecord) -> None:
         super().__init__(program, setup)
         self._guide = branch_record
         self._approached = False  # a copy starts in the middle of the program
@@ -121,7 +121,7 @@ class BranchingPass(Interpreter):
             self._flow.next_index = statement.line - 1
             if self._fresh:
                 self._fresh = False
-            elif self._guide.is_known(self):
+            elif self._guide.is_state_known(self):
                 self.is_merged = True
                 self._flow.stop_here()
                 return

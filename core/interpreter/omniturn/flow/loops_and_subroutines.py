@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from core.interpreter.omniturn.codes.code_table import FLOW_CODES
 from core.interpreter.omniturn.omniturn_statement import UNREADABLE_FLOW, Statement
-from core.interpreter.shared.checkpoint import FlowLevel, FlowPosition
+from core.interpreter.shared.checkpoint import CallLevel, FlowPosition
 from core.interpreter.shared.control_flow import ControlFlow, FlowFrame
 from core.interpreter.shared.interpretation import MAX_CALL_DEPTH
 from core.language.diagnostics import Diagnostic, make_error_diagnostic
@@ -27,7 +27,7 @@ class ProgramStructure(NamedTuple):
 
     loop_ends: dict[int, int]  # index of LS → index of its LF
     loop_starts: dict[int, int]
-    subroutines: dict[int, int]  # number → index of its }n
+    subroutine_starts: dict[int, int]  # number → index of its }n
     subroutine_ends: dict[int, int]  # number → index of its M99
     main_end_index: int  # one past the last line of the main program
     contour_ends: dict[int, int]  # index of a G75 or G78 without P → index of its RF
@@ -120,12 +120,12 @@ class _Finder:
         self._unclosed_loops()
         self._job_end = None
         number = int(statement.get_value("}") or 0)
-        if number in self.structure.subroutines:
-            first = self.structure.subroutines[number] + 1
+        if number in self.structure.subroutine_starts:
+            first = self.structure.subroutine_starts[number] + 1
             text = Message("Subroutine {number} already begins on line {first}.", number=number, first=first)
             self._refuse(statement, "subroutine-twice", text, "Use a different number.")
         else:
-            self.structure.subroutines[number] = statement.line - 1
+            self.structure.subroutine_starts[number] = statement.line - 1
         self._inside, self._stray = number, False
 
     def _close_subroutine(self, statement: Statement) -> None:
@@ -192,7 +192,7 @@ class _Finder:
             self._no_end(length)
         elif self._inside is not None and not self._closed_by_job_end(self._inside):
             text = Message("Subroutine {inside} has no M99.", inside=self._inside)
-            line = self.structure.subroutines[self._inside] + 1
+            line = self.structure.subroutine_starts[self._inside] + 1
             self.problems.append(
                 make_error_diagnostic(
                     line, 1, "subroutine-open", text, "Add M99 at the end of the subroutine."
@@ -233,7 +233,7 @@ def find_structure(statements: Iterable[Statement], length: int) -> tuple[Progra
     finder.finish_search(length)
     for statement in calls:
         number = get_subroutine_number(statement)
-        if number not in finder.structure.subroutines:
+        if number not in finder.structure.subroutine_starts:
             column, hint = statement.get_column("P") or 1, "Write the subroutine after M30."
             text = Message(
                 "Subroutine {number} is called, but the program does not contain }}{number2}.",
@@ -307,11 +307,11 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
         """
         self.active_frame.next_index = self.next_index
         return tuple(
-            FlowLevel(each.next_index, each.end_index, tuple(each.remaining_repeats.items()))
+            CallLevel(each.next_index, each.end_index, tuple(each.remaining_repeats.items()))
             for each in self.frames
         )
 
-    def resume_at(self, line: int, position: FlowPosition) -> None:
+    def restore_position(self, line: int, position: FlowPosition) -> None:
         """Set the next line (counted from 1) and the active loops and calls."""
         if position:
             structure = self.active_frame.routine
@@ -359,7 +359,7 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
         """Enter the subroutine that the line calls. Raises ProgramError if calls are nested too deeply."""
         number, structure = get_subroutine_number(statement), self.active_frame.routine
         self.next_index = statement.line
-        start = structure.subroutines.get(number)
+        start = structure.subroutine_starts.get(number)
         if start is None:
             return  # already reported when the program was read
         if len(self.frames) > MAX_CALL_DEPTH:
@@ -387,7 +387,7 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
             self.next_index = end + 1
             return range(statement.line, end)
         number = int(statement.get_value("P") or 0)
-        start = structure.subroutines.get(number)
+        start = structure.subroutine_starts.get(number)
         return None if start is None else range(start + 1, structure.subroutine_ends.get(number, start))
 
     def _loop_end(self, remaining: dict[int, int], start: int | None) -> None:

@@ -32,7 +32,7 @@ def check_program_size(program: Program, read_input: Callable[[str], bool]) -> D
     Loops multiply the counts, and each call adds the counts of its subroutine. Conditional calls depend on
     the current inputs.
     """
-    if not program.structure.loop_ends and not program.structure.subroutines:
+    if not program.structure.loop_ends and not program.structure.subroutine_starts:
         return _refusal(ProgramSize(len(program.executable_lines), len(program.executable_lines)))
     counter = _Counter(program, read_input)
     return _refusal(counter.measure_region(0, program.structure.main_end_index, 0))
@@ -117,11 +117,11 @@ class _Counter:
 
     def _subroutine(self, number: int, depth: int) -> ProgramSize:
         structure = self._program.structure
-        if number not in structure.subroutines:
+        if number not in structure.subroutine_starts:
             return ProgramSize()
         key = number, depth
         if key not in self._known:
-            start = structure.subroutines[number] + 1
+            start = structure.subroutine_starts[number] + 1
             end = structure.subroutine_ends.get(number, start)
             self._known[key] = self.measure_region(start, end, depth)
         return self._known[key]
@@ -141,8 +141,8 @@ def estimate_block_count(statement: Statement) -> int:
     if statement.flow_code:
         return (
             1
-            if statement.plane_line is not None
-            and {"X", "Y", "Z", "G"}.intersection(statement.plane_line.words)
+            if statement.plane_switching_line is not None
+            and {"X", "Y", "Z", "G"}.intersection(statement.plane_switching_line.words)
             else 0
         )
     m_code = statement.m_code_entry

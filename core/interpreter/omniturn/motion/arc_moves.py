@@ -5,13 +5,13 @@ from __future__ import annotations
 from math import degrees, dist, pi
 
 from core.geometry.lines_and_arcs import Point, compute_arc_length, find_arc_center
-from core.interpreter.omniturn.codes.code_rules import check_conditions, check_value, check_word_groups
+from core.interpreter.omniturn.codes.code_rules import check_conditions, check_word_groups, check_word_number
 from core.interpreter.omniturn.motion.feeds import check_move_feed
 from core.interpreter.omniturn.motion.straight_moves import (
-    check_tool_first_move,
+    check_move_after_tool,
     round_to_resolution,
     set_position,
-    warn_about_title_rapid,
+    warn_about_unintended_rapid,
 )
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
@@ -36,7 +36,7 @@ def make_arc_block(state: State, statement: Statement) -> Block:
     set_position(
         state, x, z
     )  # The position is set before any error, so that later lines start from the correct point.
-    check_tool_first_move(state, statement.line, x, z)
+    check_move_after_tool(state, statement.line, x, z)
     check_conditions(state, statement, statement.code_entry)
     check_word_groups(statement, statement.code_entry)
     clockwise = statement.one_shot_code == 2
@@ -48,7 +48,7 @@ def make_arc_block(state: State, statement: Statement) -> Block:
     length = compute_arc_length(start, (state.x, state.z), centre, is_clockwise=clockwise)
     check_move_feed(state, statement.line, start[0], state.x, length)
     _warn_about_large_arc(state, statement, length / dist(start, centre))
-    warn_about_title_rapid(state, statement.line)
+    warn_about_unintended_rapid(state, statement.line)
     return state.move(
         BlockKind.ARC,
         statement.line,
@@ -77,7 +77,7 @@ def _warn_about_large_arc(state: State, statement: Statement, sweep: float) -> N
 
 
 def _centre_by_radius(state: State, statement: Statement, start: Point, *, clockwise: bool) -> Point:
-    radius = check_value(state, statement, "R", round_to_resolution(state, statement, "R")) or 0.0
+    radius = check_word_number(state, statement, "R", round_to_resolution(state, statement, "R")) or 0.0
     chord = dist(start, (state.x, state.z))
     if chord <= _TOLERANCE_MM:
         text = "The arc programmed with R ends at its start point."

@@ -8,21 +8,21 @@ from math import copysign, hypot
 from core.interpreter.omniturn.codes.code_entry import CodeEntry
 from core.interpreter.omniturn.codes.code_rules import (
     check_conditions,
-    check_value,
     check_word_groups,
+    check_word_number,
     number,
 )
 from core.interpreter.omniturn.codes.code_table import LETTER_ENTRIES
 from core.interpreter.omniturn.motion.feeds import check_move_feed
 from core.interpreter.omniturn.motion.straight_moves import (
-    check_tool_first_move,
+    check_move_after_tool,
     round_to_resolution,
     set_position,
-    warn_about_title_rapid,
+    warn_about_unintended_rapid,
 )
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.omniturn.setup.spindle_and_dwell import record_c_turn_time, warn_about_short_dwell
+from core.interpreter.omniturn.setup.spindle_and_dwell import record_c_rotation_time, warn_about_short_dwell
 from core.interpreter.shared.actions import SpindleLock
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.language.omniturn import Word
@@ -32,7 +32,7 @@ _TURN = 360.0
 _SAME = 1e-9  # degrees, mm
 
 
-def uses_c_speed(state: State, statement: Statement) -> bool:
+def has_c_axis_speed(state: State, statement: Statement) -> bool:
     """Return whether S on this line is the speed of the C axis instead of the spindle speed."""
     return statement.locks_spindle or (statement.has_c_word and state.modal.c_locked)
 
@@ -51,7 +51,7 @@ def lock_spindle(state: State, statement: Statement) -> Iterator[Block]:
     check_conditions(state, statement, code, word=word)
     if statement.one_shot_code == 89:
         check_conditions(state, statement, statement.code_entry, word=word)
-    rpm = read_c_rpm(state, statement, code)
+    rpm = read_c_axis_rpm(state, statement, code)
     modal = state.modal
     state.set_modal(modal._replace(spindle=0, c_locked=True, c_rpm=rpm))
     yield state.action(
@@ -71,13 +71,13 @@ def _entry(state: State, statement: Statement) -> CodeEntry:
     ]
 
 
-def read_c_rpm(state: State, statement: Statement, code: CodeEntry) -> float | None:
+def read_c_axis_rpm(state: State, statement: Statement, code: CodeEntry) -> float | None:
     """Return S of the line as unsigned rpm, or None if the line has no S.
 
     Raises ProgramError if S is 0 or exceeds the limit of the C axis.
     """
     speed = statement.get_value("S")
-    return None if speed is None else check_value(state, statement, "S", abs(speed), code)
+    return None if speed is None else check_word_number(state, statement, "S", abs(speed), code)
 
 
 def _turn_to_zero(state: State, statement: Statement) -> Iterator[Block]:
@@ -109,14 +109,14 @@ def move_c_axis(state: State, statement: Statement) -> Iterator[Block]:
     if statement.has_x_or_z_move:
         x, z = round_to_resolution(state, statement, "X"), round_to_resolution(state, statement, "Z")
         set_position(state, x, z)
-        check_tool_first_move(state, statement.line, x, z)
-    rpm = read_c_rpm(state, statement, _entry(state, statement))
+        check_move_after_tool(state, statement.line, x, z)
+    rpm = read_c_axis_rpm(state, statement, _entry(state, statement))
     if rpm is not None:
         state.set_modal(state.modal._replace(c_rpm=rpm))
     distance_mm = hypot(state.x - x0, state.z - z0)
     if distance_mm <= _SAME:
         yield rotate_c_axis(state, statement.line, statement.get_block_text("move"), goal)
-        record_c_turn_time(state, statement.line, word.column, abs(goal - c0))
+        record_c_rotation_time(state, statement.line, word.column, abs(goal - c0))
         return
     state.c = goal
     if state.per_rev and state.modal.feed is not None:
@@ -125,7 +125,7 @@ def move_c_axis(state: State, statement: Statement) -> Iterator[Block]:
     else:
         check_move_feed(state, statement.line, x0, state.x, distance_mm)
         rpm = 0.0
-    warn_about_title_rapid(state, statement.line)
+    warn_about_unintended_rapid(state, statement.line)
     start, text = (x0, z0, c0), statement.get_block_text("move")
     yield state.move(
         state.kind, statement.line, text, start, state.feed, is_feed_per_rev=state.per_rev, rpm=rpm
@@ -134,7 +134,7 @@ def move_c_axis(state: State, statement: Statement) -> Iterator[Block]:
 
 def rotate_c_axis(state: State, line: int, text: str, target_deg: float) -> Block:
     """Return the block that rotates C alone to ``target_deg`` at the active speed, and update the state."""
-    rpm = state.modal.c_rpm or state.setup.limits.c_max_rpm
+    rpm = state.modal.c_rpm or state.setup.limits.max_c_rpm
     c0, state.c = state.c, target_deg
     start = state.x, state.z, c0
     return state.move(BlockKind.ROTATE, line, text, start, rpm * 6.0, rpm=copysign(rpm, target_deg - c0))

@@ -9,9 +9,9 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from core.geometry.chamfer_and_rounding import CornerError, chamfer, make_rounding
 from core.geometry.lines_and_arcs import Element
-from core.interpreter.omniturn.codes.code_rules import check_conditions, check_value, check_word_groups
+from core.interpreter.omniturn.codes.code_rules import check_conditions, check_word_groups, check_word_number
 from core.interpreter.omniturn.codes.code_table import LETTER_ENTRIES
-from core.interpreter.omniturn.motion.move_words import RewordedMoveFactory
+from core.interpreter.omniturn.motion.move_words import OmniturnMoveFactory
 from core.interpreter.omniturn.motion.nose_compensation import (
     CompensationStage,
     check_approach_move,
@@ -55,14 +55,14 @@ def read_corner(state: State, statement: Statement) -> None:
     if chamfers is not None:
         check_word_groups(statement, LETTER_ENTRIES["C"])
     size = read_corner_size_mm(state, statement, word)
-    state.contour.open_corner = Corner(word.letter, size, word.column)
+    state.contour.pending_corner = Corner(word.letter, size, word.column)
     state.contour.is_buffering, state.fast = True, False
 
 
 def read_corner_size_mm(state: State, statement: Statement, word: Word) -> float:
     """Return the size of a corner in mm. Raises ProgramError if the size is invalid."""
     size = round_to_resolution(state, statement, word.letter)
-    return check_value(state, statement, word.letter, size or 0.0, LETTER_ENTRIES[word.letter]) or 0.0
+    return check_word_number(state, statement, word.letter, size or 0.0, LETTER_ENTRIES[word.letter]) or 0.0
 
 
 def check_radius_word(state: State, statement: Statement) -> None:
@@ -214,7 +214,7 @@ class ContourBuffer:
 
     def __init__(self, state: State) -> None:
         self._state = state
-        moves = RewordedMoveFactory(state.setup.limits.max_rpm)
+        moves = OmniturnMoveFactory(state.setup.limits.max_rpm)
         self._corners = LineCornerStage(state.log, moves)
         self._nose = CompensationStage(state.log, moves)
         self._count: int | None = None  # number of the last returned block while the modifier is active
@@ -225,7 +225,7 @@ class ContourBuffer:
         Raises ProgramError if the corner or the compensation is not possible.
         """
         state = self._state
-        corner, state.contour.open_corner = state.contour.open_corner, None
+        corner, state.contour.pending_corner = state.contour.pending_corner, None
         self._begin(block.n - 1)
         if block.moves and state.contour.approach_line:
             check_approach_move(state, block)
@@ -257,7 +257,7 @@ class ContourBuffer:
         self._nose.discard_moves()
         self._count = None
         self._state.contour.is_buffering = False
-        self._state.contour.open_corner = None
+        self._state.contour.pending_corner = None
         self._state.contour.approach_line = 0
 
     def _begin(self, count: int) -> None:

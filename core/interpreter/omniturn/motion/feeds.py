@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from core.interpreter.omniturn.codes.code_entry import MAX_FEEDS_PER_REV, RejectCondition, WordLimit
+from core.interpreter.omniturn.codes.code_entry import MAX_FEEDS_PER_REV, RejectionCondition, WordLimit
 from core.interpreter.omniturn.codes.code_rules import check_conditions, get_limit, number
 from core.interpreter.omniturn.codes.code_table import G_CODES, LETTER_ENTRIES
 from core.interpreter.omniturn.omniturn_state import HIGH_FEED_MM_PER_REV, FloatOrArray, State
@@ -33,7 +33,7 @@ def execute_feed_words(state: State, statement: Statement, *, is_first_line: boo
     ``is_first_line`` means that the line is the first line of the program.
     """
     modes = {0, 1, 94, 95}.intersection(statement.modal_codes)
-    word = statement.words.get("F") if statement.is_f_feed else None
+    word = statement.words.get("F") if statement.is_f_feed_rate else None
     if not modes and word is None:
         return
     if 0 in modes and not is_first_line:
@@ -105,7 +105,7 @@ def _feed(state: State, statement: Statement, word: Word, *, first: bool) -> Non
         raise statement.make_error(word, *describe_feed_error(modal, feed, least, most))
 
 
-def set_plain_feed(state: State, f: float) -> bool:
+def set_plain_move_feed(state: State, f: float) -> bool:
     """Set the feed of a move that changes only the cutting feed, and return whether it was set.
 
     The result is False, and nothing is changed, if the line must be executed as a full statement. This is
@@ -135,7 +135,7 @@ def is_feed_accepted(state: State, feed: float) -> bool:
     The feed is in mm/s or mm/rev. The function requires ``state.fast``, which means that a move at the
     active feed has passed the checks.
     """
-    if not (state.cut and _is_usual(state, feed)) or state.is_first_feed(feed):
+    if not (state.cut and _is_usual(state, feed)) or state.is_first_line_feed(feed):
         return False
     return (
         not state.modal.per_rev
@@ -173,7 +173,7 @@ def describe_feed_error(
     return refusal.diagnostic_code, Message(refusal.text, value=shown, least=low, most=high), hint
 
 
-def warn_about_crash_feed(
+def warn_about_high_feed(
     state: State, statement: Statement, following_lines: Sequence[ExecutableLine]
 ) -> None:
     """Log a warning for a G95 feed above 0.05 in/rev, such as F003 instead of F.003.
@@ -181,7 +181,13 @@ def warn_about_crash_feed(
     The warning is omitted if the spindle soon reverses, because the program is then tapping.
     """
     modal, word = state.modal, statement.words.get("F")
-    if word is None or not statement.is_f_feed or not modal.per_rev or modal.coarse or modal.feed is None:
+    if (
+        word is None
+        or not statement.is_f_feed_rate
+        or not modal.per_rev
+        or modal.coarse
+        or modal.feed is None
+    ):
         return
     if modal.feed <= HIGH_FEED_MM_PER_REV or _taps(modal.spindle, following_lines):
         return
@@ -309,7 +315,7 @@ def _change(state: State, statement: Statement, following_lines: Sequence[Execut
     code = 35 if 35 in statement.modal_codes else 36
     before = state.modal.coarse
     entry = G_CODES[code]
-    check_conditions(state, statement, entry, RejectCondition.WITH_OTHER_WORDS)
+    check_conditions(state, statement, entry, RejectionCondition.WITH_OTHER_WORDS)
     if "F" in statement.words:
         number(state, statement, "F", entry)
     check_conditions(state, statement, entry)

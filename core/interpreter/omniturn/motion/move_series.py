@@ -1,7 +1,7 @@
 """Conversion of consecutive lines, or of the passes of a loop, to a series of straight moves.
 
-All rules are in other modules. ``is_already_active`` determines which words do not change anything. The end
-points agree with those of ``make_straight_move``. The functions for single lines log the warnings.
+All rules are in other modules. ``are_words_already_active`` determines which words do not change anything.
+The end points agree with those of ``make_straight_move``. The functions for single lines log the warnings.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ from core.interpreter.omniturn.motion.plain_moves import (
 )
 from core.interpreter.omniturn.motion.straight_moves import (
     ROUNDING_TOLERANCE,
+    are_words_already_active,
     get_resolution,
-    is_already_active,
     round_coordinates,
 )
 from core.interpreter.omniturn.omniturn_program import Program
@@ -39,27 +39,27 @@ from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.shared.elementary_blocks import Block, StraightMoveSeries, replace_feed
 
 
-def mask_unchanged_lines(state: State, lines: LineColumns) -> BoolArray:
+def find_unchanged_lines(state: State, lines: LineColumns) -> BoolArray:
     """Return a mask, shape (m,), of the lines that contain only X, Z and already active words."""
     answer = lines.is_plain_move.copy()
     fed = ~np.isnan(lines.feeds)
     for g in (0, 1, NO_G_CODE):
         coded = lines.g_codes == g
-        if g != NO_G_CODE and not is_already_active(state, g, None):
+        if g != NO_G_CODE and not are_words_already_active(state, g, None):
             answer &= ~coded | fed
         for f in set(lines.feeds[coded & fed].tolist()):  # np.unique would first import masked arrays.
-            if not is_already_active(state, g, f):
+            if not are_words_already_active(state, g, f):
                 answer &= ~coded | (lines.feeds != f)
     return answer
 
 
-def mask_plain_lines(state: State, lines: LineColumns) -> BoolArray:
+def find_series_lines(state: State, lines: LineColumns) -> BoolArray:
     """Return a mask, shape (m,), of the lines that can be part of a series.
 
-    These are the lines of ``mask_unchanged_lines``, and lines that change only the cutting feed to a feed
+    These are the lines of ``find_unchanged_lines``, and lines that change only the cutting feed to a feed
     that needs no check.
     """
-    answer = mask_unchanged_lines(state, lines)
+    answer = find_unchanged_lines(state, lines)
     if state.steady_feed is None:
         return answer
     fed = lines.is_plain_move & ~answer & ~np.isnan(lines.feeds) & (lines.g_codes != 0)
@@ -79,12 +79,12 @@ def _feeds(state: State, lines: LineColumns) -> FloatArray | None:
     return np.where(last < 0, state.feed, feeds[last])
 
 
-def make_series(
+def make_move_series(
     state: State, lines: LineColumns, line_numbers: IntArray, texts: Sequence[str]
 ) -> StraightMoveSeries:
     """Return these lines as a series of moves.
 
-    ``line_numbers`` (m,) are the numbers of the lines. All lines must be in ``mask_plain_lines``. Requires
+    ``line_numbers`` (m,) are the numbers of the lines. All lines must be in ``find_series_lines``. Requires
     ``state.fast``, which means that a move with this state has passed all checks.
     """
     x, x_finer = _round_to_resolution(state, "X", lines.x, lines.has_fifth_decimal)
@@ -155,7 +155,7 @@ def _tell(state: State, series: StraightMoveSeries, lines: LineColumns, finer: B
     )
     slow = (np.abs(dx) + np.abs(dz) > slow_length) & state.cut
     for at in np.flatnonzero(finer | slow).tolist():
-        if state.log.is_muted:
+        if state.log.is_warning_limit_reached:
             return
         line = int(series.line[at])
         if finer[at]:
@@ -212,16 +212,16 @@ class SeriesReader:
         if end - start_index < MIN_SERIES_LENGTH:
             self._without = range(start_index, end + 1)
             return None
-        if not mask_plain_lines(
+        if not find_series_lines(
             self._state, columns.select_lines(slice(start_index, start_index + MIN_SERIES_LENGTH))
         ).all():
             return None
         part = columns.select_lines(slice(start_index, end))
-        other = np.flatnonzero(~mask_plain_lines(self._state, part))
+        other = np.flatnonzero(~find_series_lines(self._state, part))
         count = int(other[0]) if len(other) else end - start_index
         self._flow.next_index, self._without = start_index + count, range(0)
         numbers = np.arange(start_index + 1, start_index + 1 + count)
-        return make_series(self._state, part.select_lines(slice(0, count)), numbers, self._texts), count
+        return make_move_series(self._state, part.select_lines(slice(0, count)), numbers, self._texts), count
 
     def _passes(self, start_index: int, lines: int, blocks: int) -> tuple[StraightMoveSeries, int] | None:
         """Return the series of all passes of a loop except the last, or None if not possible.
@@ -236,10 +236,10 @@ class SeriesReader:
         if times * length < MIN_SERIES_LENGTH:
             return None
         body = self._ready.columns.select_lines(slice(start_index, start_index + length))
-        if not mask_plain_lines(self._state, body).all():
+        if not find_series_lines(self._state, body).all():
             return None
         index = np.tile(np.arange(length), times)
         self._flow.record_loop_executions(start_index - 1, times)
         self._without = range(0)
-        made = make_series(self._state, body.select_lines(index), start_index + 1 + index, self._texts)
+        made = make_move_series(self._state, body.select_lines(index), start_index + 1 + index, self._texts)
         return made, times * (length + 1)

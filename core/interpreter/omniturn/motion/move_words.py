@@ -27,7 +27,9 @@ def format_move(modal: ModalState, element: Element, required_letters: str = "")
     start, end = element.start, element.end
     scale = units.get_mm_per_unit(is_metric=modal.metric)
     scale_x = scale / 2 if modal.diameter else scale
-    base_x, base_z = (modal.secondary_x, modal.secondary_z) if modal.absolute is not False else start
+    base_x, base_z = (
+        (modal.secondary_offset_x, modal.secondary_offset_z) if modal.absolute is not False else start
+    )
     arc = isinstance(element, Arc)
     moved_x = arc or "X" in required_letters or abs(end[0] - start[0]) > _TOLERANCE_MM
     moved_z = arc or "Z" in required_letters or abs(end[1] - start[1]) > _TOLERANCE_MM
@@ -45,7 +47,7 @@ def _arc(modal: ModalState, arc: Arc, words: str) -> str:
     if abs(arc.sweep_rad) < _HALF_TURN:
         return f"{code}{words}R{number(arc.radius / scale, is_metric=modal.metric)}"
     distances = modal.diameter or modal.absolute is False
-    base_x, base_z = arc.start if distances else (modal.secondary_x, modal.secondary_z)
+    base_x, base_z = arc.start if distances else (modal.secondary_offset_x, modal.secondary_offset_z)
     i = number((arc.center[0] - base_x) / scale, is_metric=modal.metric)
     k = number((arc.center[1] - base_z) / scale, is_metric=modal.metric)
     return f"{code}{words}I{i}K{k}"
@@ -88,7 +90,7 @@ def number(value: float, *, is_metric: bool) -> str:
     return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
 
 
-class RewordedMoveFactory(AdjustedMoveFactory):
+class OmniturnMoveFactory(AdjustedMoveFactory):
     """Factory of moves that were changed by a corner or compensation.
 
     The text of each move contains its new coordinates.

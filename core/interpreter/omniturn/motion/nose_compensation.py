@@ -29,7 +29,7 @@ from core.interpreter.shared.contour_stage import (
     AdjustedMoveFactory,
     ContourMove,
     ContourStage,
-    is_gouging,
+    is_gouging_contour,
     make_element,
 )
 from core.interpreter.shared.diagnostic_log import DiagnosticLog
@@ -83,7 +83,7 @@ class ApproachOrDeparture(NamedTuple):
         self._check_distance(
             min(compute_distance_to_point(element, free_end) for element in self.contour), log
         )
-        if is_gouging(path, self.contour, self.nose_radius_mm):
+        if is_gouging_contour(path, self.contour, self.nose_radius_mm):
             text = "With G{code}, the tool nose cuts into the part during the {lead}."
             hint = "Choose a different path for the {lead}, or switch between G41 and G42."
             raise _refused(self.block, "comp-gouge", text, hint, code=self.compensation_code, lead=self.name)
@@ -169,8 +169,8 @@ class _Contour(ContourStage):
     def _approach_path(self, to: Point) -> Sequence[Element]:
         block, mark, modal = self.approach_move.block, self._mark, self.approach_move.block.modal
         begun = (
-            block.x0 - mark.secondary_x + modal.secondary_x,
-            block.z0 - mark.secondary_z + modal.secondary_z,
+            block.x0 - mark.secondary_offset_x + modal.secondary_offset_x,
+            block.z0 - mark.secondary_offset_z + modal.secondary_offset_z,
         )
         approach_path = Line((block.x0, block.z0), to)
         lead = ApproachOrDeparture(block, False, mark.g_code, self.nose_radius_mm, self._first)
@@ -262,7 +262,7 @@ NOSE_CODES = frozenset({40, 41, 42})
 _TURNS_C = frozenset({"CA", "CI"})
 
 
-def get_nose_code(statement: Statement) -> int:
+def get_compensation_code(statement: Statement) -> int:
     """Return the code number of G40, G41 or G42 on a line, or 0 if the line has none of these codes."""
     return next((code for code in statement.modal_codes if code in NOSE_CODES), 0)
 

@@ -155,7 +155,7 @@ def _read_length(
     """
     rare = 0
     while len(rows) >= _FEW and rare < _FEW:
-        lines, begin = _Lines.from_line_starts(starts[rows]), starts[rows[0]]
+        lines, begin = _Lines.make_lines(starts[rows]), starts[rows[0]]
         form = shapes[begin : begin + length]
         same = np.ones(len(rows), bool)
         for at, character in enumerate(form.tolist()):
@@ -168,7 +168,7 @@ def _read_length(
                 alike,
                 match,
                 digits,
-                lines if alike is rows else _Lines.from_line_starts(starts[alike]),
+                lines if alike is rows else _Lines.make_lines(starts[alike]),
             )
         rare += len(alike) < _FEW
         rows = rows[~same]
@@ -177,23 +177,23 @@ def _read_length(
 class _Lines(NamedTuple):
     """Positions of lines in a text, as the indices of their first characters.
 
-    ``line_distance`` is the distance between lines in characters, or 0 if the distance varies.
+    ``characters_per_line`` is the distance between lines in characters, or 0 if the distance varies.
     """
 
     first: IntArray
-    line_distance: int
+    characters_per_line: int
 
     @classmethod
-    def from_line_starts(cls, first: IntArray) -> _Lines:
+    def make_lines(cls, first: IntArray) -> _Lines:
         """Return the lines that start at these characters, in ascending order."""
         steps = np.diff(first)
         return cls(first, int(steps[0]) if len(steps) and (steps == steps[0]).all() else 0)
 
     def get_characters(self, text: DigitArray, at: int) -> DigitArray:
         """Return the character at column index ``at`` of each line."""
-        if not self.line_distance:
+        if not self.characters_per_line:
             return text.take(self.first + at)
-        return text[self.first[0] + at : self.first[-1] + at + 1 : self.line_distance]
+        return text[self.first[0] + at : self.first[-1] + at + 1 : self.characters_per_line]
 
 
 def _read_shape(

@@ -37,7 +37,7 @@ _ENDS = np.array([0.0, 1.0])
 
 def move_virtual_mill(state: State, statement: Statement, virtual_mill: VirtualMill) -> Iterator[Block]:
     """Yield the blocks of a line that moves the virtual mill. Raises ProgramError for an invalid move."""
-    assert statement.plane_line is not None
+    assert statement.plane_switching_line is not None
     warn_about_short_dwell(state)
     target = _target(state, statement, virtual_mill)
     whole = PlaneMove(
@@ -46,7 +46,7 @@ def move_virtual_mill(state: State, statement: Statement, virtual_mill: VirtualM
         target,
         virtual_mill.polar_angle_rad,
     )
-    if statement.plane_line.arc_code:
+    if statement.plane_switching_line.arc_code:
         whole = _arc(state, statement, whole)
     if state.modal.feed is None:
         if "feed-missing" not in state.reported:
@@ -80,7 +80,7 @@ def _target(state: State, statement: Statement, mill: VirtualMill) -> MillPoint:
 
 
 def _arc(state: State, statement: Statement, line: PlaneMove) -> PlaneMove:
-    assert statement.plane_line is not None
+    assert statement.plane_switching_line is not None
     centre = (
         read_plane_length_mm(state, statement, "I", 0.0),
         read_plane_length_mm(state, statement, "J", 0.0),
@@ -93,7 +93,7 @@ def _arc(state: State, statement: Statement, line: PlaneMove) -> PlaneMove:
         )
         hint = "I and J are the coordinates of the arc center."
         raise make_plane_error(statement, "arc-radius", text, hint, "G")
-    return replace(line, center=centre, clockwise=statement.plane_line.arc_code == 2)
+    return replace(line, center=centre, clockwise=statement.plane_switching_line.arc_code == 2)
 
 
 def _split_at_centerline(state: State, statement: Statement, move: PlaneMove) -> list[PlaneMove]:
@@ -103,7 +103,7 @@ def _split_at_centerline(state: State, statement: Statement, move: PlaneMove) ->
     """
     if isinstance(move.frame, SidePlane):
         return [move]
-    share = move.get_critical_fraction()
+    share = move.get_fastest_rotation_fraction()
     rho, h = move.compute_distance_from_axis(share), abs(move.frame.tool_height_mm)
     if rho < h - _SAME_PLANE_MOVES:
         near, least = state.modal.format_length(rho), state.modal.format_length(h)
@@ -160,8 +160,8 @@ def read_plane_length_mm(state: State, statement: Statement, letter: str, defaul
 
     The length is not halved: D, and Z on the side of the part, remain diameters.
     """
-    assert statement.plane_line is not None
-    word = statement.plane_line.words.get(letter)
+    assert statement.plane_switching_line is not None
+    word = statement.plane_switching_line.words.get(letter)
     return default if word is None else round_mill_length(state, statement.line, word)
 
 
@@ -170,8 +170,8 @@ def make_plane_error(statement: Statement, code: str, text: str, hint: str, lett
 
     The error is located at the word ``letter`` if the line has this word.
     """
-    assert statement.plane_line is not None
-    word = statement.plane_line.words.get(letter)
+    assert statement.plane_switching_line is not None
+    word = statement.plane_switching_line.words.get(letter)
     return statement.make_error(word.column if word else 1, code, text, hint)
 
 
@@ -184,7 +184,7 @@ def execute_plane_line(state: State, statement: Statement) -> Iterator[Block]:
 
     Raises ProgramError for an invalid line.
     """
-    line, mill = statement.plane_line, state.modal.mill
+    line, mill = statement.plane_switching_line, state.modal.mill
     assert line is not None
     if line.name == "END":
         state.set_modal(state.modal._replace(mill=None))
@@ -265,8 +265,8 @@ def _diameter(state: State, statement: Statement, mill: VirtualMill) -> None:
 
 
 def _feed(state: State, statement: Statement) -> None:
-    assert statement.plane_line is not None
-    word = statement.plane_line.words.get("F")
+    assert statement.plane_switching_line is not None
+    word = statement.plane_switching_line.words.get("F")
     if word is None or word.value is None:
         return
     feed, most = state.convert_feed(word.value), state.setup.limits.max_feed_mm_s

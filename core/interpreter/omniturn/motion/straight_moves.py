@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import copysign, floor, hypot, isfinite
 
-from core.interpreter.omniturn.motion.feeds import check_move_feed, set_plain_feed
+from core.interpreter.omniturn.motion.feeds import check_move_feed, set_plain_move_feed
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import PlainMove, Statement
 from core.interpreter.shared import units
@@ -25,8 +25,8 @@ def make_plain_move_block(state: State, line: int, text: str, move: PlainMove) -
     ``make_straight_move``.
     """
     x, z, f, g, fine = move
-    same = (g < 0 and f is None) or is_already_active(state, g, f)
-    if not same and (g == 0 or f is None or not set_plain_feed(state, f)):
+    same = (g < 0 and f is None) or are_words_already_active(state, g, f)
+    if not same and (g == 0 or f is None or not set_plain_move_feed(state, f)):
         return None
     # Numbers with four decimal places are multiples of every resolution except a coarse one.
     if fine or state.modal.coarse:
@@ -38,7 +38,7 @@ def make_plain_move_block(state: State, line: int, text: str, move: PlainMove) -
     return make_straight_move(state, line, text, x, z)
 
 
-def is_already_active(state: State, g: int, f: float | None) -> bool:
+def are_words_already_active(state: State, g: int, f: float | None) -> bool:
     """Return whether the G00 or G01 and the F of a line are already active.
 
     ``g`` is negative if the line has no G code, and ``f`` is None if the line has no F.
@@ -77,9 +77,9 @@ def make_straight_move(state: State, line: int, text: str, x: float | None, z: f
             check_move_feed(state, line, x0, x1, hypot(x1 - x0, z1 - z0))
         rpm, surface_speed = state.rpm, None
     else:
-        check_tool_first_move(state, line, x, z)
+        check_move_after_tool(state, line, x, z)
         check_move_feed(state, line, x0, x1, hypot(x1 - x0, z1 - z0))
-        warn_about_title_rapid(state, line)
+        warn_about_unintended_rapid(state, line)
         modal = state.modal
         rpm, surface_speed = state.compute_rpm_at(x1), modal.active_surface_speed
         # The limit of G95 depends on the spindle speed, which changes between moves only under G96.
@@ -105,7 +105,7 @@ def set_position(state: State, x: float | None, z: float | None) -> None:
     state.x, state.z = state.px + state.secondary_x, state.pz + state.secondary_z
 
 
-def check_tool_first_move(state: State, line: int, x: float | None, z: float | None) -> None:
+def check_move_after_tool(state: State, line: int, x: float | None, z: float | None) -> None:
     """Raise ProgramError (``tool-first-move``) unless the first motion after a T word has X and Z."""
     tool_line, state.tool_line = state.tool_line, 0
     if tool_line and (x is None or z is None):
@@ -118,7 +118,7 @@ def check_tool_first_move(state: State, line: int, x: float | None, z: float | N
         )
 
 
-def warn_about_title_rapid(state: State, line: int) -> None:
+def warn_about_unintended_rapid(state: State, line: int) -> None:
     """Log a warning if a move is a rapid only because of a line such as ``G00 (TITLE)``."""
     if state.title_rapid and state.modal.rapid:
         text = "This move is a rapid because of the G00 next to the comment on line {title_rapid}."

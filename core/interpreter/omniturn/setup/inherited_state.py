@@ -46,8 +46,8 @@ def compute_modal_after_end(previous: ModalState, rpm: float, *, resets_m_functi
         metric=previous.metric,
         rapid_rate=previous.rapid_rate,
         tool=previous.tool,
-        tool_x=0.0 if previous.settable else previous.tool_x,
-        tool_z=0.0 if previous.settable else previous.tool_z,
+        tool_offset_x=0.0 if previous.settable else previous.tool_offset_x,
+        tool_offset_z=0.0 if previous.settable else previous.tool_offset_z,
         preset_x=previous.preset_x,
         preset_z=previous.preset_z,
         collet_closed=previous.collet_closed,
@@ -58,5 +58,5 @@ def compute_modal_after_end(previous: ModalState, rpm: float, *, resets_m_functi
         comment=previous.comment,
         # Whole revolutions remain; other offsets are removed.
         offset_c=previous.offset_c if previous.offset_c % 360.0 == 0.0 else 0.0,
-        is_c_modulo=previous.is_c_modulo,
+        is_c_axis_modulo=previous.is_c_axis_modulo,
     )

@@ -94,7 +94,7 @@ def check_m_codes(state: State, lines: tuple[Statement, ...]) -> None:
                 code=f"{statement.m_number:02d}",
             )
             state.log.add_finding(Diagnostic(statement.line, column, Severity.NOTE, "no-effect", text))
-        elif statement.m_number not in state.setup.limits.m_outputs:
+        elif statement.m_number not in state.setup.limits.m_code_outputs:
             state.log.add_finding(_unknown(state, statement))
 
 
@@ -121,7 +121,7 @@ def _machine_output(state: State, statement: Statement, *, on: bool) -> Iterator
 
     The output turns on before the motion or turns off after the motion.
     """
-    output = state.setup.limits.m_outputs.get(statement.m_number or 0)
+    output = state.setup.limits.m_code_outputs.get(statement.m_number or 0)
     if statement.m_number in state.setup.limits.ignored_m_codes:
         return
     if output is None:

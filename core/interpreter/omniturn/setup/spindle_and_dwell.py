@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import ceil, sqrt
 
-from core.interpreter.omniturn.codes.code_rules import check_conditions, check_value, number
+from core.interpreter.omniturn.codes.code_rules import check_conditions, check_word_number, number
 from core.interpreter.omniturn.codes.code_table import G_CODES, LETTER_ENTRIES, M_CODES
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
@@ -56,7 +56,7 @@ def execute_speed_word(state: State, statement: Statement) -> None:
     modal, speed = state.modal, word.value
     if modal.css:
         unit = MM_S_PER_M_MIN if modal.metric else MM_S_PER_FT_MIN
-        check_value(state, statement, "S", speed * unit, G_CODES[96])
+        check_word_number(state, statement, "S", speed * unit, G_CODES[96])
         state.set_modal(modal._replace(surface_speed=speed * unit))
         return
     if speed >= 0:  # The speed is also set after an error, so that later lines can be checked.
@@ -111,7 +111,7 @@ def execute_dwell(state: State, statement: Statement) -> Iterator[Block]:
     yield state.action(statement.line, statement.get_block_text("move"), Dwell(seconds))
 
 
-def record_c_turn_time(state: State, line: int, column: int, turn_deg: float) -> None:
+def record_c_rotation_time(state: State, line: int, column: int, turn_deg: float) -> None:
     """Record the time that the C axis needs to rotate by ``turn_deg`` degrees.
 
     The time is recorded only if the drive of C does not report the position.
@@ -119,7 +119,7 @@ def record_c_turn_time(state: State, line: int, column: int, turn_deg: float) ->
     limits = state.setup.limits
     if limits.has_c_feedback or turn_deg <= _ARRIVAL_TOLERANCE:
         return
-    speed, accel = (state.modal.c_rpm or limits.c_max_rpm) * 6.0, limits.c_acceleration_deg_s2
+    speed, accel = (state.modal.c_rpm or limits.max_c_rpm) * 6.0, limits.c_acceleration_deg_s2
     ramps = speed * speed / accel
     seconds = turn_deg / speed + speed / accel if turn_deg >= ramps else 2.0 * sqrt(turn_deg / accel)
     state.turning = (line, column, seconds)

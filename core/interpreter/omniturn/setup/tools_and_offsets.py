@@ -22,7 +22,9 @@ def _offset(state: State, line: int, word: Word, usage: ToolUsage) -> ToolOffset
     number = int(word.value or 0)
     offset = usage.use_tool_offset(number, state.setup.tools) if number else ToolOffset()
     if offset is None:
-        state.log.count_repeat(make_missing_offset_warning(usage.tools_without_offset, line, word.column))
+        state.log.count_repeated_finding(
+            make_missing_offset_warning(usage.tools_without_offset, line, word.column)
+        )
     return offset or ToolOffset()
 
 
@@ -55,9 +57,9 @@ def change_tool(state: State, statement: Statement, word: Word, usage: ToolUsage
     shift_z = modal.pending_shift_z if number else 0.0
     state.stay(
         modal._replace(
-            tool=number, tool_x=offset.x, tool_z=offset.z, compensation_code=40,
+            tool=number, tool_offset_x=offset.x, tool_offset_z=offset.z, compensation_code=40,
             shift_x=shift_x, shift_z=shift_z, pending_shift_x=shift_x, pending_shift_z=shift_z,
-            preset_x=0.0, preset_z=0.0, secondary=0, secondary_x=0.0, secondary_z=0.0,
+            preset_x=0.0, preset_z=0.0, secondary=0, secondary_offset_x=0.0, secondary_offset_z=0.0,
         )
     )  # fmt: skip
     state.tool_line = statement.line if number else 0
@@ -73,7 +75,9 @@ def select_secondary_offset(state: State, statement: Statement) -> None:
         return
     state.contour.secondary_offset_line = statement.line
     offset = state.setup.secondary.get(int(number), SecondaryOffset()) if number else SecondaryOffset()
-    state.set_modal(state.modal._replace(secondary=int(number), secondary_x=offset.x, secondary_z=offset.z))
+    state.set_modal(
+        state.modal._replace(secondary=int(number), secondary_offset_x=offset.x, secondary_offset_z=offset.z)
+    )
 
 
 def add_work_shift(state: State, statement: Statement) -> Iterator[Block]:
@@ -116,7 +120,7 @@ def set_preset(state: State, statement: Statement) -> Iterator[Block]:
     yield state.action(statement.line, statement.get_block_text("frame"), Preset(x, z))
 
 
-def warn_about_idle_shifts(state: State) -> None:
+def warn_about_unused_shifts(state: State) -> None:
     """Log a warning at the program end for each G10 without a following T, which has no effect."""
     for line, taken in state.pending_shift.items():
         if not taken:

@@ -13,7 +13,7 @@ from core.interpreter.sinumerik.cycles.drilling_cycles import (
     run_boring,
     run_boring_with_liftoff,
     run_drilling,
-    run_pecking,
+    run_peck_drilling,
     stop,
 )
 from core.interpreter.sinumerik.cycles.grooving_cycles import run_grooving, run_part_off
@@ -30,8 +30,8 @@ from core.interpreter.sinumerik.cycles.undercut_cycles import (
     run_thread_undercut,
     run_undercut,
 )
-from core.interpreter.sinumerik.flow.subprogram_flow import Flow
-from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.flow.subprogram_flow import SinumerikProgramFlow
+from core.interpreter.sinumerik.sinumerik_state import SinumerikState
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.sinumerik.cycle_names import IGNORED_CYCLES, SWIVEL_CYCLE
 from core.language.sinumerik.sinumerik_words import LexedBlock
@@ -40,7 +40,7 @@ from core.message import Message
 _CYCLE_FUNCTIONS: Mapping[str, Callable[[CycleCall], Iterator[Block]]] = {
     "CYCLE81": run_drilling,
     "CYCLE82": run_drilling,
-    "CYCLE83": run_pecking,
+    "CYCLE83": run_peck_drilling,
     "CYCLE84": run_rigid_tapping,
     "CYCLE840": run_compensating_tapping,
     "CYCLE85": run_boring,
@@ -59,7 +59,9 @@ _CYCLE_FUNCTIONS: Mapping[str, Callable[[CycleCall], Iterator[Block]]] = {
 }
 
 
-def generate_cycle_blocks(state: State, line: LexedBlock, flow: Flow) -> Iterator[Block]:
+def generate_cycle_blocks(
+    state: SinumerikState, line: LexedBlock, flow: SinumerikProgramFlow
+) -> Iterator[Block]:
     """Return an iterator over the blocks of a standard cycle.
 
     Raises ProgramError before the first block if the call is invalid.
@@ -70,8 +72,8 @@ def generate_cycle_blocks(state: State, line: LexedBlock, flow: Flow) -> Iterato
     return _CYCLE_FUNCTIONS[line.called_name](cycle)
 
 
-def _contour(cycle: CycleCall, flow: Flow) -> list[Element]:
-    named = cycle.read_text("NPP")
+def _contour(cycle: CycleCall, flow: SinumerikProgramFlow) -> list[Element]:
+    named = cycle.read_string("NPP")
     hint = 'Write "NAME" for a subprogram, or "START:END" for two labels.'
     cycle.check_parameter(
         named, "NPP", "{name} does not contain the name of a contour", hint, WRONG_CONTOUR_DEFINITION
@@ -107,10 +109,10 @@ def _relocate_finding(line: LexedBlock, file_name: str, finding: Diagnostic) -> 
     message = Message(
         "{source} line {line}: {value}", source=file_name, line=finding.line, value=finding.message
     )
-    return replace(finding, line=line.number, column=line.call_column, message=message)
+    return replace(finding, line=line.line_number, column=line.call_column, message=message)
 
 
-def note_ineffective_cycle(state: State, line: LexedBlock) -> None:
+def log_ineffective_cycle(state: SinumerikState, line: LexedBlock) -> None:
     """Log a single note that a cycle has no effect on this machine.
 
     Raises ProgramError if the parameters of the cycle are not supported.

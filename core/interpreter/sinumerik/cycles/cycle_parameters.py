@@ -20,12 +20,12 @@ from core.interpreter.shared.contour_passes import count_passes
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.sinumerik.motion.linear_moves import AxisTravel, make_travel_block
 from core.interpreter.sinumerik.motion.sinumerik_feeds import check_block_feed
-from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.sinumerik_state import SinumerikState
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError, Severity
 from core.language.sinumerik.call_arguments import CallArgument
 from core.language.sinumerik.cycle_names import CYCLE_PARAMETERS
-from core.language.sinumerik.sinumerik_alarms import make_alarm
+from core.language.sinumerik.sinumerik_alarms import make_alarm_diagnostic
 from core.language.sinumerik.sinumerik_words import LexedBlock
 from core.message import Message, fill_template
 
@@ -74,7 +74,7 @@ class CycleCall:
     ``x`` and ``z`` are the position of the tip in the program frame, in mm with X as a radius.
     """
 
-    def __init__(self, state: State, line: LexedBlock) -> None:
+    def __init__(self, state: SinumerikState, line: LexedBlock) -> None:
         self.state, self.line = state, line
         self.statement = Statement(line)
         self._in_thread = False
@@ -109,10 +109,12 @@ class CycleCall:
         hint = "Write TRANS without axes before this block."
         self.require_condition(self.state.programmed_frame.is_shift_only, "cycle-frame", text, hint)
         plane = self.state.transformation
-        if plane is not None and (self.line.called_name not in _LIVE_TOOL_CYCLES or not plane.has_z_depth):
+        if plane is not None and (
+            self.line.called_name not in _LIVE_TOOL_CYCLES or not plane.is_depth_along_z
+        ):
             template = (
                 "{call} uses the spindle for turning or tapping, but {plane} is active."
-                if plane.has_z_depth
+                if plane.is_depth_along_z
                 else "{call} moves along Z, but {plane} is active."
             )
             hint = "Write TRAFOOF before this block."
@@ -125,7 +127,7 @@ class CycleCall:
         """Return whether the call passes this parameter."""
         return name in self._arguments
 
-    def read_text(self, name: str) -> str:
+    def read_string(self, name: str) -> str:
         """Return a string parameter in capitals, or an empty string if the call omits the parameter."""
         argument = self._arguments.get(name)
         return "" if argument is None or argument.text is None else argument.text.upper()
@@ -151,7 +153,7 @@ class CycleCall:
             return default
         return self.read_number(name) * (1.0 if self.state.modal.metric else 25.4)
 
-    def read_size_mm(self, name: str, default: float = 0.0) -> float:
+    def read_unsigned_length_mm(self, name: str, default: float = 0.0) -> float:
         """Return an unsigned length in mm. Raises ProgramError if the length is negative."""
         value = self.read_length_mm(name, default)
         self.check_parameter(
@@ -159,7 +161,7 @@ class CycleCall:
         )
         return value
 
-    def read_required_mm(self, name: str) -> float:
+    def read_required_length_mm(self, name: str) -> float:
         """Return a required length in mm. Raises ProgramError if the parameter is missing."""
         if not self.has_argument(name):
             raise self.make_parameter_error(
@@ -167,12 +169,12 @@ class CycleCall:
             )
         return self.read_length_mm(name)
 
-    def read_positive_mm(self, name: str, alarm: _Alarm = _PARAMETER_CODE) -> float:
+    def read_positive_length_mm(self, name: str, alarm: _Alarm = _PARAMETER_CODE) -> float:
         """Return a required length above 0, in mm.
 
         Raises ProgramError if the length is missing or not above 0.
         """
-        value = self.read_required_mm(name)
+        value = self.read_required_length_mm(name)
         self.check_parameter(value > 0.0, name, "{name} must be greater than 0", "Correct the value.", alarm)
         return value
 
@@ -196,7 +198,7 @@ class CycleCall:
         text = "{name} is {value} but must be a whole number"
         self.check_parameter(value == round(value), name, text, "Enter a whole number.", value=value)
 
-    def check_zero(self, name: str, reason: str) -> None:
+    def check_unsupported_parameter(self, name: str, reason: str) -> None:
         """Raise ProgramError if a parameter for a function that TurnDesk does not support is not 0."""
         if self.read_number(name):
             raise self.make_parameter_error(
@@ -252,7 +254,7 @@ class CycleCall:
         self.check_parameter(count <= min(maximum, MAX_PASS_COUNT), name, text, hint, count=f"{count:,}")
         return count
 
-    def check_feed_known(
+    def require_feed(
         self, feed: float | None, alarm: int = NO_F, hint: str = "Program F before this block."
     ) -> float:
         """Return the feed. Raises ProgramError if no feed is active (None)."""
@@ -268,7 +270,7 @@ class CycleCall:
         """
         return [] if outward_sign * self.x >= outward_sign * clearance_x else [CycleStep(clearance_x, self.z)]
 
-    def check_tool(self) -> None:
+    def check_active_tool(self) -> None:
         """Raise ProgramError unless a tool with an offset is active."""
         modal, text = self.state.modal, "{call} needs an active tool with an offset."
         self.require_condition(modal.tool and modal.edge, 61000, text, "Write T and D before this block.")
@@ -318,7 +320,9 @@ class CycleCall:
             raise self.make_call_error(code, text, hint, **values)
 
     def _fault(self, column: int, code: _Alarm, text: str, hint: str) -> ProgramError:
-        return ProgramError(make_alarm(self.line.number, column, code, self.line.block_name, text, hint))
+        return ProgramError(
+            make_alarm_diagnostic(self.line.line_number, column, code, self.line.block_name, text, hint)
+        )
 
     def log_warning(self, code: str, text: str, hint: str, /, **values: object) -> None:
         """Log a warning about the call."""
@@ -353,11 +357,11 @@ class CycleCall:
     def _check_feed(self, step: CycleStep, x0: float) -> float:
         """Return the feed of a step in the unit of its block. Raises ProgramError if the feed is invalid."""
         state, modal = self.state, self.state.modal
-        state.set_modal(modal._replace(feed=step.feed))
+        state.set_modal_state(modal._replace(feed=step.feed))
         try:
             return check_block_feed(state, self.statement, x0, step.x)
         finally:
-            state.set_modal(modal)
+            state.set_modal_state(modal)
 
     def make_block(self, step: CycleStep, feed: float) -> Block:
         """Return the block of a step, and set the state to its end."""
@@ -366,13 +370,15 @@ class CycleCall:
             if step.spindle_direction is not None:
                 action, locked = step.action, isinstance(step.action, SpindleLock)
                 at = action.angle if isinstance(action, SpindlePositioning) else None
-                state.set_modal(modal._replace(spindle=step.spindle_direction, c_locked=locked, oriented=at))
-            done = state.action(self.line.number, _told(step), step.action)
+                state.set_modal_state(
+                    modal._replace(spindle=step.spindle_direction, c_locked=locked, oriented=at)
+                )
+            done = state.action(self.line.line_number, _told(step), step.action)
             done.in_hole = step.ends_in_hole
             return done
         text = f"{self.line.called_name} {_words(step, modal.diameter)}"
         if state.transformation is not None:
-            return state.transformation.move_to_depth(
+            return state.transformation.make_depth_move(
                 self.statement, step.z, None if step.feed is None else feed, text
             )
         x, z = step.x + modal.offset_x, step.z + modal.offset_z

@@ -30,7 +30,7 @@ from core.interpreter.sinumerik.setup.spindle_and_dwell import (
     compute_shortest_c_travel,
     is_oriented_by_drive,
 )
-from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.sinumerik_state import SinumerikState
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_words import LexedBlock
 from core.message import Message
@@ -59,7 +59,7 @@ class HolePositions(NamedTuple):
         return CycleStep(self.x, z, feed)
 
 
-def read_hole(cycle: CycleCall) -> HolePositions:
+def read_hole_positions(cycle: CycleCall) -> HolePositions:
     """Return the hole of a cycle call.
 
     Raises ProgramError if G17 is not active or if a parameter is invalid. The error names the parameter.
@@ -72,7 +72,7 @@ def read_hole(cycle: CycleCall) -> HolePositions:
     cycle.check_parameter(
         cycle.read_number("_AXN", 3.0) in {0.0, 3.0}, "_AXN", text, "Omit _AXN.", "not-in-subset"
     )
-    retract, reference = cycle.read_required_mm("RTP"), cycle.read_required_mm("RFP")
+    retract, reference = cycle.read_required_length_mm("RTP"), cycle.read_required_length_mm("RFP")
     if cycle.has_argument("DP") == cycle.has_argument("DPR"):
         text = "{name} is missing"
         cycle.check_parameter(
@@ -84,7 +84,9 @@ def read_hole(cycle: CycleCall) -> HolePositions:
     else:
         bottom = cycle.read_length_mm("DP")
         if cycle.has_argument("DPR"):
-            bottom = reference - cycle.read_size_mm("DPR") * (1.0 if retract >= reference else -1.0)
+            bottom = reference - cycle.read_unsigned_length_mm("DPR") * (
+                1.0 if retract >= reference else -1.0
+            )
     down = 1.0 if bottom > reference else -1.0
     if abs(bottom - reference) < _SAME or (retract - reference) * down > _SAME:
         name = "DP" if cycle.has_argument("DP") else "DPR"
@@ -96,7 +98,7 @@ def read_hole(cycle: CycleCall) -> HolePositions:
             name, text, hint, WRONG_REFERENCE_PLANE, retract=retract, reference=reference, bottom=bottom
         )
     return HolePositions(
-        cycle.x, retract, reference, reference - down * cycle.read_size_mm("SDIS"), bottom, down
+        cycle.x, retract, reference, reference - down * cycle.read_unsigned_length_mm("SDIS"), bottom, down
     )
 
 
@@ -115,7 +117,7 @@ def read_dwell_s(cycle: CycleCall, name: str) -> float:
 
 
 def _feed(cycle: CycleCall) -> float:
-    return cycle.check_feed_known(cycle.state.modal.feed)
+    return cycle.require_feed(cycle.state.modal.feed)
 
 
 def run_drilling(cycle: CycleCall) -> Iterator[Block]:
@@ -123,7 +125,7 @@ def run_drilling(cycle: CycleCall) -> Iterator[Block]:
 
     The tool feeds to the depth, dwells there for DTB if it is programmed, and retracts at rapid.
     """
-    hole, feed = read_hole(cycle), _feed(cycle)
+    hole, feed = read_hole_positions(cycle), _feed(cycle)
     dwells = make_dwell_steps(read_dwell_s(cycle, "DTB"))
     return cycle.make_blocks(
         [
@@ -140,8 +142,8 @@ def run_boring(cycle: CycleCall) -> Iterator[Block]:
 
     The tool feeds to the depth, dwells, and retracts at a feed.
     """
-    hole = read_hole(cycle)
-    into, out = cycle.check_feed_known(cycle.read_feed("FFR")), cycle.check_feed_known(cycle.read_feed("RFF"))
+    hole = read_hole_positions(cycle)
+    into, out = cycle.require_feed(cycle.read_feed("FFR")), cycle.require_feed(cycle.read_feed("RFF"))
     steps = [
         hole.make_step(hole.clearance_z),
         hole.make_step(hole.bottom_z, into),
@@ -150,20 +152,20 @@ def run_boring(cycle: CycleCall) -> Iterator[Block]:
     return cycle.make_blocks([*steps, hole.make_step(hole.clearance_z, out), hole.make_step(hole.retract_z)])
 
 
-def run_pecking(cycle: CycleCall) -> Iterator[Block]:
+def run_peck_drilling(cycle: CycleCall) -> Iterator[Block]:
     """Return the blocks of CYCLE83. DAM reduces the depth of successive pecks.
 
     After each peck, the drill retracts fully (VARI 1) or by a short distance (VARI 0).
     """
-    hole, feed = read_hole(cycle), _feed(cycle)
+    hole, feed = read_hole_positions(cycle), _feed(cycle)
     factor = cycle.read_number("FRF", 1.0) or 1.0
     if not 0.001 <= factor <= 1.0:
         raise cycle.make_parameter_error("FRF", "{name} must be a factor from 0.001 to 1")
     clears = cycle.read_machining_type("VARI", range(2)) == 1
     at_start, at_bottom = read_dwell_s(cycle, "DTS"), read_dwell_s(cycle, "DTB")
-    back, ahead = cycle.read_size_mm("_VRT") or 1.0, cycle.read_size_mm("_DIS1")
+    back, ahead = cycle.read_unsigned_length_mm("_VRT") or 1.0, cycle.read_unsigned_length_mm("_DIS1")
     steps, reached, first = [hole.make_step(hole.clearance_z)], hole.reference_z, True
-    for depth in compute_peck_depths(cycle, hole):
+    for depth in compute_peck_z_positions(cycle, hole):
         if clears and not first:
             short = reached - hole.drilling_sign * (ahead or min(back, abs(depth - reached)))
             steps.append(hole.make_step(short))
@@ -178,7 +180,7 @@ def run_pecking(cycle: CycleCall) -> Iterator[Block]:
     return cycle.make_blocks([*steps, hole.make_step(hole.retract_z)])
 
 
-def compute_peck_depths(cycle: CycleCall, hole: HolePositions) -> list[float]:
+def compute_peck_z_positions(cycle: CycleCall, hole: HolePositions) -> list[float]:
     """Return the Z position of each peck in mm.
 
     The first peck ends at FDEP or FDPR, and DAM reduces each following peck. A negative DAM is a factor.
@@ -188,7 +190,7 @@ def compute_peck_depths(cycle: CycleCall, hole: HolePositions) -> list[float]:
     first = (
         abs(cycle.read_length_mm("FDEP") - hole.reference_z)
         if cycle.has_argument("FDEP")
-        else cycle.read_size_mm("FDPR")
+        else cycle.read_unsigned_length_mm("FDPR")
     )
     if (
         cycle.has_argument("FDEP")
@@ -199,7 +201,7 @@ def compute_peck_depths(cycle: CycleCall, hole: HolePositions) -> list[float]:
     name = "FDEP" if cycle.has_argument("FDEP") else "FDPR"
     deeper = "{name} is deeper than the hole"
     cycle.check_parameter(first <= whole + _SAME, name, deeper, "Correct the value.", WRONG_FIRST_DEPTH)
-    step, less, smallest = first or whole, cycle.read_number("DAM"), cycle.read_size_mm("_MDEP")
+    step, less, smallest = first or whole, cycle.read_number("DAM"), cycle.read_unsigned_length_mm("_MDEP")
     text = "{name} must be an amount, or a factor greater than -1 and not greater than 0"
     cycle.check_parameter(less > -1.0, "DAM", text)
     found, reached, halved = [step], step, False
@@ -240,9 +242,9 @@ def run_boring_with_liftoff(cycle: CycleCall) -> Iterator[Block]:
     At the bottom, the spindle is oriented to POSS, and the cutting edge is lifted off the wall by RPA and
     RPAP. The tool retracts at rapid.
     """
-    hole, state = read_hole(cycle), cycle.state
+    hole, state = read_hole_positions(cycle), cycle.state
     check_spindle_positioning(state, lambda text, hint: cycle.make_call_error("spindle-position", text, hint))
-    cycle.check_zero("RPO", "this lathe has no Y axis")
+    cycle.check_unsupported_parameter("RPO", "this lathe has no Y axis")
     angle = cycle.read_angle_deg("POSS", "{name} must be an angle from 0 to less than 360 degrees")
     aside, up = cycle.read_length_mm("RPA"), cycle.read_length_mm("RPAP")
     text = "{name} would move the tool deeper into the hole"
@@ -288,7 +290,7 @@ def stop(cycle: CycleCall) -> Iterator[Block]:
 
     At the bottom, the spindle stops and the program stops with M0. The tool then retracts at rapid.
     """
-    hole = read_hole(cycle)
+    hole = read_hole_positions(cycle)
     rest = [
         make_action_step(SpindleStop(waits_for_standstill=True), 0),
         make_action_step(ProgramStop(optional=False)),
@@ -307,14 +309,14 @@ def make_missing_cycle_error(line: LexedBlock) -> ProgramError:
     return line.make_error(line.call_column, "pattern-cycle", text, hint)
 
 
-def generate_pattern_moves(state: State, line: LexedBlock) -> Iterator[Block]:
+def generate_pattern_moves(state: SinumerikState, line: LexedBlock) -> Iterator[Block]:
     """Yield a rapid to each hole of a pattern in X and Y of the face.
 
     Raises ProgramError if TRANSMIT is not active, or for invalid parameters.
     """
     cycle = CycleCall(state, line)
     plane = state.transformation
-    if plane is None or not plane.has_z_depth:
+    if plane is None or not plane.is_depth_along_z:
         text = Message(
             "{call} uses positions in X and Y, but this lathe has no Y axis.", call=line.called_name
         )
@@ -328,7 +330,7 @@ def generate_pattern_moves(state: State, line: LexedBlock) -> Iterator[Block]:
         )
     found = _row(cycle, number) if line.called_name == "HOLES1" else _circle(cycle, number)
     for k, (x, y) in enumerate(found, 1):
-        yield plane.move_above(cycle.statement, x, y, f"{line.called_name} {k}/{number}")
+        yield plane.make_rapid_to_hole(cycle.statement, x, y, f"{line.called_name} {k}/{number}")
 
 
 def _row(cycle: CycleCall, number: int) -> list[tuple[float, float]]:
@@ -342,7 +344,7 @@ def _row(cycle: CycleCall, number: int) -> list[tuple[float, float]]:
         cycle.read_length_mm("SPCO"),
         radians(cycle.read_number("STA1")),
     )
-    first, apart = cycle.read_length_mm("FDIS"), cycle.read_size_mm("DBH")
+    first, apart = cycle.read_length_mm("FDIS"), cycle.read_unsigned_length_mm("DBH")
     if number > 1 and not apart:
         raise cycle.make_parameter_error(
             "DBH",
@@ -359,7 +361,11 @@ def _circle(cycle: CycleCall, number: int) -> list[tuple[float, float]]:
     The holes are on a circle with the radius RAD about (CPA, CPO), starting at the angle STA1 with the
     spacing INDA. Without INDA, the holes are spaced equally on the full circle.
     """
-    x, y, radius = cycle.read_length_mm("CPA"), cycle.read_length_mm("CPO"), cycle.read_positive_mm("RAD")
+    x, y, radius = (
+        cycle.read_length_mm("CPA"),
+        cycle.read_length_mm("CPO"),
+        cycle.read_positive_length_mm("RAD"),
+    )
     first, apart = cycle.read_number("STA1"), cycle.read_number("INDA") or 360.0 / number
     angles = [radians(first + apart * k) for k in range(number)]
     return [(x + radius * cos(angle), y + radius * sin(angle)) for angle in angles]

@@ -29,7 +29,7 @@ from core.interpreter.sinumerik.cycles.cycle_parameters import (
     CycleStep,
     make_dwell_steps,
 )
-from core.tool_edges import format_edge_name, get_edge_number, get_tool_number, make_row_number
+from core.tool_edges import format_edge_name, get_edge_number, get_tool_number, make_edge_row_number
 
 WRONG_GROOVE_WIDTH = 61602
 WRONG_GROOVE_FORM = 61603
@@ -61,15 +61,20 @@ def read_groove(cycle: CycleCall) -> GrooveGeometry:
     """Return the groove of a cycle call. Raises ProgramError, naming the parameter, if one is invalid."""
     kind = (cycle.read_machining_type("VARI", range(1, 19)) - 1) % 10 + 1
     cycle.check_parameter(kind <= 8, "VARI", "{name} must be 1 to 8 or 11 to 18", "Correct the value.", 61002)
-    cycle.check_zero("STA1", "program a groove on a taper as a CYCLE95 contour")
+    cycle.check_unsupported_parameter("STA1", "program a groove on a taper as a CYCLE95 contour")
     for name in ("RCO1", "RCO2", "RCI1", "RCI2"):
-        cycle.check_zero(name, "program the corners as a CYCLE95 contour, or chamfer them with G1")
+        cycle.check_unsupported_parameter(
+            name, "program the corners as a CYCLE95 contour, or chamfer them with G1"
+        )
     text = "{name} is {kind}, which specifies a face groove and is not supported"
     hint = "Program a face groove as a CYCLE95 contour or in G1 blocks."
     cycle.check_parameter(kind % 2 != 0, "VARI", text, hint, "not-in-subset", kind=kind)
     inside, right = kind in {3, 7}, kind > 4
-    x, z = cycle.read_positive_mm("SPD") / 2.0, cycle.read_required_mm("SPL")
-    width, depth = cycle.read_positive_mm("WIDG"), cycle.read_positive_mm("DIAG", WRONG_GROOVE_FORM)
+    x, z = cycle.read_positive_length_mm("SPD") / 2.0, cycle.read_required_length_mm("SPL")
+    width, depth = (
+        cycle.read_positive_length_mm("WIDG"),
+        cycle.read_positive_length_mm("DIAG", WRONG_GROOVE_FORM),
+    )
     out = -1.0 if inside else 1.0
     here, there = _flank_extent(cycle, "ANG1", depth), _flank_extent(cycle, "ANG2", depth)
     low, high = (z - here - width, z - here) if right else (z + here, z + here + width)
@@ -101,9 +106,9 @@ def get_tool_width(cycle: CycleCall, max_width: float) -> tuple[float, bool]:
     """
     state = cycle.state
     key, tools = state.modal.tool, state.setup.tools
-    cycle.check_tool()
+    cycle.check_active_tool()
     number = cycle.read_whole_number("_DN", 0, 0, 9) or get_edge_number(key) + 1
-    other = make_row_number(get_tool_number(key), number)
+    other = make_edge_row_number(get_tool_number(key), number)
     if key not in tools and other not in tools:
         width = min(_USUAL_WIDTH, max_width)
         text = "{call} assumes a tool {width} mm wide because {key} is not set."
@@ -138,7 +143,7 @@ def run_grooving(cycle: CycleCall) -> Iterator[Block]:
     ProgramError for invalid parameters.
     """
     shape = read_groove(cycle)
-    bottom_left, flank_left = cycle.read_size_mm("FAL1"), cycle.read_size_mm("FAL2")
+    bottom_left, flank_left = cycle.read_unsigned_length_mm("FAL1"), cycle.read_unsigned_length_mm("FAL2")
     width, at_low = get_tool_width(cycle, shape.bottom_max_z - shape.bottom_min_z - 2.0 * flank_left)
     room = shape.bottom_max_z - shape.bottom_min_z - 2.0 * flank_left - width
     text = "{name} is {high} including FAL2 on both flanks, but the tool is {width} wide"
@@ -152,8 +157,8 @@ def run_grooving(cycle: CycleCall) -> Iterator[Block]:
         high=shape.bottom_max_z - shape.bottom_min_z,
         width=width,
     )
-    feed = cycle.check_feed_known(cycle.state.modal.feed)
-    off = cycle.read_size_mm("_VRT") or DEFAULT_RETRACT_MM
+    feed = cycle.require_feed(cycle.state.modal.feed)
+    off = cycle.read_unsigned_length_mm("_VRT") or DEFAULT_RETRACT_MM
     plan = _Plan(
         cycle, shape, feed, shape.surface_radius + shape.outward_sign * off, 0.0 if at_low else width
     )
@@ -163,10 +168,10 @@ def run_grooving(cycle: CycleCall) -> Iterator[Block]:
     for k in range(count + 1):
         place = shape.bottom_max_z - flank_left - width - (room * k / count if count else 0.0)
         steps += plan.plan_plunge(place, bottom)
-    steps += plan.plunge_under_flank(
+    steps += plan.plan_flank_plunges(
         shape.bottom_max_z - flank_left - width, shape.high_flank_z_extent, width, bottom
     )
-    steps += plan.plunge_under_flank(
+    steps += plan.plan_flank_plunges(
         shape.bottom_min_z + flank_left, -shape.low_flank_z_extent, width, bottom
     )
     if bottom_left or flank_left or count or shape.high_flank_z_extent or shape.low_flank_z_extent:
@@ -182,7 +187,7 @@ class _Plan:
     ) -> None:
         self._cycle, self._shape, self._feed = cycle, shape, feed
         self._clear, self._corner = clearance, corner
-        self._infeed, self._dwell = cycle.read_size_mm("IDEP"), cycle.read_number("DTB")
+        self._infeed, self._dwell = cycle.read_unsigned_length_mm("IDEP"), cycle.read_number("DTB")
         cycle.check_parameter(self._dwell >= 0.0, "DTB", "{name} must be a time of 0 s or more")
 
     def plan_plunge(self, z_position: float, bottom: float) -> list[CycleStep]:
@@ -204,7 +209,7 @@ class _Plan:
                 steps.append(self._to(depth + shape.outward_sign * DEFAULT_RETRACT_MM, z_position))
         return [*steps, *make_dwell_steps(self._dwell), self._to(self._clear, z_position)]
 
-    def plunge_under_flank(
+    def plan_flank_plunges(
         self, z_position: float, flank_extent: float, width: float, bottom: float
     ) -> list[CycleStep]:
         """Return plunges that remove the material in front of a tapered flank, with decreasing depth.
@@ -257,8 +262,10 @@ def run_part_off(cycle: CycleCall) -> Iterator[Block]:
     speed is active again, or the last speed of the cycle if no speed was active before. Raises ProgramError
     before the first block if a parameter is invalid.
     """
-    cycle.check_zero("_RC", "cut the chamfer or the radius with G1 before the cycle")
-    cycle.check_zero("_VARI", "the tool only retracts, because this machine has no parts catcher")
+    cycle.check_unsupported_parameter("_RC", "cut the chamfer or the radius with G1 before the cycle")
+    cycle.check_unsupported_parameter(
+        "_VARI", "the tool only retracts, because this machine has no parts catcher"
+    )
     text = "{name} specifies depths measured from SPD, which is not supported"
     hint = "Enter _DIAG1 and _DIAG2 as diameters, and omit _AMODE."
     cycle.check_parameter(
@@ -270,8 +277,8 @@ def run_part_off(cycle: CycleCall) -> Iterator[Block]:
     fast = _speed(cycle, before)
     rpm = cycle.read_number("_SS2")
     cycle.check_parameter(0.0 <= rpm <= cycle.state.setup.limits.max_rpm, "_SS2", _SPEED, value=rpm)
-    place, surface = cycle.read_required_mm("SPL"), cycle.read_required_mm("SPD") / 2.0
-    clear = surface + (cycle.read_size_mm("_SDIS") or DEFAULT_RETRACT_MM)
+    place, surface = cycle.read_required_length_mm("SPL"), cycle.read_required_length_mm("SPD") / 2.0
+    clear = surface + (cycle.read_unsigned_length_mm("_SDIS") or DEFAULT_RETRACT_MM)
     down = [
         *cycle.make_clearance_steps(clear),
         CycleStep(max(clear, cycle.x), place),
@@ -286,7 +293,7 @@ def _depths(cycle: CycleCall) -> tuple[float, float]:
 
     Raises ProgramError if the parameters contradict each other.
     """
-    surface, last = cycle.read_positive_mm("SPD"), cycle.read_required_mm("_DIAG2")
+    surface, last = cycle.read_positive_length_mm("SPD"), cycle.read_required_length_mm("_DIAG2")
     slow = cycle.read_length_mm("_DIAG1", last) if cycle.has_argument("_DIAG1") else last
     if not last <= slow <= surface:
         text = "{name} is {slow} but must be between SPD {surface} and _DIAG2 {last}"
@@ -298,7 +305,7 @@ def _depths(cycle: CycleCall) -> tuple[float, float]:
 
 
 def _feeds(cycle: CycleCall) -> tuple[float, float]:
-    first = cycle.check_feed_known(cycle.read_feed("_FF1"), NO_FEED, "Write _FF1.")
+    first = cycle.require_feed(cycle.read_feed("_FF1"), NO_FEED, "Write _FF1.")
     second = cycle.read_feed("_FF2") if cycle.read_number("_FF2") else first
     return first, second or first
 
@@ -345,17 +352,17 @@ def _blocks(
     slow = fast._replace(css=False, rpm=rpm) if rpm else fast
     first, last = _check_sections(cycle, ((fast, first_steps), (slow, last_steps)))
     if fast != before:
-        state.set_modal(fast)
+        state.set_modal_state(fast)
         yield _turning(cycle)
     for step, feed in first:
         yield cycle.make_block(step, feed)
     if slow != fast:
-        state.set_modal(slow)
+        state.set_modal_state(slow)
         yield _turning(cycle)
     for step, feed in last:
         yield cycle.make_block(step, feed)
     if slow != before:
-        state.set_modal(
+        state.set_modal_state(
             state.modal._replace(
                 css=before.css,
                 surface_speed=before.surface_speed,
@@ -366,7 +373,7 @@ def _blocks(
         if state.rpm:
             yield _turning(cycle)
         else:
-            state.set_modal(slow)  # The spindle continues to turn, so the modal state has its speed.
+            state.set_modal_state(slow)  # The spindle continues to turn, so the modal state has its speed.
 
 
 def _check_sections(
@@ -380,11 +387,11 @@ def _check_sections(
     checked = []
     try:
         for modal, steps in sections:
-            state.set_modal(modal)
+            state.set_modal_state(modal)
             checked.append(cycle.check_steps(steps))
             cycle.x, cycle.z = steps[-1].x, steps[-1].z
     finally:
-        state.set_modal(before)
+        state.set_modal_state(before)
     return checked
 
 
@@ -392,4 +399,4 @@ def _turning(cycle: CycleCall) -> Block:
     """Return the block that runs the spindle at the active speed."""
     state = cycle.state
     text = f"G96 S{(state.css or 0.0) / MM_S_PER_M_MIN:g}" if state.css else f"S{abs(state.rpm):g}"
-    return state.action(cycle.line.number, text, SpindleRun(state.rpm, state.css))
+    return state.action(cycle.line.line_number, text, SpindleRun(state.rpm, state.css))

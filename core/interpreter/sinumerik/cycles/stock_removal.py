@@ -39,12 +39,12 @@ from core.interpreter.sinumerik.flow.variable_assignments import set_parameters
 from core.interpreter.sinumerik.motion.chamfers_and_roundings import SinumerikCornerStage, make_corner
 from core.interpreter.sinumerik.motion.linear_moves import make_straight_block
 from core.interpreter.sinumerik.motion.sinumerik_arcs import make_arc_block
-from core.interpreter.sinumerik.setup.modes_and_offsets import execute_modes
-from core.interpreter.sinumerik.sinumerik_state import ARC_MOTIONS, MotionKind, State
+from core.interpreter.sinumerik.setup.modes_and_offsets import set_modal_functions
+from core.interpreter.sinumerik.sinumerik_state import ARC_MOTIONS, MotionKind, SinumerikState
 from core.interpreter.sinumerik.sinumerik_statement import Statement, make_statement
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.control_statements import ControlKeyword
-from core.language.sinumerik.sinumerik_alarms import make_alarm
+from core.language.sinumerik.sinumerik_alarms import make_alarm_diagnostic
 from core.language.sinumerik.sinumerik_words import ARC_WORDS, CORNER_WORDS, POSITION_WORDS
 from core.language.sinumerik.sinumerik_words import LexedBlock as SourceLine
 from core.language.sinumerik.word_table import DIAMETER_GROUP, DISTANCE_MODE_GROUP, MOTION_GROUP, PLANE_GROUP
@@ -92,7 +92,7 @@ def find_contour_lines(
     )
 
 
-def read_contour(state: State, lines: Iterable[SourceLine], log: DiagnosticLog) -> list[Element]:
+def read_contour(state: SinumerikState, lines: Iterable[SourceLine], log: DiagnosticLog) -> list[Element]:
     """Return the lines and arcs of a contour in the program frame, in mm.
 
     The first move leads to the first point of the contour. The active state does not change, and ``log``
@@ -109,7 +109,7 @@ def read_contour(state: State, lines: Iterable[SourceLine], log: DiagnosticLog) 
 
 
 class _Reader:
-    def __init__(self, state: State, log: DiagnosticLog) -> None:
+    def __init__(self, state: SinumerikState, log: DiagnosticLog) -> None:
         own = copy.copy(state)
         own.log, own.moved_by_tool = log, set(state.moved_by_tool)
         own.call_site = MAIN_FILE  # the cycle call relocates the findings
@@ -118,7 +118,7 @@ class _Reader:
         own.variables.r_parameters = dict(state.variables.r_parameters)
         own.threads, own.rounding, own.motion = (), 0.0, MotionKind.LINE
         # The feeds of a contour have no effect, so a missing feed is not an error.
-        own.set_modal(state.modal._replace(feed=1.0, per_rev=False, css=False))
+        own.set_modal_state(state.modal._replace(feed=1.0, per_rev=False, css=False))
         self._state = own
         self._corners = SinumerikCornerStage(own, own.log)
         self._blocks: list[Block] = []
@@ -145,7 +145,7 @@ class _Reader:
         self._check(statement)
         set_parameters(self._state, statement)
         if statement.g_words:
-            execute_modes(self._state, statement)
+            set_modal_functions(self._state, statement)
         if statement.has_position_word or not ARC_WORDS.isdisjoint(statement.words):
             block = (make_arc_block if self._state.motion in ARC_MOTIONS else make_straight_block)(
                 self._state, statement
@@ -158,17 +158,21 @@ class _Reader:
         groups = statement.g_words.keys() - _GROUPS
         if groups:
             word = statement.g_words[min(groups)]
-            raise _refused(statement.line, Message("{line} is not allowed in a contour", line=word.text))
+            raise _refused(
+                statement.lexed_block, Message("{line} is not allowed in a contour", line=word.text)
+            )
         motion = statement.get_g_code(MOTION_GROUP)
         if motion is not None and motion not in _MOTIONS:
-            raise _refused(statement.line, "a contour can contain only G0, G1, G2 and G3")
+            raise _refused(statement.lexed_block, "a contour can contain only G0, G1, G2 and G3")
         for name in sorted(statement.words.keys() - _WORDS - {"C"}):
             word = statement.words[name]
             if name in _CANCELED_BY_ZERO and self._state.number(statement, word) == 0.0:
                 continue
-            raise _refused(statement.line, Message("{line} is not allowed in a contour", line=word.text))
+            raise _refused(
+                statement.lexed_block, Message("{line} is not allowed in a contour", line=word.text)
+            )
         if "C" in statement.words or statement.frame_word is not None:
-            raise _refused(statement.line, "C and frames are not allowed in a contour")
+            raise _refused(statement.lexed_block, "C and frames are not allowed in a contour")
 
     def read_elements(self) -> list[Element]:
         """Return all elements after the first move."""
@@ -179,8 +183,8 @@ class _Reader:
 
 def _refused(line: SourceLine, why: str) -> ProgramError:
     return ProgramError(
-        make_alarm(
-            line.number,
+        make_alarm_diagnostic(
+            line.line_number,
             1,
             WRONG_CONTOUR_DEFINITION,
             line.block_name,
@@ -204,7 +208,7 @@ class MachiningType(NamedTuple):
     """
 
     is_transverse: bool
-    is_inside: bool
+    is_internal: bool
     has_roughing: bool
     has_finishing: bool
 
@@ -249,9 +253,9 @@ class _Plan:
 
     def __init__(self, cycle: CycleCall, kind: MachiningType, contour: list[Element]) -> None:
         self._cycle, self._kind = cycle, kind
-        self._off = cycle.read_size_mm("_VRT") or DEFAULT_RETRACT_MM
-        self._left = cycle.read_size_mm("FAL")
-        self._allow = cycle.read_size_mm("FALX"), cycle.read_size_mm("FALZ")
+        self._off = cycle.read_unsigned_length_mm("_VRT") or DEFAULT_RETRACT_MM
+        self._left = cycle.read_unsigned_length_mm("FAL")
+        self._allow = cycle.read_unsigned_length_mm("FALX"), cycle.read_unsigned_length_mm("FALZ")
         if kind.is_transverse:
             contour = [_swapped(each) for each in contour]
             self._allow = self._allow[1], self._allow[0]
@@ -264,9 +268,9 @@ class _Plan:
     def _free_side(self) -> tuple[float, float]:
         """Return the signs of the directions in depth and length toward the open side of the contour."""
         if self._kind.is_transverse:  # The face is on the right side.
-            return 1.0, (-1.0 if self._kind.is_inside else 1.0)
+            return 1.0, (-1.0 if self._kind.is_internal else 1.0)
         first, last = self._contour[0].start, self._contour[-1].end
-        out = -1.0 if self._kind.is_inside else 1.0
+        out = -1.0 if self._kind.is_internal else 1.0
         deep, other = (first, last) if out * first[0] <= out * last[0] else (last, first)
         return out, (1.0 if deep[1] >= other[1] else -1.0)
 
@@ -327,7 +331,7 @@ class _Plan:
         The steps are equal passes of at most MID, and a pass along the contour that leaves the allowance.
         """
         cycle = self._cycle
-        infeed = cycle.read_size_mm("MID")
+        infeed = cycle.read_unsigned_length_mm("MID")
         text = "{name} is missing, so the depth of a pass is not defined"
         cycle.check_parameter(infeed, "MID", text, "Write MID.", MISSING_INFEED)
         contour, left = self._with_allowance()
@@ -404,7 +408,7 @@ class _Plan:
 
     def _break_chips(self, position: Point, move: CycleMove, feed: float) -> list[CycleStep]:
         """Return a cut that is interrupted by a dwell DT after each distance DAM to break chips."""
-        length, seconds = self._cycle.read_size_mm("DAM"), self._cycle.read_number("DT")
+        length, seconds = self._cycle.read_unsigned_length_mm("DAM"), self._cycle.read_number("DT")
         travel_mm = move.z - position[1]
         if (
             not length

@@ -22,16 +22,16 @@ from core.interpreter.sinumerik.cycles.drilling_cycles import (
     HolePositions,
     make_spindle_lock_steps,
     read_dwell_s,
-    read_hole,
+    read_hole_positions,
 )
 from core.interpreter.sinumerik.cycles.thread_cycle import (
     WRONG_THREAD_LEAD,
     check_lead_nonzero,
-    get_coarse_lead,
+    get_coarse_thread_lead,
 )
-from core.interpreter.sinumerik.motion.linear_moves import compute_travel, make_travel_block
+from core.interpreter.sinumerik.motion.linear_moves import compute_axis_travel, make_travel_block
 from core.interpreter.sinumerik.setup.spindle_and_dwell import check_spindle_c_axis
-from core.interpreter.sinumerik.sinumerik_state import MotionKind, State
+from core.interpreter.sinumerik.sinumerik_state import MotionKind, SinumerikState
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 
 _SAME = 1e-6  # mm
@@ -52,7 +52,7 @@ def read_tap_lead(cycle: CycleCall) -> float:
         return _INCH / pit if unit == 2 else pit * (_INCH if in_inches else 1.0)
     if not size:
         return 0.0
-    lead = get_coarse_lead(size)
+    lead = get_coarse_thread_lead(size)
     check_lead_nonzero(cycle, lead, "MPIT")
     return copysign(lead, size)
 
@@ -66,7 +66,7 @@ def run_rigid_tapping(cycle: CycleCall) -> Iterator[Block]:
     The spindle is oriented to POSS, and the tool then taps in at the speed SST and out at the speed SST1.
     Raises ProgramError for invalid parameters.
     """
-    hole, state = read_hole(cycle), cycle.state
+    hole, state = read_hole_positions(cycle), cycle.state
     check_spindle_c_axis(state, lambda text, hint: cycle.make_call_error("spindle-position", text, hint))
     lead = read_tap_lead(cycle)
     check_lead_nonzero(cycle, lead, "PIT")
@@ -103,7 +103,7 @@ def _speed(cycle: CycleCall, name: str, default: float) -> float:
     A warning is logged if the speed is limited.
     """
     value = cycle.read_number(name, default) or default
-    most = cycle.state.setup.limits.c_max_rpm
+    most = cycle.state.setup.limits.max_c_rpm
     text = "{name} does not define a speed"
     cycle.check_parameter(value > 0.0, name, text, "Enter a speed, or program S before the cycle.")
     if value > most:
@@ -123,27 +123,27 @@ def _tapping_steps(
 
     After each step, the tap retracts by _VRT (_VARI 1) or out of the hole (_VARI 2).
     """
-    kind, each = cycle.read_whole_number("_VARI", 0, 0, 2), cycle.read_size_mm("_DAM")
+    kind, each = cycle.read_whole_number("_VARI", 0, 0, 2), cycle.read_unsigned_length_mm("_DAM")
     whole = abs(hole.bottom_z - hole.clearance_z)
     text = "{name} would need {count} steps, which is too many"
     count = max(cycle.compute_pass_count(whole, each, "_DAM", text), 1) if kind and each else 1
-    back, at, steps = cycle.read_size_mm("_VRT") or 1.0, hole.clearance_z, list[CycleStep]()
+    back, at, steps = cycle.read_unsigned_length_mm("_VRT") or 1.0, hole.clearance_z, list[CycleStep]()
 
-    def turned(to: float, rpm: float) -> CycleStep:
+    def make_tapping_step(to: float, rpm: float) -> CycleStep:
         # A move into the hole turns a right-hand tap in the direction of M3.
         turn = (to - at) * hole.drilling_sign / lead * 360.0
         return CycleStep(cycle.x, to, abs(lead) * rpm / 60.0, c_travel_deg=turn)
 
     for k in range(1, count + 1):
         depth = hole.bottom_z if k == count else hole.clearance_z + hole.drilling_sign * k * each
-        steps.append(turned(depth, speeds[0]))
+        steps.append(make_tapping_step(depth, speeds[0]))
         at = depth
         if k < count:
             away = hole.clearance_z if kind == 2 else depth - hole.drilling_sign * min(back, each)
-            steps.append(turned(away, speeds[1]))
+            steps.append(make_tapping_step(away, speeds[1]))
             at = away
     steps += make_dwell_steps(read_dwell_s(cycle, "DTB"))
-    steps.append(turned(hole.clearance_z, speeds[1]))
+    steps.append(make_tapping_step(hole.clearance_z, speeds[1]))
     return steps
 
 
@@ -156,7 +156,7 @@ def run_compensating_tapping(cycle: CycleCall) -> Iterator[Block]:
     The tool feeds in by the lead, the spindle reverses, the tool feeds out, and the spindle continues in
     the direction SDAC. Raises ProgramError for invalid parameters.
     """
-    hole, state = read_hole(cycle), cycle.state
+    hole, state = read_hole_positions(cycle), cycle.state
     modal, sign = state.modal, state.modal.spindle
     text = "{call} needs the spindle to turn at a speed in rpm."
     hint = "Write G97 with S and M3 or M4 before this block."
@@ -174,9 +174,7 @@ def run_compensating_tapping(cycle: CycleCall) -> Iterator[Block]:
     lead = abs(read_tap_lead(cycle))
     hint = "Enter PIT or MPIT, or ENC 1 to use the active feed rate."
     cycle.check_parameter(lead or by_feed, "PIT", "{name} does not define a lead", hint, WRONG_THREAD_LEAD)
-    feed = (
-        cycle.check_feed_known(modal.feed) if by_feed else lead if modal.per_rev else lead * modal.rpm / 60.0
-    )
+    feed = cycle.require_feed(modal.feed) if by_feed else lead if modal.per_rev else lead * modal.rpm / 60.0
     into, out = (hole.make_step(z, feed)._replace(is_tapping=True) for z in (hole.bottom_z, hole.clearance_z))
     deep = [
         into,
@@ -206,7 +204,7 @@ def _uses_active_feed(cycle: CycleCall) -> bool:
 # --- G331 and G332
 
 
-def make_tap_block(state: State, statement: Statement) -> Block:
+def make_tapping_block(state: SinumerikState, statement: Statement) -> Block:
     """Return the block of G331 (into the hole) or G332 (out of the hole).
 
     C is locked, K is the lead, and S is the speed. Raises ProgramError for invalid words.
@@ -227,18 +225,18 @@ def make_tap_block(state: State, statement: Statement) -> Block:
     lead = statement.words.get("K")
     pitch = state.length(statement, lead) if lead is not None else state.tap_lead_mm
     text = "{code} needs the lead K."
-    statement.check_condition(pitch, lead or word, "thread-lead-missing", text, "Write K.", code=code)
+    statement.require_condition(pitch, lead or word, "thread-lead-missing", text, "Write K.", code=code)
     state.tap_lead_mm = pitch
-    travel = compute_travel(state, statement)
+    travel = compute_axis_travel(state, statement)
     stroke = travel.z - travel.z0
     text = "{code} does not move along Z."
-    statement.check_condition(
+    statement.require_condition(
         abs(stroke) >= _SAME, word, "thread-length", text, "Enter Z of the end point.", code=code
     )
     rpm = state.modal.rpm
     text = "No spindle speed is programmed for {code}."
-    statement.check_condition(rpm, word, "speed-missing", text, "Write S in the block.", code=code)
-    rpm = min(rpm, state.setup.limits.c_max_rpm)
+    statement.require_condition(rpm, word, "speed-missing", text, "Write S in the block.", code=code)
+    rpm = min(rpm, state.setup.limits.max_c_rpm)
     # With G331, a positive lead turns in the direction of M3. With G332, the direction is reversed.
     sense = 1.0 if state.motion is MotionKind.TAP else -1.0
     turn = sense * abs(stroke) / pitch * 360.0

@@ -33,7 +33,7 @@ COARSE_THREAD_LEADS_MM = {
 """Leads of ISO coarse threads in mm, by thread size. MPIT selects the lead."""
 
 
-def get_coarse_lead(nominal_size: float) -> float:
+def get_coarse_thread_lead(nominal_size: float) -> float:
     """Return the lead of a coarse metric thread in mm, or 0 if the size does not exist.
 
     Negative sizes specify left-hand threads.
@@ -59,7 +59,7 @@ def _read_lead(cycle: CycleCall) -> float:
     """
     for name in ("_PIT1", "_GST", "_MID", "_FDEP"):
         if cycle.line.called_name == "CYCLE99":
-            cycle.check_zero(name, "CYCLE99 supports only the functions of CYCLE97")
+            cycle.check_unsupported_parameter(name, "CYCLE99 supports only the functions of CYCLE97")
     pit, size = cycle.read_length_mm("PIT"), cycle.read_number("MPIT")
     if cycle.has_argument("PIT") and pit:
         text = "{name} is a lead and must be greater than 0"
@@ -68,7 +68,7 @@ def _read_lead(cycle: CycleCall) -> float:
             text = "{name} does not match a thread with lead {pit}"
             raise cycle.make_parameter_error("MPIT", text, "Omit MPIT.", WRONG_THREAD_LEAD, pit=pit)
         return pit
-    lead = get_coarse_lead(size) if size >= 0.0 else 0.0
+    lead = get_coarse_thread_lead(size) if size >= 0.0 else 0.0
     check_lead_nonzero(cycle, lead, "MPIT" if cycle.has_argument("MPIT") else "PIT")
     return lead
 
@@ -79,7 +79,7 @@ def _depths(cycle: CycleCall, *, equal_chip: bool) -> tuple[float, ...]:
     NRC roughing passes cut to TDEP minus FAL, one finishing pass removes FAL, and NID passes repeat without
     infeed.
     """
-    depth, left = cycle.read_positive_mm("TDEP"), cycle.read_size_mm("FAL")
+    depth, left = cycle.read_positive_length_mm("TDEP"), cycle.read_unsigned_length_mm("FAL")
     count, idle = (
         cycle.read_whole_number("NRC", 1, 0, MAX_PASS_COUNT),
         cycle.read_whole_number("NID", 0, 0, MAX_PASS_COUNT),
@@ -147,24 +147,32 @@ def run_threading(cycle: CycleCall) -> Iterator[Block]:
     """
     lead, kind = _read_lead(cycle), _kind(cycle)
     out = -1.0 if kind in {2, 4} else 1.0
-    z0, z1 = cycle.read_required_mm("SPL"), cycle.read_required_mm("FPL")
+    z0, z1 = cycle.read_required_length_mm("SPL"), cycle.read_required_length_mm("FPL")
     text = "{name} is the same position as the start of the thread"
     cycle.check_parameter(abs(z1 - z0) >= _SAME, "FPL", text, "Correct SPL or FPL.")
     along = 1.0 if z1 > z0 else -1.0
-    x0, x1 = cycle.read_positive_mm("DM1") / 2.0, cycle.read_positive_mm("DM2") / 2.0
+    x0, x1 = cycle.read_positive_length_mm("DM1") / 2.0, cycle.read_positive_length_mm("DM2") / 2.0
     slope = (x1 - x0) / (z1 - z0)
-    begin, end = z0 - along * cycle.read_size_mm("APP"), z1 + along * cycle.read_size_mm("ROP")
+    begin, end = (
+        z0 - along * cycle.read_unsigned_length_mm("APP"),
+        z1 + along * cycle.read_unsigned_length_mm("ROP"),
+    )
     x_begin, x_end = x0 + slope * (begin - z0), x0 + slope * (end - z0)
     passes = _passes(cycle, kind)
-    off = cycle.read_size_mm("_SDIS" if cycle.line.called_name == "CYCLE99" else "_VRT") or DEFAULT_RETRACT_MM
+    off = (
+        cycle.read_unsigned_length_mm("_SDIS" if cycle.line.called_name == "CYCLE99" else "_VRT")
+        or DEFAULT_RETRACT_MM
+    )
     clear = max(out * x_begin, out * x_end) * out + out * off
     slope = (x_end - x_begin) / (end - begin)
 
-    def start(later: float, shift: float) -> Point:
+    def compute_start_point(later: float, shift: float) -> Point:
         z = begin - along * (later - shift)
         return x_begin + slope * (z - begin), z
 
-    return _cut(cycle, passes, _start_delays(cycle, [lead]), out, clear, start, [((x_end, end), lead)])
+    return _cut(
+        cycle, passes, _start_delays(cycle, [lead]), out, clear, compute_start_point, [((x_end, end), lead)]
+    )
 
 
 def run_chain_threading(cycle: CycleCall) -> Iterator[Block]:
@@ -174,8 +182,11 @@ def run_chain_threading(cycle: CycleCall) -> Iterator[Block]:
     """
     kind = _kind(cycle)
     out = -1.0 if kind in {2, 4} else 1.0
-    places = [(cycle.read_positive_mm(f"DM{k}") / 2.0, cycle.read_required_mm(f"PO{k}")) for k in range(1, 5)]
-    leads = [cycle.read_positive_mm(f"PP{k}", WRONG_THREAD_LEAD) for k in range(1, 4)]
+    places = [
+        (cycle.read_positive_length_mm(f"DM{k}") / 2.0, cycle.read_required_length_mm(f"PO{k}"))
+        for k in range(1, 5)
+    ]
+    leads = [cycle.read_positive_length_mm(f"PP{k}", WRONG_THREAD_LEAD) for k in range(1, 4)]
     along = 1.0 if places[1][1] > places[0][1] else -1.0
     for k, (a, b) in enumerate(pairwise(places), 2):
         text = "{name} does not continue the thread in the same Z direction"
@@ -183,14 +194,16 @@ def run_chain_threading(cycle: CycleCall) -> Iterator[Block]:
         cycle.check_parameter(along * (b[1] - a[1]) >= _SAME, f"PO{k}", text, hint)
     passes = _passes(cycle, kind)
     later = _start_delays(cycle, leads)
-    clear = max(out * x for x, _ in places) * out + out * (cycle.read_size_mm("_VRT") or DEFAULT_RETRACT_MM)
-    ends = [*places[1:3], _extend_line(places[2], places[3], along * cycle.read_size_mm("ROP"))]
-    app = cycle.read_size_mm("APP")
+    clear = max(out * x for x, _ in places) * out + out * (
+        cycle.read_unsigned_length_mm("_VRT") or DEFAULT_RETRACT_MM
+    )
+    ends = [*places[1:3], _extend_line(places[2], places[3], along * cycle.read_unsigned_length_mm("ROP"))]
+    app = cycle.read_unsigned_length_mm("APP")
 
-    def start(later: float, shift: float) -> Point:
+    def compute_start_point(later: float, shift: float) -> Point:
         return _extend_line(places[1], places[0], -along * (app + later - shift))
 
-    return _cut(cycle, passes, later, out, clear, start, list(zip(ends, leads, strict=True)))
+    return _cut(cycle, passes, later, out, clear, compute_start_point, list(zip(ends, leads, strict=True)))
 
 
 def _passes(cycle: CycleCall, kind: int) -> list[tuple[float, float]]:

@@ -96,15 +96,17 @@ class UndercutPosition(NamedTuple):
 
 def run_shoulder_undercut(cycle: CycleCall) -> Iterator[Block]:
     """Return the blocks of CYCLE94. Raises ProgramError before the first block if a value is invalid."""
-    form = cycle.read_text("FORM")
+    form = cycle.read_string("FORM")
     cycle.check_parameter(
         form in {"E", "F"}, "FORM", '{name} must be "E" or "F"', "Correct the value.", WRONG_UNDERCUT_FORM
     )
     size = _shoulder_size(cycle, form)
-    out, side = read_position_signs(cycle, cycle.read_whole_number("VARI", 0, 0, 4))
-    place = UndercutPosition(cycle.read_required_mm("SPD") / 2.0, cycle.read_required_mm("SPL"), out, side)
+    out, side = read_direction_signs(cycle, cycle.read_whole_number("VARI", 0, 0, 4))
+    place = UndercutPosition(
+        cycle.read_required_length_mm("SPD") / 2.0, cycle.read_required_length_mm("SPL"), out, side
+    )
     return cycle.make_blocks(
-        _cut(cycle, place, size, cycle.check_feed_known(cycle.state.modal.feed, NO_FEED), _CLEARANCE_MM)
+        _cut(cycle, place, size, cycle.require_feed(cycle.state.modal.feed, NO_FEED), _CLEARANCE_MM)
     )
 
 
@@ -113,7 +115,7 @@ def _shoulder_size(cycle: CycleCall, form: str) -> UndercutSize:
 
     Raises ProgramError for an invalid diameter.
     """
-    diameter = cycle.read_positive_mm("SPD", DIAMETER_TOO_SMALL)
+    diameter = cycle.read_positive_length_mm("SPD", DIAMETER_TOO_SMALL)
     if diameter <= 3.0:
         text = "{name} is {diameter}, but must be greater than 3 mm for an undercut"
         raise cycle.make_parameter_error(
@@ -126,12 +128,12 @@ def _shoulder_size(cycle: CycleCall, form: str) -> UndercutSize:
 
 def run_thread_undercut(cycle: CycleCall) -> Iterator[Block]:
     """Return the blocks of CYCLE96. Raises ProgramError before the first block if a value is invalid."""
-    form = cycle.read_text("FORM")
+    form = cycle.read_string("FORM")
     if form not in {"A", "B", "C", "D"}:
         raise cycle.make_parameter_error(
             "FORM", '{name} must be "A", "B", "C" or "D"', "Correct the value.", WRONG_UNDERCUT_FORM
         )
-    nominal = cycle.read_positive_mm("DIATH", DIAMETER_TOO_SMALL)
+    nominal = cycle.read_positive_length_mm("DIATH", DIAMETER_TOO_SMALL)
     lead = COARSE_THREAD_LEADS_MM.get(round(nominal), 0.0) if abs(nominal - round(nominal)) < _SAME else 0.0
     text = "{name} is {nominal}, which is not a coarse thread size from M3 to M{largest_of_all}"
     hint = "Program the undercut block by block."
@@ -139,7 +141,7 @@ def run_thread_undercut(cycle: CycleCall) -> Iterator[Block]:
         lead, "DIATH", text, hint, DIAMETER_TOO_SMALL, nominal=nominal, largest_of_all=_MAX_NOMINAL_SIZE
     )
     lacks, long, short, radius, long_inside, short_inside = _DIN_76[lead]
-    out, side = read_position_signs(cycle, cycle.read_whole_number("VARI", 0, 0, 4))
+    out, side = read_direction_signs(cycle, cycle.read_whole_number("VARI", 0, 0, 4))
     inside = form in {"C", "D"}
     if inside is (out > 0.0):
         template = (
@@ -151,14 +153,16 @@ def run_thread_undercut(cycle: CycleCall) -> Iterator[Block]:
         raise cycle.make_parameter_error(
             "FORM", template, "Correct FORM, or use another tool.", WRONG_EDGE_POSITION, form=form
         )
-    feed = cycle.check_feed_known(cycle.state.modal.feed, NO_FEED)
+    feed = cycle.require_feed(cycle.state.modal.feed, NO_FEED)
     if not inside:
         size = UndercutSize(lacks / 2.0, long if form == "A" else short, radius, 30.0)
-        place = UndercutPosition(nominal / 2.0, cycle.read_required_mm("SPL"), out, side)
+        place = UndercutPosition(nominal / 2.0, cycle.read_required_length_mm("SPL"), out, side)
         return cycle.make_blocks(_cut(cycle, place, size, feed, _CLEARANCE_MM))
     more = 0.3 if lead < 1.0 else 0.5
     depth = (more + _CORE * lead) / 2.0
-    place = UndercutPosition(nominal / 2.0 + more / 2.0 - depth, cycle.read_required_mm("SPL"), out, side)
+    place = UndercutPosition(
+        nominal / 2.0 + more / 2.0 - depth, cycle.read_required_length_mm("SPL"), out, side
+    )
     size = UndercutSize(depth, long_inside if form == "C" else short_inside, radius, 30.0)
     return cycle.make_blocks(_cut(cycle, place, size, feed, _CLEARANCE_MM))
 
@@ -179,7 +183,7 @@ def run_undercut(cycle: CycleCall) -> Iterator[Block]:
     both, as _VARI specifies. The first seven parameters and the order of all parameters follow the
     manufacturer's programming manual. Raises ProgramError before the first block if a value is invalid.
     """
-    form = cycle.read_text("FORM")
+    form = cycle.read_string("FORM")
     text = "{name} is {form}, which is not supported"
     hint = (
         'Write form "A", "B", "E" or "F". For forms C and D, use CYCLE96. Program a free form (T) block by '
@@ -189,15 +193,18 @@ def run_undercut(cycle: CycleCall) -> Iterator[Block]:
         form in {"A", "B", "E", "F"}, "FORM", text, hint, WRONG_UNDERCUT_FORM, form=form or "missing"
     )
     for name in ("_EPD", "_EPL", "_R1", "_R2", "_STA", "_VRT"):
-        cycle.check_zero(name, _UNSUPPORTED_HINT)
-    out, side = read_position_signs(cycle, _QUADRANTS_BY_POSITION[cycle.read_whole_number("_LAGE", 0, 0, 3)])
+        cycle.check_unsupported_parameter(name, _UNSUPPORTED_HINT)
+    out, side = read_direction_signs(cycle, _QUADRANTS_BY_POSITION[cycle.read_whole_number("_LAGE", 0, 0, 3)])
     size = _shoulder_size(cycle, form) if form in {"E", "F"} else _thread_size(cycle, form)
     place = UndercutPosition(
-        cycle.read_positive_mm("SPD", DIAMETER_TOO_SMALL) / 2.0, cycle.read_required_mm("SPL"), out, side
+        cycle.read_positive_length_mm("SPD", DIAMETER_TOO_SMALL) / 2.0,
+        cycle.read_required_length_mm("SPL"),
+        out,
+        side,
     )
     clear, feed = (
-        cycle.read_size_mm("_SDIS") or _CLEARANCE_MM,
-        cycle.check_feed_known(cycle.read_feed("_FFP"), NO_FEED),
+        cycle.read_unsigned_length_mm("_SDIS") or _CLEARANCE_MM,
+        cycle.require_feed(cycle.read_feed("_FFP"), NO_FEED),
     )
     if form in {"E", "F"}:
         return cycle.make_blocks(_cut(cycle, place, size, feed, clear))
@@ -212,7 +219,7 @@ def _thread_size(cycle: CycleCall, form: str) -> UndercutSize:
     if cycle.has_argument("_PITI"):
         lead = _LEADS[cycle.read_whole_number("_PITI", 0, 0, len(_LEADS) - 1)]
     else:
-        lead = COARSE_THREAD_LEADS_MM.get(round(cycle.read_required_mm("SPD")), 0.0)
+        lead = COARSE_THREAD_LEADS_MM.get(round(cycle.read_required_length_mm("SPD")), 0.0)
     text = "{name} specifies a lead of {lead}, but no undercut is defined for that lead"
     cycle.check_parameter(
         lead in _DIN_76, "_PITI", text, "Program the undercut block by block.", DIAMETER_TOO_SMALL, lead=lead
@@ -233,9 +240,12 @@ def _in_passes(
     cycle.check_parameter(
         kind % 10 in {1, 2, 3}, "_VARI", "{name} cannot be {value}", hint, WRONG_MACHINING_TYPE, value=kind
     )
-    left = cycle.read_size_mm("_FAL")
-    up, off = max(left, cycle.read_size_mm("_FALX")), max(left, cycle.read_size_mm("_FALZ"))
-    infeed = cycle.read_size_mm("_MID") or size.depth
+    left = cycle.read_unsigned_length_mm("_FAL")
+    up, off = (
+        max(left, cycle.read_unsigned_length_mm("_FALX")),
+        max(left, cycle.read_unsigned_length_mm("_FALZ")),
+    )
+    infeed = cycle.read_unsigned_length_mm("_MID") or size.depth
     steps: list[CycleStep] = []
     if kind % 10 != _FINISHES:
         text = "{name} would need {count} passes, which is too many"
@@ -253,7 +263,7 @@ def _in_passes(
 _ROUGHS, _FINISHES = 1, 2
 
 
-def read_position_signs(cycle: CycleCall, position_number: int) -> tuple[float, float]:
+def read_direction_signs(cycle: CycleCall, position_number: int) -> tuple[float, float]:
     """Return the sign of X away from the part, and the sign of Z away from the shoulder.
 
     A ``position_number`` from 1 to 4 determines the signs. If it is 0, the tip quadrant determines them.
@@ -273,7 +283,7 @@ def read_position_signs(cycle: CycleCall, position_number: int) -> tuple[float, 
     return _SIGNS_BY_POSITION[position_number or quadrant]
 
 
-def make_profile(undercut_position: UndercutPosition, size: UndercutSize) -> list[Element]:
+def make_undercut_profile(undercut_position: UndercutPosition, size: UndercutSize) -> list[Element]:
     """Return the profile: down the slope from outside, along the bottom, and up the shoulder."""
     slope = tan(radians(size.entry_angle_deg))
     begin = undercut_position.compute_point(-DEFAULT_RETRACT_MM, size.width + DEFAULT_RETRACT_MM / slope)
@@ -298,7 +308,9 @@ def _cut(
     tip_path = _tip_path(
         cycle,
         undercut_position,
-        _round_corners(make_profile(undercut_position, size), size.corner_radius, _nose(cycle, size)),
+        _round_corners(
+            make_undercut_profile(undercut_position, size), size.corner_radius, _nose(cycle, size)
+        ),
     )
     clear = undercut_position.surface_radius + undercut_position.outward_sign * clearance
     (x0, z0), (_, z1) = tip_path[0].start, tip_path[-1].end

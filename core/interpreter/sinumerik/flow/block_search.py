@@ -8,12 +8,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from core.interpreter.shared.checkpoint import CAxisMove, Checkpoint, PassStart, SavedPass, StateLine
+from core.interpreter.shared.checkpoint import CAxisMove, Checkpoint, ModalStateLine, PassStart, SavedPass
 from core.interpreter.shared.job_setup import ToolOffset
 from core.interpreter.shared.modal_state import ModalState
-from core.interpreter.sinumerik.flow.subprogram_flow import Flow
+from core.interpreter.sinumerik.flow.subprogram_flow import SinumerikProgramFlow
 from core.interpreter.sinumerik.motion.chamfers_and_roundings import SinumerikCornerStage
-from core.interpreter.sinumerik.sinumerik_state import ZERO_SETTABLE_OFFSET, State, format_motion
+from core.interpreter.sinumerik.sinumerik_state import (
+    ZERO_SETTABLE_OFFSET,
+    SinumerikState,
+    format_motion_word,
+)
 from core.language.diagnostics import Diagnostic, make_error_diagnostic
 from core.language.sinumerik.control_statements import ControlKeyword
 from core.language.sinumerik.sinumerik_lexer import lex_line
@@ -23,19 +27,19 @@ from core.message import Message
 from core.tool_edges import format_edge_name
 
 
-class InterpreterParts(NamedTuple):
+class InterpreterComponents(NamedTuple):
     """The parts of an interpreter that contain its state, copied when a pass is saved.
 
     ``pending_line`` is a block that was read but not yet executed.
     """
 
-    state: State
-    corners: SinumerikCornerStage
-    flow: Flow
+    state: SinumerikState
+    corner_stage: SinumerikCornerStage
+    program_flow: SinumerikProgramFlow
     pending_line: LexedBlock | None = None
 
 
-def make_checkpoint(parts: InterpreterParts, shared: tuple[object, ...], blocks: int) -> Checkpoint:
+def make_checkpoint(parts: InterpreterComponents, shared: tuple[object, ...], blocks: int) -> Checkpoint:
     """Return the state that the next block inherits, from which another pass can continue."""
     state, modal = parts.state, parts.state.modal
     x, z, c = state.x - modal.offset_x, state.z - modal.offset_z, state.c - modal.offset_c
@@ -43,14 +47,14 @@ def make_checkpoint(parts: InterpreterParts, shared: tuple[object, ...], blocks:
     return Checkpoint(modal, x, z, c, x, z, blocks=blocks, kept=kept)
 
 
-def restore_state(state: State, pass_start: PassStart) -> None:
+def restore_state(state: SinumerikState, pass_start: PassStart) -> None:
     """Update the state with the current axis positions, offsets and machine functions."""
     was, now = state.modal, pass_start.checkpoint.modal
     state.x, state.z, state.c = state.setup.start
     if not pass_start.is_mdi_line:
         state.x, state.z = pass_start.checkpoint.machine
         state.c = next(
-            (step.angle_deg for step in pass_start.approach if isinstance(step, CAxisMove)), state.c
+            (step.angle_deg for step in pass_start.approach_steps if isinstance(step, CAxisMove)), state.c
         )
     state.modal = was._replace(
         tool=now.tool,
@@ -69,31 +73,33 @@ def restore_state(state: State, pass_start: PassStart) -> None:
     state.derive_offsets()
 
 
-def _lines(state: State) -> Iterator[StateLine]:
+def _lines(state: SinumerikState) -> Iterator[ModalStateLine]:
     """Yield the modal state as text, with one line for each group of functions."""
     modal = state.modal
-    yield StateLine("motion", format_motion(state.motion))
-    yield StateLine("settable", f"G{modal.settable}" if modal.settable else "G500")
-    yield StateLine("trans", _trans(modal))
+    yield ModalStateLine("motion", format_motion_word(state.motion))
+    yield ModalStateLine("settable", f"G{modal.settable}" if modal.settable else "G500")
+    yield ModalStateLine("trans", _trans(modal))
     plane = state.transformation
-    yield StateLine("transformation", "" if plane is None else plane.name)
-    yield StateLine("units", "G71 MM" if modal.metric else "G70 INCH")
-    yield StateLine("x words", "DIAMON Ø" if modal.diameter else "DIAMOF R")
-    yield StateLine("distance", "G90" if modal.absolute else "G91")
-    yield StateLine("tool", format_edge_name(modal.tool) if modal.tool else "")
-    yield StateLine("speed", f"G96 S{modal.surface_speed * 0.06:g}" if modal.css else f"G97 S{modal.rpm:g}")
+    yield ModalStateLine("transformation", "" if plane is None else plane.name)
+    yield ModalStateLine("units", "G71 MM" if modal.metric else "G70 INCH")
+    yield ModalStateLine("x words", "DIAMON Ø" if modal.diameter else "DIAMOF R")
+    yield ModalStateLine("distance", "G90" if modal.absolute else "G91")
+    yield ModalStateLine("tool", format_edge_name(modal.tool) if modal.tool else "")
+    yield ModalStateLine(
+        "speed", f"G96 S{modal.surface_speed * 0.06:g}" if modal.css else f"G97 S{modal.rpm:g}"
+    )
     held = f"SPOS={modal.oriented:g}" if modal.oriented is not None else "M5"
-    yield StateLine("spindle", {1: "M3", 0: held, -1: "M4"}[modal.spindle])
+    yield ModalStateLine("spindle", {1: "M3", 0: held, -1: "M4"}[modal.spindle])
     feed = "" if modal.feed is None else f" F{modal.feed if modal.per_rev else modal.feed * 60.0:g}"
-    yield StateLine("feed", f"{'G95' if modal.per_rev else 'G94'}{feed}")
-    yield StateLine("coolant", "M8" if modal.coolant else "M9")
-    yield StateLine("outputs", " ".join(sorted(name.upper() for name in modal.outputs)))
+    yield ModalStateLine("feed", f"{'G95' if modal.per_rev else 'G94'}{feed}")
+    yield ModalStateLine("coolant", "M8" if modal.coolant else "M9")
+    yield ModalStateLine("outputs", " ".join(sorted(name.upper() for name in modal.outputs)))
 
 
 def _trans(modal: ModalState) -> str:
-    if not modal.zero_x and not modal.zero_z:
+    if not modal.frame_shift_x and not modal.frame_shift_z:
         return ""
-    return f"X{modal.zero_x:+.3f}  Z{modal.zero_z:+.3f}"
+    return f"X{modal.frame_shift_x:+.3f}  Z{modal.frame_shift_z:+.3f}"
 
 
 _HINT = "Use this command in a program."

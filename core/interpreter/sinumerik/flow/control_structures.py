@@ -9,7 +9,7 @@ from math import prod
 
 from core.interpreter.shared.formula_values import convert_to_whole_number
 from core.interpreter.sinumerik.flow.variables import MAX_ARRAY_SIZE, MAX_DIMENSIONS
-from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.sinumerik_state import SinumerikState
 from core.language.formulas import Formula, Parameter
 from core.language.sinumerik.control_statements import ControlKeyword, ControlStatement, VariableDefinition
 from core.language.sinumerik.sinumerik_alarms import (
@@ -109,8 +109,8 @@ def match_structures(lines: Iterable[LexedBlock]) -> dict[int, tuple[int, ...]]:
         jump = line.control_statement
         if jump is None:
             continue
-        at = line.number - 1
-        if jump.keyword in _START_KEYWORDS and not jump.target:
+        at = line.line_number - 1
+        if jump.keyword in _START_KEYWORDS and not jump.target_label:
             opened.append((line, jump, [at]))
         elif jump.keyword is ControlKeyword.ELSE and opened and opened[-1][1].keyword is ControlKeyword.IF:
             opened[-1][2].append(at)
@@ -130,7 +130,7 @@ def match_structures(lines: Iterable[LexedBlock]) -> dict[int, tuple[int, ...]]:
 
 
 def execute_control_line(
-    line: LexedBlock, control_statement: ControlStatement, state: State, program: Routine, index: int
+    line: LexedBlock, control_statement: ControlStatement, state: SinumerikState, program: Routine, index: int
 ) -> int | None:
     """Execute a control statement, and return the index of the next line to execute.
 
@@ -153,7 +153,7 @@ def execute_control_line(
     if steering is ControlKeyword.DEFINE:
         _execute_def(line, control_statement, state)
     elif steering is ControlKeyword.MESSAGE:
-        state.set_modal(state.modal._replace(comment=_format_message(line, control_statement, state)))
+        state.set_modal_state(state.modal._replace(comment=_format_message(line, control_statement, state)))
     elif steering is ControlKeyword.ALARM:
         number = _worth(line, control_statement, state, control_statement.condition)
         text = Message("the program itself triggers alarm {number}.", number=f"{number:g}")
@@ -166,7 +166,11 @@ def execute_control_line(
 
 
 def _structure(
-    line: LexedBlock, jump: ControlStatement, state: State, program: Routine, structure_lines: tuple[int, ...]
+    line: LexedBlock,
+    jump: ControlStatement,
+    state: SinumerikState,
+    program: Routine,
+    structure_lines: tuple[int, ...],
 ) -> int | None:
     """Execute a line of IF, WHILE, FOR, LOOP or REPEAT, and return the index of the next line to execute.
 
@@ -191,7 +195,7 @@ def _structure(
 
 
 def _execute_for(
-    line: LexedBlock, jump: ControlStatement, begin: ControlStatement, state: State, value: float
+    line: LexedBlock, jump: ControlStatement, begin: ControlStatement, state: SinumerikState, value: float
 ) -> bool:
     """Set the loop variable of FOR, and return whether the loop must be executed (again).
 
@@ -205,7 +209,9 @@ def _execute_for(
     return value <= _worth(line, jump, state, begin.end_value)
 
 
-def _case(line: LexedBlock, jump: ControlStatement, state: State, program: Routine, index: int) -> int | None:
+def _case(
+    line: LexedBlock, jump: ControlStatement, state: SinumerikState, program: Routine, index: int
+) -> int | None:
     """Return the jump target of the first CASE branch with a matching value, or of DEFAULT.
 
     Returns None if no branch matches and DEFAULT is missing.
@@ -213,11 +219,11 @@ def _case(line: LexedBlock, jump: ControlStatement, state: State, program: Routi
     value = _worth(line, jump, state, jump.condition)
     for formula, steering, target in jump.case_branches:
         if formula is None or abs(_worth(line, jump, state, formula) - value) <= _SAME:
-            return _target(line, jump._replace(keyword=steering, target=target), program, index)
+            return _target(line, jump._replace(keyword=steering, target_label=target), program, index)
     return None
 
 
-def _execute_def(line: LexedBlock, jump: ControlStatement, state: State) -> None:
+def _execute_def(line: LexedBlock, jump: ControlStatement, state: SinumerikState) -> None:
     """Execute DEF, which defines numbers, arrays, and strings for MSG."""
     scope = state.variables.variable_scope
     for each in jump.definitions:
@@ -229,7 +235,7 @@ def _execute_def(line: LexedBlock, jump: ControlStatement, state: State) -> None
         if each.values is not None:
             left = state.variables.assign_values(
                 each.name,
-                scope.list_elements(each.name)[0],
+                scope.list_element_names(each.name)[0],
                 each.values,
                 lambda asked: _worth(line, jump, state, asked),
                 partial(line.make_error, jump.column),
@@ -244,7 +250,7 @@ def _execute_def(line: LexedBlock, jump: ControlStatement, state: State) -> None
 
 
 def _sizes(
-    line: LexedBlock, jump: ControlStatement, state: State, each: VariableDefinition
+    line: LexedBlock, jump: ControlStatement, state: SinumerikState, each: VariableDefinition
 ) -> tuple[int, ...]:
     """Return the dimensions of an array. Raises ProgramError if a dimension or the size is invalid."""
     sizes = [_worth(line, jump, state, size) for size in each.dimensions]
@@ -264,7 +270,7 @@ def _sizes(
     return tuple(whole)
 
 
-def _format_message(line: LexedBlock, jump: ControlStatement, state: State) -> str:
+def _format_message(line: LexedBlock, jump: ControlStatement, state: SinumerikState) -> str:
     """Return the text of MSG, in which numbers have no trailing zeros."""
     shown = []
     for piece in jump.message_parts:
@@ -277,7 +283,7 @@ def _format_message(line: LexedBlock, jump: ControlStatement, state: State) -> s
     return "".join(shown)
 
 
-def _worth(line: LexedBlock, jump: ControlStatement, state: State, formula: Formula | None) -> float:
+def _worth(line: LexedBlock, jump: ControlStatement, state: SinumerikState, formula: Formula | None) -> float:
     assert formula is not None
     return state.evaluate_formula(
         formula, lambda code, text, hint: line.make_error(jump.column, code, text, hint)
@@ -292,11 +298,11 @@ def _target(line: LexedBlock, jump: ControlStatement, program: Routine, index: i
     """
     if jump.keyword is ControlKeyword.GOTO_START:
         return program.line_range.start
-    place = find_label_index(jump.keyword, jump.target, program, index)
+    place = find_label_index(jump.keyword, jump.target_label, program, index)
     if place is None:
         text = Message(
             "label {target} was not found in the search direction of {steering}.",
-            target=jump.target,
+            target=jump.target_label,
             steering=jump.keyword,
         )
         raise line.make_error(

@@ -23,7 +23,7 @@ from core.interpreter.shared.modal_state import ModalState
 from core.interpreter.sinumerik.flow.control_structures import Routine, execute_control_line, find_label_index
 from core.interpreter.sinumerik.flow.variables import VariableScope, format_variable_name
 from core.interpreter.sinumerik.setup.programmed_frame import ProgrammedFrame
-from core.interpreter.sinumerik.sinumerik_state import MotionKind, State
+from core.interpreter.sinumerik.sinumerik_state import MotionKind, SinumerikState
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
 from core.language.formulas import Parameter as Variable
@@ -47,36 +47,36 @@ _GROUPS = ("absolute", "metric", "diameter", "per_rev", "feed", "settable")
 
 
 @dataclass(frozen=True, slots=True)
-class SavedFunctions:
+class SavedModalFunctions:
     """The modal G functions and the frame that were active when a program with SAVE was called."""
 
-    modal: ModalState
-    motion: MotionKind
+    modal_state: ModalState
+    motion_kind: MotionKind
     plane_code: int
     settable_offset: ZeroOffset
     programmed_frame: ProgrammedFrame
 
     @classmethod
-    def from_state(cls, state: State) -> SavedFunctions:
+    def from_state(cls, state: SinumerikState) -> SavedModalFunctions:
         """Return a copy of the active functions and frame."""
         return cls(state.modal, state.motion, state.plane, state.settable, state.programmed_frame)
 
-    def restore_to(self, state: State) -> None:
+    def restore_functions(self, state: SinumerikState) -> None:
         """Restore the G functions and the frame.
 
         F, S and M functions remain as the called program has set them.
         """
-        state.motion, state.plane = self.motion, self.plane_code
+        state.motion, state.plane = self.motion_kind, self.plane_code
         state.settable, state.programmed_frame = self.settable_offset, self.programmed_frame
-        kept = {name: getattr(self.modal, name) for name in _GROUPS}
-        if self.modal.per_rev == state.modal.per_rev:
+        kept = {name: getattr(self.modal_state, name) for name in _GROUPS}
+        if self.modal_state.per_rev == state.modal.per_rev:
             kept["feed"] = state.modal.feed
-        state.set_modal(state.modal._replace(**kept, rapid=self.motion == 0))
+        state.set_modal_state(state.modal._replace(**kept, rapid=self.motion_kind == 0))
         state.derive_offsets()
 
 
 def pass_arguments(
-    state: State, line: LexedBlock, heading: ControlStatement | None
+    state: SinumerikState, line: LexedBlock, heading: ControlStatement | None
 ) -> tuple[VariableScope, list[tuple[str, str]]]:
     """Return the variables of the called program, initialized with the arguments of the call.
 
@@ -97,19 +97,19 @@ def pass_arguments(
     made = _ArgumentTransfer(state, line)
     left_out = CallArgument(None, None, line.call_column)
     for parameter, argument in zip(parameters, chain(arguments, repeat(left_out)), strict=False):
-        (made.pass_array if parameter.dimensions else made.pass_value)(parameter, argument)
+        (made.pass_array if parameter.dimensions else made.set_parameter)(parameter, argument)
     return made.scope, made.references
 
 
 class _ArgumentTransfer:
     """Transfer of the arguments of a call to the parameters of the called program."""
 
-    def __init__(self, state: State, line: LexedBlock) -> None:
+    def __init__(self, state: SinumerikState, line: LexedBlock) -> None:
         self._state, self._line = state, line
         self.scope = VariableScope()
         self.references: list[tuple[str, str]] = []
 
-    def pass_value(self, parameter: ProcParameter, argument: CallArgument) -> None:
+    def set_parameter(self, parameter: ProcParameter, argument: CallArgument) -> None:
         """Set a parameter to a number or a string.
 
         An omitted argument gets the default of the parameter or, without a default, 0 or an empty string. A
@@ -163,7 +163,7 @@ class _ArgumentTransfer:
             raise line.make_error(argument.column, WRONG_ARRAY_SIZE, text, hint)
         self.scope.define_variable(parameter.name, 0.0, sizes)
         for inside, outside in zip(
-            self.scope.list_elements(parameter.name), outer.list_elements(name), strict=True
+            self.scope.list_element_names(parameter.name), outer.list_element_names(name), strict=True
         ):
             self.scope.numbers[inside] = outer.numbers[outside]
             self.references.append((inside, outside))
@@ -215,8 +215,8 @@ class _Call(FlowFrame[Routine]):
     is_modal: bool = False  # called by MCALL, directly or indirectly
     scope: VariableScope = field(default_factory=VariableScope)
     # VAR: name in this program, and name in the caller
-    references: list[tuple[str, str]] = field(default_factory=list)
-    saved_functions: SavedFunctions | None = None  # state that SAVE restores
+    reference_parameters: list[tuple[str, str]] = field(default_factory=list)
+    saved_functions: SavedModalFunctions | None = None  # state that SAVE restores
     repeats: list[_Repeat] = field(default_factory=list)
     started_loops: set[int] = field(default_factory=set)  # line indices of FOR
 
@@ -231,10 +231,10 @@ class _Call(FlowFrame[Routine]):
         )
 
 
-class Flow(ControlFlow[_Call]):
+class SinumerikProgramFlow(ControlFlow[_Call]):
     """The execution position in a program and its subprograms."""
 
-    def __init__(self, source: ProgramSource, state: State) -> None:
+    def __init__(self, source: ProgramSource, state: SinumerikState) -> None:
         found, axis = split_sections(source), state.setup.limits.third_axis_name
         self._state = state
         self._known = {
@@ -250,7 +250,7 @@ class Flow(ControlFlow[_Call]):
         self._loops = None if any(map(_reads_positions, read)) else EndlessLoopDetector()
 
     @property
-    def routines(self) -> tuple[Routine, ...]:
+    def known_routines(self) -> tuple[Routine, ...]:
         """Return all known programs, starting with the main program."""
         return self._main, *self._known.values()
 
@@ -302,10 +302,10 @@ class Flow(ControlFlow[_Call]):
             self.return_to_caller()
             variables = self._state.variables
             variables.variable_scope = self.active_frame.scope
-            for name, outer in call.references:
+            for name, outer in call.reference_parameters:
                 variables.set_value(outer, call.scope.numbers[name])
             if call.saved_functions is not None:
-                call.saved_functions.restore_to(self._state)
+                call.saved_functions.restore_functions(self._state)
 
     def has_routine(self, name: str) -> bool:
         """Return whether a program with this name exists."""
@@ -338,25 +338,32 @@ class Flow(ControlFlow[_Call]):
         routine.has_repeats = True
         scope, references = pass_arguments(self._state, line, heading)
         frame = _Call(
-            routine, routine.line_range.start, routine.line_range.stop, scope=scope, references=references
+            routine,
+            routine.line_range.start,
+            routine.line_range.stop,
+            scope=scope,
+            reference_parameters=references,
         )
         if routine.displayed_name:
-            frame.file_name, frame.call_line = routine.displayed_name, self.get_displayed_line(line.number)
+            frame.file_name, frame.call_line = (
+                routine.displayed_name,
+                self.get_displayed_line(line.line_number),
+            )
         frame.remaining_passes, frame.is_modal = line.execution_count, is_modal or self.is_in_modal_call
-        if heading is not None and heading.has_save:
-            frame.saved_functions = SavedFunctions.from_state(self._state)
+        if heading is not None and heading.has_save_keyword:
+            frame.saved_functions = SavedModalFunctions.from_state(self._state)
         self.enter_subprogram(frame)
         self._state.variables.variable_scope = scope
 
     def execute_control_line(
-        self, line: LexedBlock, control_statement: ControlStatement, state: State
+        self, line: LexedBlock, control_statement: ControlStatement, state: SinumerikState
     ) -> None:
         """Execute a line with a control statement.
 
         Raises ProgramError for an invalid statement, for a jump that repeats forever, and for a FOR loop
         that a jump has entered without executing FOR.
         """
-        if control_statement.keyword in _REPEAT_KEYWORDS and control_statement.target:
+        if control_statement.keyword in _REPEAT_KEYWORDS and control_statement.target_label:
             self._begin_repeat(line, control_statement, state)
             return
         routine = self.active_routine
@@ -405,21 +412,21 @@ class Flow(ControlFlow[_Call]):
         numbers = [each.scope.numbers for each in self.frames]
         return self._loops.is_repeated_state(self, tool, state.variables.r_parameters, numbers)
 
-    def _begin_repeat(self, line: LexedBlock, jump: ControlStatement, state: State) -> None:
+    def _begin_repeat(self, line: LexedBlock, jump: ControlStatement, state: SinumerikState) -> None:
         """Start REPEAT or REPEATB.
 
         The section extends from one label to another label or to this line, or is only the block with the
         label.
         """
         routine, repeats, here = self.active_routine, self.active_frame.repeats, self.next_index - 1
-        start = find_label_index(ControlKeyword.GOTO, jump.target, routine, here)
+        start = find_label_index(ControlKeyword.GOTO, jump.target_label, routine, here)
         until = (
             find_label_index(ControlKeyword.GOTO, jump.end_label, routine, here) if jump.end_label else here
         )
         if start is None or until is None:
             text = Message(
                 "label {missing}, which {steering} uses, is not in this program.",
-                missing=jump.target if start is None else jump.end_label,
+                missing=jump.target_label if start is None else jump.end_label,
                 steering=jump.keyword,
             )
             raise line.make_error(jump.column, JUMP_TARGET_MISSING, text, "Correct the label.")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from core.interpreter.sinumerik.flow.variables import format_variable_name
-from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.sinumerik_state import SinumerikState
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_alarms import NAME_NOT_DEFINED
@@ -13,7 +13,7 @@ from core.language.sinumerik.sinumerik_words import Word
 from core.message import Message
 
 
-def set_parameters(state: State, statement: Statement) -> None:
+def set_parameters(state: SinumerikState, statement: Statement) -> None:
     """Execute the assignments of a block to R parameters and variables.
 
     Raises ProgramError for an undefined name, an invalid index, an array that is too short, and a value
@@ -27,7 +27,7 @@ def set_parameters(state: State, statement: Statement) -> None:
             raise _no_place(state, statement, word, name)
 
 
-def _no_place(state: State, statement: Statement, word: Word, name: str) -> ProgramError:
+def _no_place(state: SinumerikState, statement: Statement, word: Word, name: str) -> ProgramError:
     if word.name in state.variables.variable_scope.array_dimensions:
         return statement.make_error(word, *state.variables.describe_missing_value(word.name, name))
     text = Message(
@@ -38,7 +38,7 @@ def _no_place(state: State, statement: Statement, word: Word, name: str) -> Prog
     )
 
 
-def _execute_set(state: State, statement: Statement, word: Word, name: str) -> None:
+def _execute_set(state: SinumerikState, statement: Statement, word: Word, name: str) -> None:
     """Execute SET or REP, starting at an element of an array.
 
     Raises ProgramError if the array element does not exist, if the array is too short, or if the number of
@@ -60,7 +60,7 @@ def _execute_set(state: State, statement: Statement, word: Word, name: str) -> N
         raise refuse("array-values", text, "Shorten the list.")
 
 
-def _variable_name(state: State, statement: Statement, word: Word) -> str:
+def _variable_name(state: SinumerikState, statement: Statement, word: Word) -> str:
     """Return the name of the variable that the word assigns, such as R7, LENGTH or an array element."""
     if word.element_index is None:
         return word.name

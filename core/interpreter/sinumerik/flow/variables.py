@@ -11,7 +11,7 @@ from core.interpreter.shared.formula_values import convert_to_whole_number
 from core.interpreter.shared.job_setup import ToolOffset
 from core.interpreter.shared.modal_state import ModalState
 from core.language.diagnostics import ProgramError
-from core.language.formulas import Formula, Parameter, split_index
+from core.language.formulas import Formula, Parameter, get_index_formulas
 from core.language.sinumerik.block_reader import MAX_R_NUMBER, ValueList
 from core.language.sinumerik.sinumerik_alarms import NAME_NOT_DEFINED, WRONG_FIRST_INDEX, WRONG_OTHER_INDEX
 from core.message import Message
@@ -43,7 +43,7 @@ class VariableScope:
             self.numbers[name] = value
             return
         self.array_dimensions[name] = sizes
-        self.numbers.update(dict.fromkeys(self.list_elements(name), value))
+        self.numbers.update(dict.fromkeys(self.list_element_names(name), value))
 
     def define_string(self, name: str, text: str) -> None:
         """Define a string. An earlier definition of the name is removed."""
@@ -52,7 +52,7 @@ class VariableScope:
 
     def remove_variable(self, name: str) -> None:
         """Remove a number, an array or a string, if the name is defined."""
-        names = self.list_elements(name) if name in self.array_dimensions else [name]
+        names = self.list_element_names(name) if name in self.array_dimensions else [name]
         for each in names:
             self.numbers.pop(each, None)
         self.array_dimensions.pop(name, None)
@@ -62,7 +62,7 @@ class VariableScope:
         """Return an independent copy of the variables."""
         return VariableScope(dict(self.numbers), dict(self.strings), dict(self.array_dimensions))
 
-    def list_elements(self, name: str) -> list[str]:
+    def list_element_names(self, name: str) -> list[str]:
         """Return the names of an array's elements in the order in which they are filled.
 
         The last index changes first.
@@ -110,7 +110,9 @@ class Variables:
         Returns the number of surplus values. Raises the error that ``make_error`` returns if the number of
         elements of REP is not a whole number of 0 or more.
         """
-        places = _r_places() if variable_name == "R" else self.variable_scope.list_elements(variable_name)
+        places = (
+            _r_places() if variable_name == "R" else self.variable_scope.list_element_names(variable_name)
+        )
         places = places[places.index(first_element) :]
         formulas, surplus = list(values.formulas), len(values.formulas) - len(places)
         if values.is_repeated:
@@ -195,7 +197,9 @@ def format_variable_name(
         return letters
     if isinstance(number, int) and (letters != "R" or number <= MAX_R_NUMBER):
         return f"{letters}{number}"
-    indices = [float(number)] if isinstance(number, int) else list(map(compute_formula, split_index(number)))
+    indices = (
+        [float(number)] if isinstance(number, int) else list(map(compute_formula, get_index_formulas(number)))
+    )
     for place, index in enumerate(indices):
         is_too_high = letters == "R" and (place or index > MAX_R_NUMBER)
         if convert_to_whole_number(index) is None or index < 0 or is_too_high:

@@ -18,7 +18,7 @@ from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.sinumerik.motion.linear_moves import PlainMoveFactory
 from core.interpreter.sinumerik.motion.sinumerik_feeds import convert_feed
-from core.interpreter.sinumerik.sinumerik_state import State, check_positive
+from core.interpreter.sinumerik.sinumerik_state import SinumerikState, require_positive_number
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_words import Word
@@ -53,12 +53,12 @@ class Corner:
         )
 
 
-def make_corner(state: State, statement: Statement, block: Block) -> Corner | None:
+def make_corner(state: SinumerikState, statement: Statement, block: Block) -> Corner | None:
     """Return the corner of a block, or None if it has none. Raises ProgramError if the corner is invalid."""
     word = statement.corner_word
     if word is None:
         return _modal_corner(state, statement, block)
-    size = check_positive(statement, word, state.length(statement, word), "the corner size")
+    size = require_positive_number(statement, word, state.length(statement, word), "the corner size")
     corner = Corner(statement, word, size, _feed(state, statement), call_site=state.call_site)
     if block.kind not in _CUT or not _moves(block):
         hint = "Use CHF, CHR and RND only with G1, G2 and G3."
@@ -68,7 +68,7 @@ def make_corner(state: State, statement: Statement, block: Block) -> Corner | No
     return corner
 
 
-def _modal_corner(state: State, statement: Statement, block: Block) -> Corner | None:
+def _modal_corner(state: SinumerikState, statement: Statement, block: Block) -> Corner | None:
     """Return the corner rounding of modal RNDM, or None if it does not apply to the block.
 
     RNDM applies only to lines and arcs of a contour under G18.
@@ -79,7 +79,7 @@ def _modal_corner(state: State, statement: Statement, block: Block) -> Corner | 
     return Corner(statement, word, state.rounding, _feed(state, statement), is_modal=True)
 
 
-def _feed(state: State, statement: Statement) -> float | None:
+def _feed(state: SinumerikState, statement: Statement) -> float | None:
     word = statement.words.get("FRC")
     return state.corner_feed if word is None else convert_feed(state, statement, word)
 
@@ -90,7 +90,7 @@ _BufferedMove = BufferedMove[Corner, Never]
 class SinumerikCornerStage(CornerStage[Corner, Never]):
     """Stage that inserts corners between lines and arcs."""
 
-    def __init__(self, state: State, log: DiagnosticLog) -> None:
+    def __init__(self, state: SinumerikState, log: DiagnosticLog) -> None:
         super().__init__(PlainMoveFactory(state))
         self._log = log
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.sinumerik.motion.linear_moves import AxisTravel, make_rapid_block
-from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.sinumerik_state import SinumerikState
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_words import Word
@@ -14,7 +14,7 @@ from core.message import Message
 _AXES = frozenset({"X", "Z", "X1", "Z1"})
 
 
-def make_home_move(state: State, statement: Statement) -> Block:
+def make_home_move(state: SinumerikState, statement: Statement) -> Block:
     """Return the rapid of G74 that moves the named axes (X1=0 Z1=0) to home.
 
     Raises ProgramError for other words, for values other than 0, for a block without axes, and while G41 or
@@ -30,7 +30,7 @@ def make_home_move(state: State, statement: Statement) -> Block:
     return _make_rapid(state, statement, dict.fromkeys((word.name[0] for word in named), 0.0))
 
 
-def make_fixed_point_move(state: State, statement: Statement) -> Block:
+def make_fixed_point_move(state: SinumerikState, statement: Statement) -> Block:
     """Return the rapid of G75 that moves the named axes to fixed point FP, from 1 (the default) to 4.
 
     The values of the axis words have no effect. The machine file defines the points in machine coordinates.
@@ -51,7 +51,7 @@ def make_fixed_point_move(state: State, statement: Statement) -> Block:
     return _make_rapid(state, statement, ends)
 
 
-def _axis_words(state: State, statement: Statement, words: frozenset[str]) -> list[Word]:
+def _axis_words(state: SinumerikState, statement: Statement, words: frozenset[str]) -> list[Word]:
     """Return the axis words of the block.
 
     Raises ProgramError if the block contains other words or no axis word, and while G41 or G42 is active.
@@ -69,7 +69,7 @@ def _axis_words(state: State, statement: Statement, words: frozenset[str]) -> li
     return named
 
 
-def _number(state: State, statement: Statement) -> int:
+def _number(state: SinumerikState, statement: Statement) -> int:
     """Return the number of the fixed point (FP), which is 1 by default."""
     word = statement.words.get("FP")
     if word is None:
@@ -105,7 +105,7 @@ def _missing(statement: Statement, axis: str, number: int, known: int) -> Progra
     return statement.make_error(word, "fixed-point", text, hint)
 
 
-def _warn_ignored_value(state: State, statement: Statement, word: Word, end: float) -> None:
+def _warn_ignored_value(state: SinumerikState, statement: Statement, word: Word, end: float) -> None:
     """Log a warning that the value of an axis word has no effect."""
     text = Message(
         "{word} has no effect with G75: the axis moves to machine position {end} mm.",
@@ -117,7 +117,7 @@ def _warn_ignored_value(state: State, statement: Statement, word: Word, end: flo
     )
 
 
-def _make_rapid(state: State, statement: Statement, targets: dict[str, float]) -> Block:
+def _make_rapid(state: SinumerikState, statement: Statement, targets: dict[str, float]) -> Block:
     """Return a rapid to these machine coordinates in which all axes arrive at the same time."""
     state.threads = ()
     x, z = targets.get("X", state.x), targets.get("Z", state.z)

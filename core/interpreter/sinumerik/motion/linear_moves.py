@@ -14,9 +14,9 @@ from core.interpreter.sinumerik.motion import third_axis
 from core.interpreter.sinumerik.motion.sinumerik_feeds import check_block_feed
 from core.interpreter.sinumerik.setup.modes_and_offsets import check_c_word, check_working_area
 from core.interpreter.sinumerik.setup.programmed_frame import ProgrammedFrame
-from core.interpreter.sinumerik.sinumerik_state import IDENTITY_FRAME, MotionKind, State
+from core.interpreter.sinumerik.sinumerik_state import IDENTITY_FRAME, MotionKind, SinumerikState
 from core.interpreter.sinumerik.sinumerik_statement import Statement
-from core.language.sinumerik.sinumerik_words import ARC_WORDS, PositionForm, Word
+from core.language.sinumerik.sinumerik_words import ARC_WORDS, PositionMode, Word
 from core.language.sinumerik.word_table import SUPPRESSION_GROUP
 
 # --- end points in machine coordinates
@@ -40,7 +40,7 @@ class AxisTravel(NamedTuple):
     x: float
     z: float
     c: float
-    modal: ModalState
+    modal_state: ModalState
     offset_x: float
     offset_z: float
     frame: ProgrammedFrame = IDENTITY_FRAME
@@ -58,11 +58,11 @@ class AxisTravel(NamedTuple):
     @property
     def program_start(self) -> tuple[float, float]:
         """Return X (as a radius) and Z of the start in the program frame, in mm."""
-        return self.frame.invert_distance(self.x0 - self.offset_x, self.z0 - self.offset_z)
+        return self.frame.convert_to_program_distance(self.x0 - self.offset_x, self.z0 - self.offset_z)
 
     def convert_to_machine_point(self, x: float, z: float) -> tuple[float, float]:
         """Return machine X and Z of a program point."""
-        x, z = self.frame.transform_distance(x, z)
+        x, z = self.frame.convert_to_machine_distance(x, z)
         return x + self.offset_x, z + self.offset_z
 
     def compute_rapid_rate(self, max_axis_speeds: tuple[float, float, float]) -> float:
@@ -75,7 +75,7 @@ class AxisTravel(NamedTuple):
         return (self.length_mm or abs(self.c_travel)) / time if time else min(max_axis_speeds)
 
 
-def compute_travel(state: State, statement: Statement) -> AxisTravel:
+def compute_axis_travel(state: SinumerikState, statement: Statement) -> AxisTravel:
     """Return the travel of a block.
 
     Raises ProgramError if a word is invalid or the end point is outside the working area.
@@ -97,7 +97,7 @@ def compute_travel(state: State, statement: Statement) -> AxisTravel:
     return travel._replace(x=state.x, z=state.z) if travel.length_mm < MIN_PATH_MM else travel
 
 
-def _ends(state: State, statement: Statement, start_travel: AxisTravel) -> tuple[float, float]:
+def _ends(state: SinumerikState, statement: Statement, start_travel: AxisTravel) -> tuple[float, float]:
     """Return machine X and Z of the end point."""
     words = statement.words
     if "RP" in words or "AP" in words:
@@ -114,23 +114,23 @@ def _ends(state: State, statement: Statement, start_travel: AxisTravel) -> tuple
     return (start_travel.x if x is None else there[0]), (start_travel.z if z is None else there[1])
 
 
-def _linear_end(state: State, statement: Statement, name: str, start: float) -> float | None:
+def _linear_end(state: SinumerikState, statement: Statement, name: str, start: float) -> float | None:
     """Return the end position of a linear axis in the program frame, or None if its word is missing."""
     word = statement.words.get(name)
     if word is None:
         return None
-    if word.position_form in third_axis.MODULO_ONLY_ALARMS:
+    if word.position_mode in third_axis.MODULO_ONLY_ALARMS:
         raise statement.make_error(
             word,
-            third_axis.MODULO_ONLY_ALARMS[word.position_form],
+            third_axis.MODULO_ONLY_ALARMS[word.position_mode],
             "{word}: {form} needs a rotary axis.",
             "Write {name}=AC( ) or {name2}=IC( ).",
             word=word.text,
-            form=word.position_form,
+            form=word.position_mode,
             name=name,
             name2=name,
         )
-    relative = _form(state, word) is PositionForm.IC
+    relative = _form(state, word) is PositionMode.IC
     halved = name == "X" and state.modal.diameter and not (relative and state.distance_is_radius)
     value = state.length(statement, word) / (2.0 if halved else 1.0)
     if not relative:
@@ -143,7 +143,7 @@ def _linear_end(state: State, statement: Statement, name: str, start: float) -> 
     return start + value
 
 
-def _polar_end(state: State, statement: Statement) -> tuple[float, float]:
+def _polar_end(state: SinumerikState, statement: Statement) -> tuple[float, float]:
     """Return the point that RP (radius) and AP (angle) define about the pole.
 
     If RP or AP is missing, its last value applies.
@@ -162,10 +162,10 @@ def _polar_end(state: State, statement: Statement) -> tuple[float, float]:
         raise statement.make_error(radius or angle, "polar-half", text, "Write both RP and AP.")
     far = last[0] if radius is None else state.length(statement, radius)
     turn = last[1] if angle is None else state.number(statement, angle)
-    far += last[0] if radius is not None and radius.position_form is PositionForm.IC else 0.0
-    turn += last[1] if angle is not None and angle.position_form is PositionForm.IC else 0.0
+    far += last[0] if radius is not None and radius.position_mode is PositionMode.IC else 0.0
+    turn += last[1] if angle is not None and angle.position_mode is PositionMode.IC else 0.0
     text = "The resulting RP is less than 0."
-    statement.check_condition(far >= 0.0, radius, "not-positive", text, "Correct the value.")
+    statement.require_condition(far >= 0.0, radius, "not-positive", text, "Correct the value.")
     state.last_polar_point = far, turn
     state.moved_by_tool.clear()
     return state.pole[0] + far * sin(radians(turn)), state.pole[1] + far * cos(radians(turn))
@@ -175,7 +175,7 @@ _STEEP = 1e-9
 
 
 def _inclined(
-    state: State, statement: Statement, start: tuple[float, float], x: float | None, z: float | None
+    state: SinumerikState, statement: Statement, start: tuple[float, float], x: float | None, z: float | None
 ) -> tuple[float | None, float | None]:
     """Return the end point of a line that is programmed with its angle and one coordinate."""
     word = statement.words["ANG"]
@@ -196,19 +196,19 @@ def _inclined(
     angle = radians(state.number(statement, word))
     if x is None and z is not None:
         text = "this straight line never reaches the programmed Z."
-        statement.check_condition(
+        statement.require_condition(
             abs(cos(angle)) >= _STEEP, word, "angle-none", text, "Write X together with ANG."
         )
         return start[0] + (z - start[1]) * tan(angle), z
     assert x is not None
     text = "this straight line never reaches the programmed X."
-    statement.check_condition(
+    statement.require_condition(
         abs(sin(angle)) >= _STEEP, word, "angle-none", text, "Write Z together with ANG."
     )
     return x, start[1] + (x - start[0]) / tan(angle)
 
 
-def _turn(state: State, statement: Statement, modal: ModalState) -> float:
+def _turn(state: SinumerikState, statement: Statement, modal: ModalState) -> float:
     """Return the signed travel of C in degrees, or in mm for a linear third axis."""
     word = statement.words.get("C")
     if word is None:
@@ -217,7 +217,11 @@ def _turn(state: State, statement: Statement, modal: ModalState) -> float:
 
 
 def compute_c_travel(
-    state: State, statement: Statement, word: Word, position_form: PositionForm, start_position: float
+    state: SinumerikState,
+    statement: Statement,
+    word: Word,
+    position_form: PositionMode,
+    start_position: float,
 ) -> float:
     """Return the signed travel of C from ``start_position`` to the target of a word.
 
@@ -233,7 +237,7 @@ def compute_c_travel(
         third_axis.check_axis_range(
             state.c + travel, limits.c_travel_range if limits.is_c_linear else third_axis.NON_MODULO_RANGE
         )
-    except third_axis.TargetError as problem:
+    except third_axis.AxisTargetError as problem:
         raise statement.make_error(
             word,
             problem.alarm_number,
@@ -245,11 +249,11 @@ def compute_c_travel(
     return travel
 
 
-def _form(state: State, word: Word) -> PositionForm:
+def _form(state: SinumerikState, word: Word) -> PositionMode:
     """Return whether a word is absolute or incremental; without AC or IC, G90 or G91 applies."""
-    if word.position_form is not PositionForm.PLAIN:
-        return word.position_form
-    return PositionForm.IC if state.modal.absolute is False else PositionForm.AC
+    if word.position_mode is not PositionMode.PLAIN:
+        return word.position_mode
+    return PositionMode.IC if state.modal.absolute is False else PositionMode.AC
 
 
 def _hint(number: int, *, linear: bool) -> str:
@@ -267,7 +271,7 @@ _HINTS = {
 }
 
 
-def make_straight_block(state: State, statement: Statement) -> Block:
+def make_straight_block(state: SinumerikState, statement: Statement) -> Block:
     """Return the block of a G0 or G1 move.
 
     Raises ProgramError if its words are invalid or, for G1, if no valid feed is active.
@@ -281,7 +285,7 @@ def make_straight_block(state: State, statement: Statement) -> Block:
             text=statement.words[name].text,
             motion=f"{state.motion:d}",
         )
-    travel = compute_travel(state, statement)
+    travel = compute_axis_travel(state, statement)
     if state.motion is MotionKind.RAPID:
         return make_rapid_block(state, statement, travel)
     kind = BlockKind.ROTATE if travel.c_travel and not travel.length_mm else BlockKind.FEED
@@ -291,7 +295,7 @@ def make_straight_block(state: State, statement: Statement) -> Block:
     return make_travel_block(state, statement, travel, kind, feed)
 
 
-def make_rapid_block(state: State, statement: Statement, travel: AxisTravel) -> Block:
+def make_rapid_block(state: SinumerikState, statement: Statement, travel: AxisTravel) -> Block:
     """Return a rapid in which all axes arrive at the same time.
 
     The slowest axis moves at its maximum speed.
@@ -306,25 +310,25 @@ def make_rapid_block(state: State, statement: Statement, travel: AxisTravel) -> 
 
 
 def make_travel_block(
-    state: State, statement: Statement, travel: AxisTravel, kind: BlockKind, feed: float
+    state: SinumerikState, statement: Statement, travel: AxisTravel, kind: BlockKind, feed: float
 ) -> Block:
     """Return the block of a move, and set the state to the end of the move."""
     state.x, state.z, state.c = travel.x, travel.z, travel.c
-    modal = travel.modal
+    modal = travel.modal_state
     dx, dz, dc = travel.offset_x, travel.offset_z, modal.offset_c
     if travel.length_mm and kind is not BlockKind.ARC:
         state.direction = (travel.x - travel.x0) / travel.length_mm, (travel.z - travel.z0) / travel.length_mm
     return Block(
-        n=0, line=statement.line.number, kind=kind, text=statement.line.text,
+        n=0, line=statement.lexed_block.line_number, kind=kind, text=statement.lexed_block.text,
         x0=travel.x0 - dx, z0=travel.z0 - dz, c0=travel.c0 - dc,
         x=travel.x - dx, z=travel.z - dz, c=travel.c - dc,
         offset_x=dx, offset_z=dz, modal=modal, feed=feed,
         per_rev=modal.per_rev and kind is not BlockKind.RAPID and state.master == 1,
-        rpm=state.compute_rpm_at(travel.x - dx), css=state.css,
+        rpm=state.compute_rpm_at_radius(travel.x - dx), css=state.css,
     )  # fmt: skip
 
 
-def store_end_direction(state: State, arc: Block) -> Block:
+def store_end_direction(state: SinumerikState, arc: Block) -> Block:
     """Store the end direction of an arc for a following CT, and return the arc."""
     state.direction = make_element(arc).end_direction
     return arc
@@ -336,7 +340,7 @@ class PlainMoveFactory(AdjustedMoveFactory):
     The slowest axis determines the time of a rapid.
     """
 
-    def __init__(self, state: State) -> None:
+    def __init__(self, state: SinumerikState) -> None:
         self._state = state
 
     @property

@@ -27,15 +27,15 @@ from core.interpreter.shared.contour_stage import (
     STRAIGHT_KINDS,
     ContourMove,
     ContourStage,
-    is_gouging,
+    is_gouging_contour,
     make_element,
 )
 from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.sinumerik.motion.linear_moves import PlainMoveFactory
-from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.sinumerik_state import SinumerikState
 from core.language.diagnostics import ProgramError
-from core.language.sinumerik.sinumerik_alarms import make_alarm
+from core.language.sinumerik.sinumerik_alarms import make_alarm_diagnostic
 from core.message import Message
 from core.tool_edges import TIP_DIRECTIONS
 
@@ -49,7 +49,9 @@ class CompensationStage:
     The stage accepts the blocks in order.
     """
 
-    def __init__(self, state: State, log: DiagnosticLog, *, is_in_transformed_plane: bool = False) -> None:
+    def __init__(
+        self, state: SinumerikState, log: DiagnosticLog, *, is_in_transformed_plane: bool = False
+    ) -> None:
         self._state, self._log = state, log
         self._in_plane = (
             is_in_transformed_plane  # in TRANSMIT or TRACYL, C of a block is its depth, which may change
@@ -199,7 +201,9 @@ class _ContourEnd(NamedTuple):
 class _Contour(ContourStage):
     """The contour from the G41 or G42 move to the move after G40."""
 
-    def __init__(self, state: State, approach: Block, left_offset_mm: float, tip_offset: Point) -> None:
+    def __init__(
+        self, state: SinumerikState, approach: Block, left_offset_mm: float, tip_offset: Point
+    ) -> None:
         super().__init__(PlainMoveFactory(state), approach, left_offset_mm, tip_offset)
         self.has_rounded_corners, self.has_rounded_ends = state.rounded, state.round_ends
         self.moves: list[ContourMove] = []
@@ -264,7 +268,7 @@ class _Contour(ContourStage):
         path cuts the contour, or if a path around the end starts closer to the end than the nose radius.
         """
         radius, direct_line = self.nose_radius_mm, Line(end.nose_start, end.nose_end)
-        if not radius or not is_gouging(direct_line, end.contour, radius):
+        if not radius or not is_gouging_contour(direct_line, end.contour, radius):
             return [direct_line] if direct_line.length > SAME_POINT_TOLERANCE_MM else []
         text = Message(
             "during the {end}, the nose radius of {radius} mm cuts into the contour.",
@@ -316,5 +320,5 @@ def _open(block: Block) -> ProgramError:
 
 def _fault(block: Block, code: str, text: str, hint: str) -> ProgramError:
     return ProgramError(
-        make_alarm(block.line, 1, code, Message("in line {line}", line=block.line), text, hint)
+        make_alarm_diagnostic(block.line, 1, code, Message("in line {line}", line=block.line), text, hint)
     )

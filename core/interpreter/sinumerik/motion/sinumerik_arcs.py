@@ -13,22 +13,22 @@ from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.sinumerik.motion.linear_moves import (
     MIN_PATH_MM,
     AxisTravel,
-    compute_travel,
+    compute_axis_travel,
     make_travel_block,
     store_end_direction,
 )
 from core.interpreter.sinumerik.motion.sinumerik_feeds import check_block_feed
-from core.interpreter.sinumerik.sinumerik_state import MotionKind, State
+from core.interpreter.sinumerik.sinumerik_state import MotionKind, SinumerikState
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
-from core.language.sinumerik.sinumerik_words import ARC_WORDS, PositionForm, Word
+from core.language.sinumerik.sinumerik_words import ARC_WORDS, PositionMode, Word
 from core.message import Message
 
 WRONG_ARC_END = 14040
 _TOLERANCE = 0.01  # mm; permitted difference of the radii at both ends
 
 
-def make_arc_block(state: State, statement: Statement) -> Block:
+def make_arc_block(state: SinumerikState, statement: Statement) -> Block:
     """Return the block of an arc.
 
     Raises ProgramError if its words do not define an arc, if G18 is not active, if SCALE has different
@@ -40,8 +40,8 @@ def make_arc_block(state: State, statement: Statement) -> Block:
             statement.g_words.get("motion"), "arc-plane", text, "Write G18 before this block."
         )
     _check_words(state, statement)
-    travel = compute_travel(state, statement)
-    if not travel.frame.is_uniform:
+    travel = compute_axis_travel(state, statement)
+    if not travel.frame.has_uniform_scale:
         text = "SCALE uses different factors for X and Z, so an arc is not possible."
         hint = "Use the same factor for both axes."
         raise statement.make_error(statement.g_words.get("motion"), "arc-scaled", text, hint)
@@ -58,7 +58,7 @@ def make_arc_block(state: State, statement: Statement) -> Block:
 _CIP_WORDS = frozenset({"I1", "K1"})
 
 
-def _check_words(state: State, statement: Statement) -> None:
+def _check_words(state: SinumerikState, statement: Statement) -> None:
     """Raise ProgramError for a word that belongs to another kind of arc."""
     own = {MotionKind.ARC_BY_POINT: _CIP_WORDS, MotionKind.TANGENTIAL_ARC: frozenset[str]()}.get(
         state.motion, ARC_WORDS - _CIP_WORDS
@@ -74,7 +74,7 @@ def _check_words(state: State, statement: Statement) -> None:
 
 
 def _compute_arc(
-    state: State, statement: Statement, travel: AxisTravel
+    state: SinumerikState, statement: Statement, travel: AxisTravel
 ) -> tuple[bool, tuple[Point, AxisTravel]]:
     """Return whether the arc is clockwise, its center in machine coordinates, and its travel."""
     if state.motion is MotionKind.ARC_BY_POINT:
@@ -87,7 +87,7 @@ def _compute_arc(
 
 
 def _arc_by_point(
-    state: State, statement: Statement, travel: AxisTravel
+    state: SinumerikState, statement: Statement, travel: AxisTravel
 ) -> tuple[bool, tuple[Point, AxisTravel]]:
     """Return the arc of CIP through the start point, the point (I1, K1) and the end point."""
     begun, words = travel.program_start, statement.words
@@ -133,7 +133,7 @@ def _circumcenter(a: Point, b: Point, c: Point) -> Point:
 
 
 def _tangential_arc(
-    state: State, statement: Statement, travel: AxisTravel
+    state: SinumerikState, statement: Statement, travel: AxisTravel
 ) -> tuple[bool, tuple[Point, AxisTravel]]:
     """Return the arc of CT, which starts in the end direction of the previous path."""
     word = statement.g_words.get("motion")
@@ -153,7 +153,7 @@ def _tangential_arc(
 
 
 def _compute_center(
-    state: State, statement: Statement, travel: AxisTravel, clockwise: bool
+    state: SinumerikState, statement: Statement, travel: AxisTravel, clockwise: bool
 ) -> tuple[Point, AxisTravel]:
     """Return the center of the arc in machine coordinates, and the travel to its end point.
 
@@ -178,25 +178,27 @@ def _compute_center(
     return centre, travel
 
 
-def _center_by_words(state: State, statement: Statement, travel: AxisTravel) -> Point:
+def _center_by_words(state: SinumerikState, statement: Statement, travel: AxisTravel) -> Point:
     """Return the center from I and K, which are distances from the start point, or coordinates with AC( )."""
     begun = travel.program_start
     i, k = _component(state, statement, "I", begun[0]), _component(state, statement, "K", begun[1])
-    x, z = travel.frame.transform_distance(i, k)
+    x, z = travel.frame.convert_to_machine_distance(i, k)
     return travel.x0 + x, travel.z0 + z
 
 
-def _component(state: State, statement: Statement, name: str, start: float) -> float:
+def _component(state: SinumerikState, statement: Statement, name: str, start: float) -> float:
     word = statement.words.get(name)
     if word is None:
         return 0.0
     value = state.length(statement, word)
-    if word.position_form is not PositionForm.AC:
+    if word.position_mode is not PositionMode.AC:
         return value  # a radius, independent of DIAMON
     return value / (2.0 if name == "I" and state.modal.diameter else 1.0) - start
 
 
-def _center_by_radius(state: State, statement: Statement, travel: AxisTravel, clockwise: bool) -> Point:
+def _center_by_radius(
+    state: SinumerikState, statement: Statement, travel: AxisTravel, clockwise: bool
+) -> Point:
     """Return the center from CR.
 
     CR is positive for arcs of up to half a circle, and negative for larger arcs.
@@ -215,7 +217,9 @@ def _center_by_radius(state: State, statement: Statement, travel: AxisTravel, cl
     return find_arc_center((travel.x0, travel.z0), (travel.x, travel.z), abs(radius), is_clockwise=side)
 
 
-def _center_by_angle(state: State, statement: Statement, travel: AxisTravel, clockwise: bool) -> Point:
+def _center_by_angle(
+    state: SinumerikState, statement: Statement, travel: AxisTravel, clockwise: bool
+) -> Point:
     """Return the center from AR and the end point, with the radius r = chord / (2 sin(angle / 2))."""
     word, chord = statement.words["AR"], travel.length_mm
     _demand_ends(statement, word, chord)
@@ -232,7 +236,7 @@ def _center_by_angle(state: State, statement: Statement, travel: AxisTravel, clo
 
 
 def _end_by_angle(
-    state: State, statement: Statement, travel: AxisTravel, clockwise: bool
+    state: SinumerikState, statement: Statement, travel: AxisTravel, clockwise: bool
 ) -> tuple[Point, AxisTravel]:
     """Return the center, and the travel to the calculated end point.
 
@@ -254,7 +258,7 @@ def _end_by_angle(
     return centre, travel._replace(x=end[0], z=end[1])
 
 
-def _angle(state: State, statement: Statement, word: Word) -> float:
+def _angle(state: SinumerikState, statement: Statement, word: Word) -> float:
     angle = state.number(statement, word)
     if not 0.0 < angle < 360.0:
         text = "{word}: an opening angle must be greater than 0 and less than 360 degrees."

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from core.interpreter.shared.units import MM_PER_INCH
-from core.interpreter.sinumerik.sinumerik_state import State, check_positive
+from core.interpreter.sinumerik.sinumerik_state import SinumerikState, require_positive_number
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.sinumerik.sinumerik_words import Word
 from core.language.sinumerik.word_table import DWELL_GROUP, FEED_TYPE_GROUP, MOTION_GROUP
@@ -18,7 +18,7 @@ _LEAD_MOTIONS = frozenset({34, 35})
 """G codes of motions for which F is the change in lead."""
 
 
-def execute_feed_words(state: State, statement: Statement) -> None:
+def execute_feed_words(state: SinumerikState, statement: Statement) -> None:
     """Execute the feed type, F, OVR, FRCM and RNDM of a block.
 
     A change between feed per minute and feed per revolution deletes F. Raises ProgramError for an invalid
@@ -26,7 +26,7 @@ def execute_feed_words(state: State, statement: Statement) -> None:
     """
     per_rev = _PER_REV_BY_CODE.get(statement.get_g_code(FEED_TYPE_GROUP) or 0, state.modal.per_rev)
     if per_rev != state.modal.per_rev:
-        state.set_modal(state.modal._replace(per_rev=per_rev, feed=None))
+        state.set_modal_state(state.modal._replace(per_rev=per_rev, feed=None))
         state.corner_feed = None
     if word := statement.words.get("OVR"):
         state.override = state.number(statement, word) / 100.0
@@ -39,22 +39,22 @@ def execute_feed_words(state: State, statement: Statement) -> None:
     motion = statement.get_g_code(MOTION_GROUP)
     leads = (state.motion if motion is None else motion) in _LEAD_MOTIONS
     if word is not None and statement.get_g_code(DWELL_GROUP) is None and not leads:
-        state.set_modal(state.modal._replace(feed=convert_feed(state, statement, word)))
+        state.set_modal_state(state.modal._replace(feed=convert_feed(state, statement, word)))
 
 
-def convert_feed(state: State, statement: Statement, word: Word) -> float:
+def convert_feed(state: SinumerikState, statement: Statement, word: Word) -> float:
     """Return a feed in mm (or degrees) per second or per revolution.
 
     Raises ProgramError if the feed is not above 0.
     """
-    value = check_positive(statement, word, state.number(statement, word), "the feed")
+    value = require_positive_number(statement, word, state.number(statement, word), "the feed")
     value *= MM_PER_INCH if state.feed_in_inches else 1.0
     # The unit is mm/min and degrees/min, or mm and degrees per revolution, depending on the kind of block.
     return value if state.modal.per_rev else value / 60.0
 
 
 def check_block_feed(
-    state: State, statement: Statement, x0: float, x1: float, *, is_in_degrees: bool = False
+    state: SinumerikState, statement: Statement, x0: float, x1: float, *, is_in_degrees: bool = False
 ) -> float:
     """Return the feed of a block from radius ``x0`` to ``x1``.
 
@@ -81,7 +81,11 @@ def check_block_feed(
         text = "G95 needs the live tool speed because SETMS(2) is active, but the live tool is stopped."
         hint = "Start the live tool with S and M3."
         raise statement.make_error(_first_axis_word(statement), "g95-spindle-stopped", text, hint)
-    if modal.per_rev and not by_tool and not (state.compute_rpm_at(x0) and state.compute_rpm_at(x1)):
+    if (
+        modal.per_rev
+        and not by_tool
+        and not (state.compute_rpm_at_radius(x0) and state.compute_rpm_at_radius(x1))
+    ):
         text = "G95 needs a spindle speed, but the spindle is stopped."
         hint = "Start the spindle with S and M3 or M4, or use G94."
         raise statement.make_error(_first_axis_word(statement), "g95-spindle-stopped", text, hint)

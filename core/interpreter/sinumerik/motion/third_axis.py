@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from math import inf
 
-from core.language.sinumerik.sinumerik_words import PositionForm
+from core.language.sinumerik.sinumerik_words import PositionMode
 from core.message import CodedError, Message
 
 FULL_REVOLUTION_DEG = 360.0
@@ -20,11 +20,11 @@ ROUNDING_TOLERANCE = 1e-9
 
 WRONG_MODULO_POSITION = 16830
 WRONG_AXIS_RANGE = 10720
-MODULO_ONLY_ALARMS = {PositionForm.DC: 16800, PositionForm.ACP: 16810, PositionForm.ACN: 16820}
+MODULO_ONLY_ALARMS = {PositionMode.DC: 16800, PositionMode.ACP: 16810, PositionMode.ACN: 16820}
 """Alarm numbers for position forms that require a modulo rotary axis, by form."""
 
 
-class TargetError(CodedError):
+class AxisTargetError(CodedError):
     """Error for a target position of the third axis that is not allowed.
 
     ``alarm_number`` is the number of the alarm, and ``str()`` returns the message.
@@ -44,16 +44,16 @@ def wrap_angle(angle: float) -> float:
     return 0.0 if FULL_REVOLUTION_DEG - rest <= ROUNDING_TOLERANCE else rest
 
 
-def compute_modulo_travel(form: PositionForm, value: float, position: float) -> float:
+def compute_modulo_travel(form: PositionMode, value: float, position: float) -> float:
     """Return the signed travel of a modulo axis in degrees, to ``value`` or, for IC, by ``value``.
 
-    ``position`` is the current position and may include any number of revolutions. Raises TargetError for a
-    target outside the range from 0 to less than 360.
+    ``position`` is the current position and may include any number of revolutions. Raises AxisTargetError
+    for a target outside the range from 0 to less than 360.
     """
-    if form is PositionForm.IC:
+    if form is PositionMode.IC:
         return value
     if not 0.0 <= value < FULL_REVOLUTION_DEG:
-        raise TargetError(
+        raise AxisTargetError(
             WRONG_MODULO_POSITION,
             Message(
                 "{value} is not a valid position of a modulo axis; valid positions are from 0 "
@@ -62,30 +62,32 @@ def compute_modulo_travel(form: PositionForm, value: float, position: float) -> 
             ),
         )
     at = wrap_angle(position)
-    if form is PositionForm.AC:
+    if form is PositionMode.AC:
         return _unless_noise(value - at)
     travel = wrap_angle(value - at)
     if travel <= ROUNDING_TOLERANCE:
         return 0.0
-    if form is PositionForm.ACP:
+    if form is PositionMode.ACP:
         return travel
-    if form is PositionForm.ACN:
+    if form is PositionMode.ACN:
         return travel - FULL_REVOLUTION_DEG
     return travel if travel <= FULL_REVOLUTION_DEG / 2 + ROUNDING_TOLERANCE else travel - FULL_REVOLUTION_DEG
 
 
-def compute_linear_travel(form: PositionForm, value: float, position: float) -> float:
+def compute_linear_travel(form: PositionMode, value: float, position: float) -> float:
     """Return the signed travel of an axis without modulo, to ``value`` or, with IC, by ``value``.
 
-    Raises TargetError for DC, ACP and ACN, which require a modulo rotary axis.
+    Raises AxisTargetError for DC, ACP and ACN, which require a modulo rotary axis.
     """
     if form in MODULO_ONLY_ALARMS:
-        raise TargetError(MODULO_ONLY_ALARMS[form], Message("{form} needs a modulo rotary axis", form=form))
-    return value if form is PositionForm.IC else _unless_noise(value - position)
+        raise AxisTargetError(
+            MODULO_ONLY_ALARMS[form], Message("{form} needs a modulo rotary axis", form=form)
+        )
+    return value if form is PositionMode.IC else _unless_noise(value - position)
 
 
 def check_axis_range(end_position: float, axis_range: tuple[float, float] | None = NON_MODULO_RANGE) -> None:
-    """Raise TargetError if the end position is outside the range of the axis in machine coordinates."""
+    """Raise AxisTargetError if the end position is outside the range of the axis in machine coordinates."""
     low, high = axis_range or (-inf, inf)
     if not low - ROUNDING_TOLERANCE <= end_position <= high + ROUNDING_TOLERANCE:
         text = Message(
@@ -94,7 +96,7 @@ def check_axis_range(end_position: float, axis_range: tuple[float, float] | None
             low=f"{low:g}",
             high=f"{high:+g}",
         )
-        raise TargetError(WRONG_AXIS_RANGE, text)
+        raise AxisTargetError(WRONG_AXIS_RANGE, text)
 
 
 def _unless_noise(travel: float) -> float:

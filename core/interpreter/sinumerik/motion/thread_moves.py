@@ -14,11 +14,11 @@ from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.sinumerik.motion.linear_moves import (
     MIN_PATH_MM,
     AxisTravel,
-    compute_travel,
+    compute_axis_travel,
     make_rapid_block,
     make_travel_block,
 )
-from core.interpreter.sinumerik.sinumerik_state import MotionKind, State
+from core.interpreter.sinumerik.sinumerik_state import MotionKind, SinumerikState
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_words import Word
@@ -30,7 +30,7 @@ _SAME = 1e-9  # mm
 _MIN_LEAD = 0.01  # mm
 
 
-def generate_thread_blocks(state: State, statement: Statement) -> Iterator[Block]:
+def generate_thread_blocks(state: SinumerikState, statement: Statement) -> Iterator[Block]:
     """Yield the thread block of G33, G34 or G35, preceded by the backward move if SF is programmed.
 
     Raises ProgramError for an invalid thread.
@@ -42,7 +42,7 @@ def generate_thread_blocks(state: State, statement: Statement) -> Iterator[Block
             raise statement.make_error(
                 word, "word-unused", text, hint, word=word.text, motion=int(state.motion)
             )
-    travel = compute_travel(state, statement)
+    travel = compute_axis_travel(state, statement)
     if abs(travel.z - travel.z0) < MIN_PATH_MM or travel.c_travel:
         text = "a thread is cut along Z in sync with the spindle, but this block does not move along Z."
         if travel.c_travel:
@@ -63,7 +63,7 @@ def generate_thread_blocks(state: State, statement: Statement) -> Iterator[Block
     yield made
 
 
-def _growth(state: State, statement: Statement) -> float:
+def _growth(state: SinumerikState, statement: Statement) -> float:
     """Return the lead change per revolution in mm/rev.
 
     The change is F with G34, minus F with G35, and 0 with G33.
@@ -74,7 +74,7 @@ def _growth(state: State, statement: Statement) -> float:
         value = state.length(statement, word)
         text = "{word}: the lead change must be greater than 0."
         hint = "Use G34 to increase the lead and G35 to decrease it."
-        statement.check_condition(value > 0.0, word, "not-positive", text, hint, word=word.text)
+        statement.require_condition(value > 0.0, word, "not-positive", text, hint, word=word.text)
         state.lead_change = value
     if not state.lead_change:
         text = "G{motion} needs F, the lead change per revolution."
@@ -108,7 +108,7 @@ def _mean_lead(statement: Statement, travel: AxisTravel, lead: float, growth: fl
 
 
 def _start_angle(
-    state: State, statement: Statement, travel: AxisTravel, lead: float, growth: float
+    state: SinumerikState, statement: Statement, travel: AxisTravel, lead: float, growth: float
 ) -> Block | None:
     """Return the backward move for the start angle SF, or None if SF is omitted or 0.
 
@@ -120,11 +120,11 @@ def _start_angle(
         return None
     text = "{word} is allowed only in the first block of a thread chain."
     hint = "Write this word in the first block of the thread chain."
-    statement.check_condition(not state.threads, word, "word-unused", text, hint, word=word.text)
+    statement.require_condition(not state.threads, word, "word-unused", text, hint, word=word.text)
     state.start_revolutions = turns = angle / 360.0
     far = (lead - 0.5 * growth * turns) * turns
     text = "at this start point, the lead has already decreased to 0."
-    statement.check_condition(
+    statement.require_condition(
         lead - growth * turns >= _MIN_LEAD, word, "thread-lead-missing", text, "Lower F."
     )
     share = far / abs(travel.z - travel.z0)
@@ -132,7 +132,7 @@ def _start_angle(
     return make_rapid_block(state, statement, travel._replace(x=x, z=z))
 
 
-def _lead(state: State, statement: Statement, travel: AxisTravel) -> float:
+def _lead(state: SinumerikState, statement: Statement, travel: AxisTravel) -> float:
     """Return the lead along Z at the start, in mm/rev.
 
     Without K and I, it is the lead at the end of the previous thread. Raises ProgramError for an invalid
@@ -152,18 +152,18 @@ def _lead(state: State, statement: Statement, travel: AxisTravel) -> float:
     assert word is not None
     value = state.length(statement, word)
     text = "{word}: a lead must be greater than 0."
-    statement.check_condition(value > 0.0, word, "not-positive", text, "Correct the value.", word=word.text)
+    statement.require_condition(value > 0.0, word, "not-positive", text, "Correct the value.", word=word.text)
     if along is not None:
         return value
     dx = abs(travel.x - travel.x0)
     text = "{word} is the lead along X, but X does not move."
-    statement.check_condition(
+    statement.require_condition(
         dx >= MIN_PATH_MM, word, "thread-lead-missing", text, "Write K.", word=word.text
     )
     return value * abs(travel.z - travel.z0) / dx
 
 
-def check_thread_spindle(state: State, statement: Statement, lead: float) -> None:
+def check_thread_spindle(state: SinumerikState, statement: Statement, lead: float) -> None:
     """Raise ProgramError if the spindle is stopped, is under G96, or is too fast for this lead in mm/rev."""
     modal = state.modal
     if not modal.spindle or not state.rpm:
@@ -187,7 +187,7 @@ def check_thread_spindle(state: State, statement: Statement, lead: float) -> Non
         )
 
 
-def _continues(state: State, statement: Statement, travel: AxisTravel, lead: float) -> bool:
+def _continues(state: SinumerikState, statement: Statement, travel: AxisTravel, lead: float) -> bool:
     """Return whether the block continues the previous thread instead of leading out of the thread.
 
     Raises ProgramError if the block reverses along Z or follows a block that led out of the thread.

@@ -10,7 +10,7 @@ from core.interpreter.shared.actions import SpindleLock
 from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.sinumerik.motion.transformed_plane import ActiveTransformation
-from core.interpreter.sinumerik.sinumerik_state import IDENTITY_FRAME, State
+from core.interpreter.sinumerik.sinumerik_state import IDENTITY_FRAME, SinumerikState
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.sinumerik.sinumerik_words import POSITION_WORDS, Word
 from core.language.sinumerik.word_table import TRANSFORMATION_GROUP
@@ -23,7 +23,7 @@ TRANSFORMATION_MISSING = 14401
 _SAME = 1e-9
 
 
-def switch_transformation(state: State, log: DiagnosticLog, statement: Statement) -> Iterator[Block]:
+def switch_transformation(state: SinumerikState, log: DiagnosticLog, statement: Statement) -> Iterator[Block]:
     """Yield the blocks of TRANSMIT, TRACYL or TRAFOOF. Raises ProgramError if the function is not allowed."""
     word = statement.g_words[TRANSFORMATION_GROUP]
     if (POSITION_WORDS & statement.words.keys()) or statement.assignments or statement.m_words:
@@ -42,8 +42,8 @@ def switch_transformation(state: State, log: DiagnosticLog, statement: Statement
     frame = _frame(state, statement, word)
     _check_machine(state, statement, word)
     if not state.modal.c_locked and state.setup.limits.is_spindle_c_axis:
-        state.set_modal(state.modal._replace(c_locked=True))
-        yield state.action(statement.line.number, word.text, SpindleLock(orient=False))
+        state.set_modal_state(state.modal._replace(c_locked=True))
+        yield state.action(statement.lexed_block.line_number, word.text, SpindleLock(orient=False))
     _end_transformation(state)
     if state.modal.diameter and word.name == "TRANSMIT" and "DIAMON" not in state.logged_functions:
         state.logged_functions.add("DIAMON")
@@ -54,7 +54,7 @@ def switch_transformation(state: State, log: DiagnosticLog, statement: Statement
     state.transformation = ActiveTransformation(state, log, frame)
 
 
-def _end_transformation(state: State) -> None:
+def _end_transformation(state: SinumerikState) -> None:
     """Cancel the transformation and reset the programmed frame.
 
     This is also done before a new transformation is activated.
@@ -64,10 +64,10 @@ def _end_transformation(state: State) -> None:
     state.pole, state.last_polar_point, state.direction = (0.0, 0.0), None, None
     state.derive_offsets()
     if state.modal.mill is not None:
-        state.set_modal(state.modal._replace(mill=None))
+        state.set_modal_state(state.modal._replace(mill=None))
 
 
-def _check_machine(state: State, statement: Statement, word: Word) -> None:
+def _check_machine(state: SinumerikState, statement: Statement, word: Word) -> None:
     modal, limits = state.modal, state.setup.limits
     if limits.third_axis_name == "Y":
         text = Message(
@@ -106,7 +106,7 @@ def _check_machine(state: State, statement: Statement, word: Word) -> None:
         )
 
 
-def _frame(state: State, statement: Statement, word: Word) -> FacePlane | SidePlane:
+def _frame(state: SinumerikState, statement: Statement, word: Word) -> FacePlane | SidePlane:
     """Return the coordinate frame of the transformation, for the side of the axis where the tool is.
 
     The frame is relative to the spindle axis. Raises ProgramError if the word selects groove walls or a

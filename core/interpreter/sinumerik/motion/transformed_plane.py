@@ -28,10 +28,10 @@ from core.interpreter.sinumerik.motion.radius_compensation import CompensationSt
 from core.interpreter.sinumerik.motion.sinumerik_arcs import make_arc_block
 from core.interpreter.sinumerik.motion.sinumerik_feeds import check_block_feed
 from core.interpreter.sinumerik.motion.transformed_words import FACE_LETTERS, SIDE_LETTERS, check_statement
-from core.interpreter.sinumerik.setup.modes_and_offsets import execute_frame, execute_frame_block
-from core.interpreter.sinumerik.sinumerik_state import ARC_MOTIONS, IDENTITY_FRAME, MotionKind, State
+from core.interpreter.sinumerik.setup.modes_and_offsets import execute_frame_words, execute_pole_and_limits
+from core.interpreter.sinumerik.sinumerik_state import ARC_MOTIONS, IDENTITY_FRAME, MotionKind, SinumerikState
 from core.interpreter.sinumerik.sinumerik_statement import Statement
-from core.language.sinumerik.sinumerik_words import AXIS_NAMES, POSITION_WORDS, PositionForm, Word
+from core.language.sinumerik.sinumerik_words import AXIS_NAMES, POSITION_WORDS, PositionMode, Word
 from core.message import Message
 
 _SAME = 1e-9
@@ -55,7 +55,7 @@ class ActiveTransformation:
     they are X, Y and lathe Z. On the side, they are Y, lathe Z, and X as a radius.
     """
 
-    def __init__(self, state: State, log: DiagnosticLog, frame: FacePlane | SidePlane) -> None:
+    def __init__(self, state: SinumerikState, log: DiagnosticLog, frame: FacePlane | SidePlane) -> None:
         self._state, self._log, self._frame = state, log, frame
         self._names = FACE_LETTERS if isinstance(frame, FacePlane) else SIDE_LETTERS
         self._plane = copy.copy(state)
@@ -81,7 +81,7 @@ class ActiveTransformation:
         return self._names.transformation_word
 
     @property
-    def has_z_depth(self) -> bool:
+    def is_depth_along_z(self) -> bool:
         """Return whether the depth is along Z, so that drilling cycles are allowed."""
         return isinstance(self._frame, FacePlane)
 
@@ -151,15 +151,15 @@ class ActiveTransformation:
     def _resolve_word(self, statement: Statement, word: Word, *, x_is_radius: bool) -> Word:
         """Return the word with its value as a number, with X as a radius."""
         modal, value = self._state.modal, self._state.number(statement, word)
-        relative = word.position_form is PositionForm.IC or (
-            word.position_form is PositionForm.PLAIN and modal.absolute is False
+        relative = word.position_mode is PositionMode.IC or (
+            word.position_mode is PositionMode.PLAIN and modal.absolute is False
         )
         centre = word.name == "I"
-        is_center_distance = centre and word.position_form is not PositionForm.AC
+        is_center_distance = centre and word.position_mode is not PositionMode.AC
         diameter = modal.diameter and not x_is_radius and not is_center_distance
         if word.name in {"X", "I"} and diameter and not (relative and self._state.distance_is_radius):
             value /= 2.0
-        if word.position_form in {PositionForm.DC, PositionForm.ACP, PositionForm.ACN}:
+        if word.position_mode in {PositionMode.DC, PositionMode.ACP, PositionMode.ACN}:
             text = "{word}: {form} needs a rotary axis."
             hint = "Write {name}=AC( ) or {name2}=IC( )."
             raise statement.make_error(
@@ -168,7 +168,7 @@ class ActiveTransformation:
                 text,
                 hint,
                 word=word.text,
-                form=word.position_form,
+                form=word.position_mode,
                 name=word.name,
                 name2=word.name,
             )
@@ -188,14 +188,14 @@ class ActiveTransformation:
 
     def _derive(self) -> None:
         frame = self._plane.programmed_frame
-        self._plane.set_modal(
+        self._plane.set_modal_state(
             self._state.modal._replace(
-                tool_x=0.0,
-                tool_z=0.0,
+                tool_offset_x=0.0,
+                tool_offset_z=0.0,
                 zero_offset_x=0.0,
                 zero_offset_z=0.0,
-                zero_x=frame.shift_x,
-                zero_z=frame.shift_z,
+                frame_shift_x=frame.shift_x,
+                frame_shift_z=frame.shift_z,
                 offset_c=0.0,
                 diameter=False,
             )
@@ -203,7 +203,7 @@ class ActiveTransformation:
 
     # --- frames and moves
 
-    def execute_frame(self, statement: Statement) -> None:
+    def execute_frame_words(self, statement: Statement) -> None:
         """Execute TRANS, ROT, SCALE and MIRROR in the plane. Raises ProgramError for invalid words."""
         self._follow_state()
         if key := statement.frame_word:
@@ -215,7 +215,7 @@ class ActiveTransformation:
                     taken.words["C"] = depth._replace(value=(depth.value or 0.0) * 25.4)
             else:
                 taken = self.convert_statement(statement)
-            execute_frame(self._plane, taken)
+            execute_frame_words(self._plane, taken)
             self._derive()
 
     def make_moves(self, statement: Statement) -> Iterator[Block]:
@@ -232,7 +232,7 @@ class ActiveTransformation:
             self._set_allowance(statement, word)
         self._follow_state()
         taken = self.convert_statement(statement)
-        if execute_frame_block(self._plane, taken):
+        if execute_pole_and_limits(self._plane, taken):
             return
         if not (POSITION_WORDS | {"I", "J", "K"}) & statement.words.keys():
             return
@@ -255,7 +255,7 @@ class ActiveTransformation:
         self._set_end_position(made)
         yield made
 
-    def move_to_depth(self, statement: Statement, depth: float, feed: float | None, text: str) -> Block:
+    def make_depth_move(self, statement: Statement, depth: float, feed: float | None, text: str) -> Block:
         """Return a move to a depth in the program frame, in mm, which is a rapid if ``feed`` is None."""
         self._follow_state()
         state, goal = self._plane, depth + self._plane.programmed_frame.shift_c
@@ -266,11 +266,11 @@ class ActiveTransformation:
         self._set_end_position(made)
         return made
 
-    def move_above(self, statement: Statement, x: float, y: float, text: str) -> Block:
+    def make_rapid_to_hole(self, statement: Statement, x: float, y: float, text: str) -> Block:
         """Return a rapid to a point of the plane for a hole pattern, in mm."""
         self._follow_state()
         state = self._plane
-        z, ordinate = (y, x) if not self.has_z_depth else (x, y)
+        z, ordinate = (y, x) if not self.is_depth_along_z else (x, y)
         there = self._still().convert_to_machine_point(ordinate, z)
         travel = self._still()._replace(x=there[0], z=there[1])
         made = make_travel_block(state, statement, travel, BlockKind.RAPID, 0.0)
@@ -284,7 +284,7 @@ class ActiveTransformation:
         Raises ProgramError if a contour is active, and for a value other than 0 in TRACYL.
         """
         value = self._state.length(statement, word)
-        if self._compensation.has_open_contour or (value and not self.has_z_depth):
+        if self._compensation.has_open_contour or (value and not self.is_depth_along_z):
             text = Message("{word} cannot change a contour that is not finished yet.", word=word.text)
             if not self._compensation.has_open_contour:
                 text = Message(
@@ -302,8 +302,8 @@ class ActiveTransformation:
         if word is None:
             return self._depth
         value = (word.value or 0.0) * (1.0 if self._state.modal.metric else 25.4)
-        relative = word.position_form is PositionForm.IC or (
-            word.position_form is PositionForm.PLAIN and self._state.modal.absolute is False
+        relative = word.position_mode is PositionMode.IC or (
+            word.position_mode is PositionMode.PLAIN and self._state.modal.absolute is False
         )
         return value + (self._depth if relative else self._plane.programmed_frame.shift_c)
 
@@ -447,12 +447,12 @@ class ActiveTransformation:
         own = self._state.modal
         ends = isinstance(block.action, ProgramEnd)
         modal = block.modal._replace(
-            tool_x=own.tool_x,
-            tool_z=own.tool_z,
+            tool_offset_x=own.tool_offset_x,
+            tool_offset_z=own.tool_offset_z,
             zero_offset_x=own.zero_offset_x,
             zero_offset_z=own.zero_offset_z,
-            zero_x=0.0,
-            zero_z=0.0,
+            frame_shift_x=0.0,
+            frame_shift_z=0.0,
             offset_c=own.offset_c,
             diameter=own.diameter,
             c_locked=True,

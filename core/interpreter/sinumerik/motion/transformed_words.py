@@ -5,7 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from core.interpreter.sinumerik.sinumerik_state import ARC_MOTIONS, TAP_MOTIONS, THREAD_MOTIONS, State
+from core.interpreter.sinumerik.sinumerik_state import (
+    ARC_MOTIONS,
+    TAP_MOTIONS,
+    THREAD_MOTIONS,
+    SinumerikState,
+)
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.sinumerik.sinumerik_words import POSITION_WORDS
 from core.language.sinumerik.word_table import MOTION_GROUP, NON_MODAL_GROUP, SUPPRESSION_GROUP
@@ -28,7 +33,7 @@ SIDE_LETTERS = LetterMap("TRACYL", 19, {"Y": "Z", "Z": "X", "X": "C"}, {"J": "K"
 
 
 def check_statement(
-    state: State, names: LetterMap, statement: Statement, *, has_moved_in_contour: bool
+    state: SinumerikState, names: LetterMap, statement: Statement, *, has_moved_in_contour: bool
 ) -> None:
     """Raise ProgramError for a statement that is not allowed in the plane.
 

@@ -9,10 +9,10 @@ from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.machine_requirements import (
     BUILDER_M_PREFIX,
     MachineRequirement,
-    format_binding_lines,
+    format_m_code_instruction,
 )
-from core.interpreter.sinumerik.setup.modes_and_offsets import note_ineffective_word
-from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.setup.modes_and_offsets import log_ineffective_word
+from core.interpreter.sinumerik.sinumerik_state import SinumerikState
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
 from core.language.sinumerik.sinumerik_words import Word
@@ -24,7 +24,7 @@ _ISO_CODES = frozenset({98, 99})  # M98 and M99 of the ISO dialect, which call a
 
 
 def check_m_functions(
-    state: State, statement: Statement, missing_functions: list[MachineRequirement]
+    state: SinumerikState, statement: Statement, missing_functions: list[MachineRequirement]
 ) -> None:
     """Check the M functions of a block, and add the missing ones to ``missing_functions``.
 
@@ -37,7 +37,7 @@ def check_m_functions(
     limits = state.setup.limits
     for code, word in statement.m_words.items():
         if code in limits.ignored_m_codes:
-            note_ineffective_word(
+            log_ineffective_word(
                 state,
                 statement,
                 word,
@@ -45,17 +45,19 @@ def check_m_functions(
                 "the machine file contains ignored = true for this M code",
             )
         elif code in M_FUNCTIONS:
-            note_ineffective_word(state, statement, word, f"M{code}", _idle(state, code))
-        elif code in limits.m_outputs:
-            _check_chuck(state, statement, word, *limits.m_outputs[code])
+            log_ineffective_word(state, statement, word, f"M{code}", _idle(state, code))
+        elif code in limits.m_code_outputs:
+            _check_chuck(state, statement, word, *limits.m_code_outputs[code])
         elif code in limits.disabled_m_codes or code in _ISO_CODES:
             raise _refused(state, statement, code, word)
         else:
-            missing_functions.append(MachineRequirement(f"{BUILDER_M_PREFIX}{code}", statement.line.number))
+            missing_functions.append(
+                MachineRequirement(f"{BUILDER_M_PREFIX}{code}", statement.lexed_block.line_number)
+            )
             _warn_missing_function(state, statement, code, word)
 
 
-def _check_chuck(state: State, statement: Statement, word: Word, name: str, on: bool) -> None:
+def _check_chuck(state: SinumerikState, statement: Statement, word: Word, name: str, on: bool) -> None:
     """Raise ProgramError if a code opens the chuck while the spindle turns, as for M13 in OmniTurn.
 
     The code is allowed if M5 is in the same block, or if the machine file permits unclamping while the
@@ -67,13 +69,13 @@ def _check_chuck(state: State, statement: Statement, word: Word, name: str, on: 
         raise statement.make_error(word, "unclamp-turning", text, "Write M5 before this block.")
 
 
-def _idle(state: State, code: int) -> str:
-    if code == 6 and 6 not in state.setup.limits.m_outputs:
+def _idle(state: SinumerikState, code: int) -> str:
+    if code == 6 and 6 not in state.setup.limits.m_code_outputs:
         return "T changes the tool automatically on this machine"
     return INEFFECTIVE_WORDS.get(f"M{code}", "")
 
 
-def _refused(state: State, statement: Statement, code: int, word: Word) -> ProgramError:
+def _refused(state: SinumerikState, statement: Statement, code: int, word: Word) -> ProgramError:
     if code in state.setup.limits.disabled_m_codes:
         text = Message("M{code} is defined but not enabled in the machine file.", code=code)
         return statement.make_error(
@@ -85,7 +87,7 @@ def _refused(state: State, statement: Statement, code: int, word: Word) -> Progr
     )
 
 
-def _warn_missing_function(state: State, statement: Statement, code: int, word: Word) -> None:
+def _warn_missing_function(state: SinumerikState, statement: Statement, code: int, word: Word) -> None:
     """Log a single warning that this machine lacks a machine-builder function.
 
     A program with a missing function cannot be started.
@@ -95,7 +97,7 @@ def _warn_missing_function(state: State, statement: Statement, code: int, word: 
     state.logged_functions.add(f"M{code}")
     what = Message("M{code} is a machine-builder code that has no function on this machine", code=code)
     text = Message("{what}, so the machine will not start.", what=what)
-    hint = format_binding_lines(code)
+    hint = format_m_code_instruction(code)
     state.log_finding(
         statement.make_warning(
             word, "m-unanswered", text, Message("{hint}.", hint=hint.capitalize_first_letter())
@@ -103,32 +105,32 @@ def _warn_missing_function(state: State, statement: Statement, code: int, word: 
     )
 
 
-def execute_before_motion(state: State, statement: Statement) -> Iterator[Block]:
+def turn_outputs_on(state: SinumerikState, statement: Statement) -> Iterator[Block]:
     """Yield the blocks that turn coolant and outputs on before the motion."""
     yield from _outputs(state, statement, on=True)
     yield from _coolant(state, statement, {7, 8})
 
 
-def execute_after_motion(state: State, statement: Statement) -> Iterator[Block]:
+def turn_outputs_off(state: SinumerikState, statement: Statement) -> Iterator[Block]:
     """Yield the blocks that turn coolant and outputs off after the motion."""
     yield from _coolant(state, statement, {9})
     yield from _outputs(state, statement, on=False)
 
 
-def _outputs(state: State, statement: Statement, *, on: bool) -> Iterator[Block]:
+def _outputs(state: SinumerikState, statement: Statement, *, on: bool) -> Iterator[Block]:
     for code in statement.m_words:
-        name, wanted = state.setup.limits.m_outputs.get(code, ("", not on))
+        name, wanted = state.setup.limits.m_code_outputs.get(code, ("", not on))
         if name == COLLET_OUTPUT and wanted is on:
-            state.set_modal(state.modal._replace(collet_closed=on))
-            yield state.action(statement.line.number, f"M{code}", ColletSwitch(closed=on))
+            state.set_modal_state(state.modal._replace(collet_closed=on))
+            yield state.action(statement.lexed_block.line_number, f"M{code}", ColletSwitch(closed=on))
         elif name and wanted is on:
             outputs = state.modal.outputs | {name} if on else state.modal.outputs - {name}
-            state.set_modal(state.modal._replace(outputs=outputs))
-            yield state.action(statement.line.number, f"M{code}", OutputSwitch(name, on))
+            state.set_modal_state(state.modal._replace(outputs=outputs))
+            yield state.action(statement.lexed_block.line_number, f"M{code}", OutputSwitch(name, on))
 
 
-def _coolant(state: State, statement: Statement, codes: set[int]) -> Iterator[Block]:
+def _coolant(state: SinumerikState, statement: Statement, codes: set[int]) -> Iterator[Block]:
     code = next((code for code in sorted(codes) if code in statement.m_words), None)
     if code is not None:
-        state.set_modal(state.modal._replace(coolant=code != 9))
-        yield state.action(statement.line.number, f"M{code}", CoolantSwitch(code != 9))
+        state.set_modal_state(state.modal._replace(coolant=code != 9))
+        yield state.action(statement.lexed_block.line_number, f"M{code}", CoolantSwitch(code != 9))

@@ -4,29 +4,34 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from core.interpreter.sinumerik.sinumerik_state import IDENTITY_FRAME, ZERO_SETTABLE_OFFSET, MotionKind, State
+from core.interpreter.sinumerik.sinumerik_state import (
+    IDENTITY_FRAME,
+    ZERO_SETTABLE_OFFSET,
+    MotionKind,
+    SinumerikState,
+)
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import Severity
 from core.language.sinumerik import word_table as table
-from core.language.sinumerik.sinumerik_words import PositionForm, Word
+from core.language.sinumerik.sinumerik_words import PositionMode, Word
 from core.message import Message
 
 _NAMED_MOTION = {"CIP": MotionKind.ARC_BY_POINT, "CT": MotionKind.TANGENTIAL_ARC}
 _FIFTH = {505: 58, 506: 59}  # the settable offsets that these codes select
 
 
-def activate_settable_offset(state: State, statement: Statement) -> None:
+def activate_settable_offset(state: SinumerikState, statement: Statement) -> None:
     """Activate the settable offset of G54 to G59, G505 or G506, or cancel it with G500."""
     code = statement.get_g_code(table.SETTABLE_OFFSET_GROUP)
     if code is None:
         return
     code = _FIFTH.get(code, code)
     state.settable = state.setup.zero.get(code, ZERO_SETTABLE_OFFSET) if code != 500 else ZERO_SETTABLE_OFFSET
-    state.set_modal(state.modal._replace(settable=0 if code == 500 else code))
+    state.set_modal_state(state.modal._replace(settable=0 if code == 500 else code))
     state.derive_offsets()
 
 
-def execute_frame(state: State, statement: Statement) -> None:
+def execute_frame_words(state: SinumerikState, statement: Statement) -> None:
     """Execute TRANS, ROT, SCALE and MIRROR, or their additive forms such as ATRANS.
 
     TRANS, ROT, SCALE and MIRROR replace the frame, and the additive forms add to the frame. A block without
@@ -64,17 +69,17 @@ def execute_frame(state: State, statement: Statement) -> None:
     state.derive_offsets()
 
 
-def reset_offsets(state: State) -> None:
+def reset_offsets(state: SinumerikState) -> None:
     """Reset all offsets at the end of a program, so that they do not affect later programs.
 
     G71 and DIAMON become active, as the next MDI line expects.
     """
     state.settable, state.programmed_frame = ZERO_SETTABLE_OFFSET, IDENTITY_FRAME
-    state.set_modal(state.modal._replace(settable=0, metric=True, diameter=True))
+    state.set_modal_state(state.modal._replace(settable=0, metric=True, diameter=True))
     state.derive_offsets()
 
 
-def check_c_word(state: State, statement: Statement) -> None:
+def check_c_word(state: SinumerikState, statement: Statement) -> None:
     """Raise ProgramError for a C word if the machine has no third axis."""
     word = statement.words.get("C")
     if word is not None and not state.setup.limits.is_c_enabled:
@@ -84,7 +89,7 @@ def check_c_word(state: State, statement: Statement) -> None:
         )
 
 
-def check_y_word(state: State, statement: Statement) -> None:
+def check_y_word(state: SinumerikState, statement: Statement) -> None:
     """Raise ProgramError for a Y or J word outside TRANSMIT and TRACYL."""
     word = statement.words.get("Y") or statement.words.get("J")
     if word is None or state.transformation is not None:
@@ -107,7 +112,7 @@ def _refuse_axes(statement: Statement, key: Word) -> None:
         raise statement.make_error(word, "offset-form", text, Message("Write {key} RPL=…", key=key.name))
 
 
-def _shift(state: State, statement: Statement, name: str) -> float:
+def _shift(state: SinumerikState, statement: Statement, name: str) -> float:
     """Return the shift of one axis in TRANS or ATRANS, in mm or degrees.
 
     X is a radius, independent of DIAMON.
@@ -118,7 +123,7 @@ def _shift(state: State, statement: Statement, name: str) -> float:
     return state.third(statement, word) if name == "C" else state.length(statement, word)
 
 
-def _factor(state: State, statement: Statement, name: str) -> float:
+def _factor(state: SinumerikState, statement: Statement, name: str) -> float:
     word = _plain(statement, name)
     value = 1.0 if word is None else state.number(statement, word)
     if word is not None and not 0.001 <= value <= 1000.0:
@@ -131,7 +136,7 @@ def _factor(state: State, statement: Statement, name: str) -> float:
 
 def _plain(statement: Statement, name: str) -> Word | None:
     word = statement.words.get(name)
-    if word is not None and word.position_form is not PositionForm.PLAIN:
+    if word is not None and word.position_mode is not PositionMode.PLAIN:
         text = Message("{word}: an offset must be a plain number.", word=word.text)
         raise statement.make_error(
             word, "offset-form", text, Message("Write {word} with a plain number.", word=word.name)
@@ -139,7 +144,7 @@ def _plain(statement: Statement, name: str) -> Word | None:
     return word
 
 
-def execute_modes(state: State, statement: Statement) -> None:
+def set_modal_functions(state: SinumerikState, statement: Statement) -> None:
     """Set the modal functions of a block. Raises ProgramError for an invalid function."""
     modal = state.modal
     _motion_and_plane(state, statement)
@@ -154,12 +159,12 @@ def execute_modes(state: State, statement: Statement) -> None:
         modal = modal._replace(absolute=absolute == 90)
     if modal.rapid != (state.motion is MotionKind.RAPID):
         modal = modal._replace(rapid=state.motion is MotionKind.RAPID)
-    state.set_modal(modal)
+    state.set_modal_state(modal)
     _path_modes(state, statement)
     activate_settable_offset(state, statement)
 
 
-def _motion_and_plane(state: State, statement: Statement) -> None:
+def _motion_and_plane(state: SinumerikState, statement: Statement) -> None:
     motion, plane = statement.get_g_code(table.MOTION_GROUP), statement.get_g_code(table.PLANE_GROUP)
     if motion is not None:
         state.motion = MotionKind(motion)
@@ -177,7 +182,7 @@ def _motion_and_plane(state: State, statement: Statement) -> None:
     state.plane = plane or state.plane
 
 
-def _path_modes(state: State, statement: Statement) -> None:
+def _path_modes(state: SinumerikState, statement: Statement) -> None:
     """Set the modes for exact stop, outside corners, approach and working area limits."""
     exact, corner = statement.get_g_code(table.EXACT_STOP_GROUP), statement.get_g_code(table.CORNER_GROUP)
     if exact is not None:
@@ -197,21 +202,23 @@ def _path_modes(state: State, statement: Statement) -> None:
             raise statement.make_error(
                 word, "comp-plane", text, Message("Write G{plane} before this block.", plane=plane)
             )
-        state.set_modal(state.modal._replace(compensation_code=code))
+        state.set_modal_state(state.modal._replace(compensation_code=code))
     if area := statement.get_named_function(table.WORKING_AREA_GROUP):
         state.is_working_area_active = area == "WALIMON"
 
 
-def note_ineffective_words(state: State, statement: Statement) -> None:
+def log_ineffective_words(state: SinumerikState, statement: Statement) -> None:
     """Log one note for each word that has no effect."""
     for word in statement.g_words.values():
         name = word.name if word.value is None else f"G{int(word.value)}"
-        note_ineffective_word(state, statement, word, name, table.INEFFECTIVE_WORDS.get(name, ""))
+        log_ineffective_word(state, statement, word, name, table.INEFFECTIVE_WORDS.get(name, ""))
     for name, word in statement.words.items():
-        note_ineffective_word(state, statement, word, name, table.INEFFECTIVE_WORDS.get(name, ""))
+        log_ineffective_word(state, statement, word, name, table.INEFFECTIVE_WORDS.get(name, ""))
 
 
-def note_ineffective_word(state: State, statement: Statement, word: Word, name: str, reason: str) -> None:
+def log_ineffective_word(
+    state: SinumerikState, statement: Statement, word: Word, name: str, reason: str
+) -> None:
     """Log a single note that a function has no effect because of ``reason``."""
     if reason and name not in state.logged_functions:
         state.logged_functions.add(name)
@@ -221,7 +228,7 @@ def note_ineffective_word(state: State, statement: Statement, word: Word, name: 
         state.log_finding(replace(found, severity=Severity.NOTE))
 
 
-def execute_frame_block(state: State, statement: Statement) -> bool:
+def execute_pole_and_limits(state: SinumerikState, statement: Statement) -> bool:
     """Execute a block with G110 to G112 (pole) or with G25 or G26 (limits).
 
     Returns whether the block contains one of these codes. Raises ProgramError for invalid words.
@@ -240,24 +247,24 @@ def execute_frame_block(state: State, statement: Statement) -> bool:
     return True
 
 
-def _pole(state: State, statement: Statement, code: int) -> None:
+def _pole(state: SinumerikState, statement: Statement, code: int) -> None:
     base = (0.0, 0.0)
     if code == 112:
         base = state.pole
     elif code == 110:
         x, z = state.x - state.modal.offset_x, state.z - state.modal.offset_z
-        base = state.programmed_frame.invert_distance(x, z)
+        base = state.programmed_frame.convert_to_program_distance(x, z)
     state.pole = base[0] + _place(state, statement, "X"), base[1] + _place(state, statement, "Z")
 
 
-def _place(state: State, statement: Statement, name: str) -> float:
+def _place(state: SinumerikState, statement: Statement, name: str) -> float:
     word = _plain(statement, name)
     if word is None:
         return 0.0
     return state.length(statement, word) / (2.0 if name == "X" and state.modal.diameter else 1.0)
 
 
-def _limits(state: State, statement: Statement, *, upper: bool) -> None:
+def _limits(state: SinumerikState, statement: Statement, *, upper: bool) -> None:
     """Set the working area limits of G25 and G26.
 
     The spindle speed limits of G25 and G26 are set when the spindle words are executed.
@@ -267,7 +274,7 @@ def _limits(state: State, statement: Statement, *, upper: bool) -> None:
             state.area[name, upper] = _place(state, statement, name)
 
 
-def check_working_area(state: State, statement: Statement, x: float, z: float) -> None:
+def check_working_area(state: SinumerikState, statement: Statement, x: float, z: float) -> None:
     """Raise ProgramError if the tool tip would leave the working area of G25 and G26.
 
     ``x`` and ``z`` are machine positions in mm.
@@ -275,7 +282,7 @@ def check_working_area(state: State, statement: Statement, x: float, z: float) -
     if not state.is_working_area_active or not state.area:
         return
     modal = state.modal
-    edge = (0.0, 0.0) if modal.edge == 0 else (modal.tool_x, modal.tool_z)
+    edge = (0.0, 0.0) if modal.edge == 0 else (modal.tool_offset_x, modal.tool_offset_z)
     for name, value in (("X", x - edge[0]), ("Z", z - edge[1])):
         for upper in (False, True):
             limit = state.area.get((name, upper))

@@ -16,45 +16,47 @@ class ProgrammedFrame(NamedTuple):
     shift_x: float = 0.0
     shift_z: float = 0.0
     shift_c: float = 0.0
-    xx: float = 1.0
-    xz: float = 0.0
-    zx: float = 0.0
-    zz: float = 1.0
+    matrix_xx: float = 1.0
+    matrix_xz: float = 0.0
+    matrix_zx: float = 0.0
+    matrix_zz: float = 1.0
 
     @property
     def is_shift_only(self) -> bool:
         """Return whether the frame consists only of a shift."""
-        return (self.xx, self.xz, self.zx, self.zz) == (1.0, 0.0, 0.0, 1.0)
+        return (self.matrix_xx, self.matrix_xz, self.matrix_zx, self.matrix_zz) == (1.0, 0.0, 0.0, 1.0)
 
     @property
     def is_mirrored(self) -> bool:
         """Return whether the frame reverses the direction of arcs."""
-        return self.xx * self.zz - self.xz * self.zx < 0.0
+        return self.matrix_xx * self.matrix_zz - self.matrix_xz * self.matrix_zx < 0.0
 
     @property
-    def is_uniform(self) -> bool:
+    def has_uniform_scale(self) -> bool:
         """Return whether both axes have the same scale factor, so that circles remain circles."""
-        across = self.xx * self.xx + self.zx * self.zx
-        along = self.xz * self.xz + self.zz * self.zz
+        across = self.matrix_xx * self.matrix_xx + self.matrix_zx * self.matrix_zx
+        along = self.matrix_xz * self.matrix_xz + self.matrix_zz * self.matrix_zz
         return abs(across - along) < 1e-9 * along
 
-    def transform_distance(self, x: float, z: float) -> tuple[float, float]:
+    def convert_to_machine_distance(self, x: float, z: float) -> tuple[float, float]:
         """Convert a distance in the program frame to a machine distance."""
-        return self.xx * x + self.xz * z, self.zx * x + self.zz * z
+        return self.matrix_xx * x + self.matrix_xz * z, self.matrix_zx * x + self.matrix_zz * z
 
-    def invert_distance(self, x: float, z: float) -> tuple[float, float]:
+    def convert_to_program_distance(self, x: float, z: float) -> tuple[float, float]:
         """Convert a machine distance to a distance in the program frame."""
-        whole = self.xx * self.zz - self.xz * self.zx
-        return (self.zz * x - self.xz * z) / whole, (self.xx * z - self.zx * x) / whole
+        whole = self.matrix_xx * self.matrix_zz - self.matrix_xz * self.matrix_zx
+        return (self.matrix_zz * x - self.matrix_xz * z) / whole, (
+            self.matrix_xx * z - self.matrix_zx * x
+        ) / whole
 
     @property
     def scale_factor(self) -> float:
         """Return the factor by which the frame scales lengths, for a frame with equal factors."""
-        return sqrt(abs(self.xx * self.zz - self.xz * self.zx))
+        return sqrt(abs(self.matrix_xx * self.matrix_zz - self.matrix_xz * self.matrix_zx))
 
     def add_shift(self, x: float, z: float, c: float) -> ProgrammedFrame:
         """Return the frame with its zero shifted by a distance in the program frame."""
-        dx, dz = self.transform_distance(x, z)
+        dx, dz = self.convert_to_machine_distance(x, z)
         return self._replace(shift_x=self.shift_x + dx, shift_z=self.shift_z + dz, shift_c=self.shift_c + c)
 
     def add_rotation(self, angle_deg: float) -> ProgrammedFrame:
@@ -68,6 +70,8 @@ class ProgrammedFrame(NamedTuple):
 
     def _by(self, xx: float, xz: float, zx: float, zz: float) -> ProgrammedFrame:
         return self._replace(
-            xx=self.xx * xx + self.xz * zx, xz=self.xx * xz + self.xz * zz,
-            zx=self.zx * xx + self.zz * zx, zz=self.zx * xz + self.zz * zz,
-        )  # fmt: skip
+            matrix_xx=self.matrix_xx * xx + self.matrix_xz * zx,
+            matrix_xz=self.matrix_xx * xz + self.matrix_xz * zz,
+            matrix_zx=self.matrix_zx * xx + self.matrix_zz * zx,
+            matrix_zz=self.matrix_zx * xz + self.matrix_zz * zz,
+        )

@@ -10,7 +10,7 @@ from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.formula_values import convert_to_whole_number
 from core.interpreter.shared.interpretation import ToolUsage
 from core.interpreter.shared.job_setup import ToolOffset
-from core.interpreter.sinumerik.sinumerik_state import State
+from core.interpreter.sinumerik.sinumerik_state import SinumerikState
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.sinumerik.sinumerik_words import VALUE_RANGES, Word
 from core.language.sinumerik.word_values import find_violated_limits
@@ -18,18 +18,18 @@ from core.message import Message
 from core.tool_edges import (
     EDGE_NUMBERS,
     FIRST_NAMED_TOOL,
-    NamedTool,
+    NamedToolNumber,
     format_edge_name,
     get_edge_number,
     get_tool_number,
-    make_row_number,
+    make_edge_row_number,
 )
 
 WRONG_TOOL_NUMBER = 17190
 WRONG_EDGE_NUMBER = 17180
 
 
-def execute_tool_words(state: State, statement: Statement, usage: ToolUsage) -> Iterator[Block]:
+def execute_tool_words(state: SinumerikState, statement: Statement, usage: ToolUsage) -> Iterator[Block]:
     """Yield the blocks of the tool words T and D.
 
     T without D selects the tool with D1, and D0 cancels the offset. A tool without an offset only causes a
@@ -60,10 +60,10 @@ def execute_tool_words(state: State, statement: Statement, usage: ToolUsage) -> 
     _activate_edge(state, statement, number, wanted if number else 0, usage)
     if tool is not None or state.modal.tool != before:
         text = " ".join(word.text for word in (tool, edge) if word is not None)
-        yield state.action(statement.line.number, text, ToolChange(state.modal.tool))
+        yield state.action(statement.lexed_block.line_number, text, ToolChange(state.modal.tool))
 
 
-def _number(state: State, statement: Statement, word: Word) -> int:
+def _number(state: SinumerikState, statement: Statement, word: Word) -> int:
     if not word.quoted_name:
         value = state.compute_word_value(statement, word)
         whole = convert_to_whole_number(value)
@@ -88,10 +88,10 @@ def _number(state: State, statement: Statement, word: Word) -> int:
             return get_tool_number(key)
     if wanted not in state.names:
         state.names.append(wanted)
-    return NamedTool(FIRST_NAMED_TOOL + state.names.index(wanted), word.quoted_name)
+    return NamedToolNumber(FIRST_NAMED_TOOL + state.names.index(wanted), word.quoted_name)
 
 
-def _edge(state: State, statement: Statement, word: Word) -> int:
+def _edge(state: SinumerikState, statement: Statement, word: Word) -> int:
     whole = convert_to_whole_number(state.compute_word_value(statement, word))
     text = "{word}: cutting edges are D1 to D9; D0 deselects the cutting edge."
     if whole is None or (whole and whole not in EDGE_NUMBERS):
@@ -99,9 +99,11 @@ def _edge(state: State, statement: Statement, word: Word) -> int:
     return whole
 
 
-def _activate_edge(state: State, statement: Statement, number: int, edge: int, usage: ToolUsage) -> None:
+def _activate_edge(
+    state: SinumerikState, statement: Statement, number: int, edge: int, usage: ToolUsage
+) -> None:
     """Activate the cutting edge with this number, which is 0 for D0 and T0."""
-    key = make_row_number(
+    key = make_edge_row_number(
         number,
         edge or get_edge_number(state.modal.tool) if number == get_tool_number(state.modal.tool) else edge,
     )
@@ -112,11 +114,11 @@ def _activate_edge(state: State, statement: Statement, number: int, edge: int, u
         name for name, a, b in (("X", moved.x, other.x), ("Z", moved.z, other.z)) if a != b
     }
     state.edge = offset
-    state.set_modal(state.modal._replace(tool=key if number else 0, edge=edge))
+    state.set_modal_state(state.modal._replace(tool=key if number else 0, edge=edge))
     state.derive_offsets()
 
 
-def _offset(state: State, statement: Statement, key: int, usage: ToolUsage) -> ToolOffset:
+def _offset(state: SinumerikState, statement: Statement, key: int, usage: ToolUsage) -> ToolOffset:
     """Return the offset of a cutting edge.
 
     Raises ProgramError if the tool has offsets but not for this edge. If the tool has no offset, a warning

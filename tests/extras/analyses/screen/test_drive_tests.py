@@ -95,10 +95,10 @@ def test_completed_drive_test_is_recorded_with_results(
     found = page.model.results
     assert found is not None
     assert [each.step_size_mm for each in found.step_responses] == pytest.approx([SIZE, -SIZE])
-    assert page.model.saved_record_text.startswith(text("jog.drive-test-of", axis="Z", kind="step"))
-    assert (page.model.scope.recording_store.folder / page.model.saved_record_text).exists()
+    assert page.model.saved_record_name.startswith(text("jog.drive-test-of", axis="Z", kind="step"))
+    assert (page.model.scope.recording_store.folder / page.model.saved_record_name).exists()
     kept = page.model.scope.recording_store.read_recording(
-        page.model.scope.recording_store.folder / page.model.saved_record_text
+        page.model.scope.recording_store.folder / page.model.saved_record_name
     )
     assert text("jog.drive-test") in kept.about
     titles = [page.model.make_table().rows[0].cells[0]]

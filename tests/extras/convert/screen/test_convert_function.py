@@ -9,7 +9,7 @@ import pytest
 from app.compose.runs.journal import Journal
 from app.desk.desk import Desk
 from app.extras.convert.convert_function import ConvertFunction
-from app.special.special_view import SpecialPage
+from app.special.special_view import SpecialFunctionsPage
 from core.language.diagnostics import Severity
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
@@ -39,7 +39,7 @@ def load(hands: Hands, path: Path) -> None:
 def open_function(hands: Hands) -> ConvertFunction:
     hands.key(Key.Key_F10)
     page = hands.frame.current_page
-    assert isinstance(page, SpecialPage)
+    assert isinstance(page, SpecialFunctionsPage)
     names = [each.name for each in page.model.functions]
     page._enter(names.index("CONVERT PROGRAM"))
     function = page.model.shown_function

@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtCore import Qt
 
 from app.editor.editor_modes import EditorMode
-from app.extras.drawings.drawing_form import AddedDrawingForm
+from app.extras.drawings.drawing_form import AdditionalDrawingForm
 from core.extras.drawings import drawing_process
 from tests.extras.drawings.hand import chain, dxf
 from tests.extras.shapes.screen.panel import shapes_of
@@ -22,7 +22,7 @@ STEP = ((0, 0), (0, 4), (-10, 4), (-10, 6), (-20, 6), (-20, 0))
 
 def labels(writer: Writer) -> dict[int, str]:
     """The function keys of the form."""
-    return {number: key.label for number, key in shapes_of(writer).model.function_keys().items()}
+    return {number: key.label for number, key in shapes_of(writer).model.make_function_keys().items()}
 
 
 @pytest.mark.parametrize("key", [Key.Key_Escape, Key.Key_F6])
@@ -33,8 +33,8 @@ def test_a_process_that_hangs_is_canceled(
     path.write_text("hang")
     monkeypatch.setattr(drawing_process, "_CHILD", "tests.extras.drawings.hostile_child")
     writer.new("shaped")
-    model, drawing = shapes_of(writer).model, AddedDrawingForm(lambda: {"part.dxf": path})
-    model.added_forms = (drawing,)
+    model, drawing = shapes_of(writer).model, AdditionalDrawingForm(lambda: {"part.dxf": path})
+    model.additional_forms = (drawing,)
     writer.key(Key.Key_F3, SHIFT)
     writer.sees(lambda: writer.editor.mode is EditorMode.PANEL)
     writer.type("x")
@@ -56,11 +56,11 @@ def test_a_process_that_hangs_is_canceled(
 def test_the_drawing_is_seen_when_its_form_opens(writer: Writer) -> None:
     """The number pad of the form before lay over it at 1024x600, where the contour is to be picked."""
     writer.new("shaped")
-    shapes_of(writer).model.added_forms = (AddedDrawingForm(dict),)
+    shapes_of(writer).model.additional_forms = (AdditionalDrawingForm(dict),)
     writer.key(Key.Key_F3, SHIFT)
     writer.sees(lambda: writer.editor.mode is EditorMode.PANEL)
     writer.key(Key.Key_F9)
-    assert shapes_of(writer).model.is_pad_visible
+    assert shapes_of(writer).model.is_number_pad_visible
     writer.type("x")
     writer.sees(lambda: shapes_of(writer).model.form is not None)
-    assert not shapes_of(writer).model.is_pad_visible
+    assert not shapes_of(writer).model.is_number_pad_visible

@@ -73,7 +73,7 @@ def added(day: Day, program: str, parts: str) -> None:
     day.sees(lambda: program in "".join(row.cells[0] for row in page.model.make_table().rows))
     day.key(Key.Key_F10)
     assert day.page == "JOBS"
-    assert model(day).make_table(day.shot).question == wording("screen.how-many-parts", program=program)
+    assert model(day).make_table(day.shot).entry_prompt == wording("screen.how-many-parts", program=program)
     day.enter(parts)
     day.sees(lambda: len(watch(day).jobs) == before + 1)
 
@@ -104,7 +104,7 @@ def test_job_queue_is_completed_without_automatic_starts(day: Day) -> None:
     assert rows(day) == [("peg.nc\n", "0/2"), ("cap.nc\n", "0/5")]
     day.key(Key.Key_Up)
     loaded(day, "peg.nc")
-    assert day.desk.program_runs.part_counter.count_text == "0/2"
+    assert day.desk.program_runs.part_counter.part_count_text == "0/2"
     day.key(Key.Key_C)  # cycle repeat
     day.palms()
     day.reaches(MachineState.RUN)
@@ -135,7 +135,7 @@ def test_job_queue_is_completed_without_automatic_starts(day: Day) -> None:
     day.key(Key.Key_Down)
     loaded(day, "cap.nc")
     assert day.desk.program_loader.loaded_program.name == "cap.nc"
-    assert day.desk.program_runs.part_counter.count_text == "0/5"
+    assert day.desk.program_runs.part_counter.part_count_text == "0/5"
     assert day.desk.page_registry.find_notice(day.shot) is None
 
 
@@ -152,9 +152,9 @@ def test_missing_tool_is_reported_in_the_queue(day: Day) -> None:
     day.desk.offset_book.change_fields(
         OffsetKind.TOOL, 2, {"x": -12.7, "z": -50.8, "nose_radius": 0.4, "quadrant": 3}, "touched off"
     )
-    day.store.write(lambda c: tool_lives.save_limits(c, ToolLifeRow(2, 40, stops=True))).result(60)
-    day.store.write(lambda c: tool_lives.save_use(c, 2, 28, 100.0)).result(60)
-    watch(day).parts_watch.parts_book.request_reload()
+    day.store.write(lambda c: tool_lives.save_tool_life_limits(c, ToolLifeRow(2, 40, stops=True))).result(60)
+    day.store.write(lambda c: tool_lives.save_insert_use(c, 2, 28, 100.0)).result(60)
+    watch(day).parts_watch.production_records.request_reload()
     day.sees(lambda: lacking() == [wording("screen.life-left", left=12, parts=50)])
     day.key(Key.Key_F4)
     day.enter("12")
@@ -163,8 +163,8 @@ def test_missing_tool_is_reported_in_the_queue(day: Day) -> None:
 
 
 def test_tool_tip_changed_since_the_last_run_is_reported(day: Day) -> None:
-    day.store.runs.record_start("peg.nc").result(60)
-    started = day.store.runs.read_records()[0].started
+    day.store.runs.record_run_start("peg.nc").result(60)
+    started = day.store.runs.read_run_records()[0].started
     assert started is not None
     day.sees(lambda: get_utc_now_text() > started)  # of one millisecond are what was set and what ran with it
     day.desk.offset_book.change_fields(
@@ -250,7 +250,7 @@ def test_part_counter_uses_the_count_of_the_job(day: Day) -> None:
     day.key(Key.Key_F10)
     day.enter("2", "7")
     assert day.prompt == wording("screen.job-has-own-count")
-    assert day.desk.program_runs.part_counter.final_count == 3
+    assert day.desk.program_runs.part_counter.effective_target_count == 3
 
 
 def test_missing_job_program_is_reported(day: Day, tmp_path: Path) -> None:
@@ -262,7 +262,7 @@ def test_missing_job_program_is_reported(day: Day, tmp_path: Path) -> None:
 
 
 def test_queue_is_disabled_and_reports_why_without_a_store(day: Day) -> None:
-    watch(day).parts_watch.parts_book.use_store(None, "THE DISK IS GONE")
+    watch(day).parts_watch.production_records.switch_store(None, "THE DISK IS GONE")
     day.run(0.05)
     opened(day)
     day.key(Key.Key_F3)
@@ -282,7 +282,7 @@ def test_job_program_that_is_not_loaded_is_proved_and_loaded(day: Day) -> None:
     opened(day)
     day.sees(lambda: model(day).make_table(day.shot).rows[0].cells[4] == wording("screen.tool-complete"))
     loaded(day, "peg.nc")
-    day.sees(lambda: day.desk.program_runs.part_counter.count_text == "0/3")
+    day.sees(lambda: day.desk.program_runs.part_counter.part_count_text == "0/3")
 
 
 def test_empty_queue_says_how_to_add_a_job(day: Day) -> None:
@@ -295,8 +295,8 @@ def test_open_job_prompt_must_be_completed_before_another_key_acts(day: Day) -> 
     """F4 while the count of a new job is typed had asked for the count of the marked one."""
     added(day, "cap.nc", "5")
     day.key(Key.Key_F3)
-    assert model(day).make_table(day.shot).question == wording("screen.how-many-parts", program="peg.nc")
-    assert model(day).function_keys() == {}
+    assert model(day).make_table(day.shot).entry_prompt == wording("screen.how-many-parts", program="peg.nc")
+    assert model(day).make_function_keys() == {}
     day.key(Key.Key_F4)
     day.enter("2")
     day.sees(lambda: rows(day) == [("cap.nc\n", "0/5"), ("peg.nc\n", "0/2")])

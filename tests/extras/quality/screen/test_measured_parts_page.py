@@ -12,11 +12,11 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.desk.pages.table_content import TableContent
-from app.extras.quality.quality_setup import QualityFunctions
+from app.extras.quality.quality_setup import QualitySectionList
 from app.extras.quality.quality_view import MeasuredPartsPage
 from app.extras.quality.readings_section import ReadingsSection
 from app.extras.quality.serial_gauge import GaugeReading, NoGauge
-from app.production.parts_watch import PartsWatch
+from app.production.parts_watch import ProductionMonitor
 from core.executor.snapshot import MachineState
 from tests.screen.day import Day, Key, begun
 from tests.screen.yes import yes
@@ -42,8 +42,8 @@ def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
         yield day
 
 
-def model(day: Day) -> QualityFunctions:
-    found = day.desk.page_registry.find_model(QualityFunctions)
+def model(day: Day) -> QualitySectionList:
+    found = day.desk.page_registry.find_model(QualitySectionList)
     assert found is not None
     return found
 
@@ -61,9 +61,9 @@ def section(day: Day, number: str) -> None:
 
 def settled(day: Day) -> bool:
     """What is known is what is kept."""
-    watch = day.desk.page_registry.find_model(PartsWatch)
+    watch = day.desk.page_registry.find_model(ProductionMonitor)
     assert watch is not None
-    return watch.parts_book.is_settled
+    return watch.production_records.is_up_to_date
 
 
 def sheet(day: Day) -> TableContent:
@@ -252,15 +252,15 @@ def test_effect_of_a_correction_is_shown_before_it_is_applied(day: Day) -> None:
     day.key(Key.Key_F8)
     asked = day.prompt
     day.sees(lambda: sheet(day).title.startswith(wording("screen.effect-on-part")))
-    (diameter,) = [row.cells for row in sheet(day).rows if row.is_lit]
+    (diameter,) = [row.cells for row in sheet(day).rows if row.is_lamp_lit]
     assert diameter[1:] == ("0.50000", "0.49940", "−0.00060")
     (plot,) = shown.make_chart().plots
     taken, now, then = plot.curves
     assert list(taken.values) == pytest.approx([0.5012, 0.5012])
     assert list(now.values) == pytest.approx([0.5012, 0.5012])
     assert list(then.values) == pytest.approx([0.5006, 0.5006])
-    assert then.part_numbers[0] == taken.part_numbers[-1] + 1.0
-    assert [each.value for each in plot.levels] == pytest.approx([0.5, 0.499, 0.501])
+    assert then.part_sequence_numbers[0] == taken.part_sequence_numbers[-1] + 1.0
+    assert [each.value for each in plot.horizontal_lines] == pytest.approx([0.5, 0.499, 0.501])
     assert shown.chart_share > 0.0
     assert (day.prompt, day.store.offsets.tool_offsets.read_rows()[1].wear_x) == (asked, 0.0)
     day.key(Key.Key_Escape)
@@ -287,10 +287,10 @@ def test_parts_made_before_a_correction_do_not_propose_another(day: Day) -> None
     measured(day, ".5012")
     day.key(Key.Key_Escape)
     day.key(Key.Key_F8)
-    watch, read = day.desk.page_registry.find_model(PartsWatch), Event()
+    watch, read = day.desk.page_registry.find_model(ProductionMonitor), Event()
     assert watch is not None
     yes(day.window)
-    watch.parts_book.worker.enqueue_work(lambda: read.wait(60.0), lambda _read: None, day.desk.say)
+    watch.production_records.worker.enqueue_work(lambda: read.wait(60.0), lambda _read: None, day.desk.say)
     day.sees(lambda: not day.desk.offset_book.is_saving)
     day.key(Key.Key_Escape)
     day.key(Key.Key_F8)

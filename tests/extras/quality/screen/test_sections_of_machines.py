@@ -8,10 +8,10 @@ import pytest
 
 from app.compose.desk_assembly import create_desk_and_executor
 from app.compose.program_proving import get_samples_folder
-from app.compose.stored_offsets import read_offsets
+from app.compose.stored_offsets import read_offsets_file
 from app.extras.quality.charts_and_trends import TrendsSection
 from app.extras.quality.features_section import FeaturesSection
-from app.extras.quality.quality_setup import QualityFunctions
+from app.extras.quality.quality_setup import QualitySectionList
 from app.screen.page_table import map_menu_keys
 from drivers.wakeups import ManualClock
 from tests.attached import attached
@@ -23,9 +23,9 @@ def test_correction_choices_depend_on_the_machine(tmp_path: Path, monkeypatch: p
     found = {}
     for name in ("gt75", "sinumerik-live", "ac-table-mill"):
         desk, _executor = create_desk_and_executor(
-            name, lambda: read_offsets(get_samples_folder() / "offsets.toml"), ManualClock()
+            name, lambda: read_offsets_file(get_samples_folder() / "offsets.toml"), ManualClock()
         )
-        pages = attached(desk, QualityFunctions)
+        pages = attached(desk, QualitySectionList)
         features, readings, *_, trends = pages.functions
         assert isinstance(features, FeaturesSection)
         assert isinstance(trends, TrendsSection)

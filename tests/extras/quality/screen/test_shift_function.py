@@ -7,7 +7,7 @@ import pytest
 from app.compose.runs.journal import Journal
 from app.desk.data_folder import find_data_folder
 from app.desk.desk import Desk
-from app.special.special_view import SpecialPage
+from app.special.special_view import SpecialFunctionsPage
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands, Key
@@ -20,14 +20,14 @@ def desk(machine: FakeMachine, journal: Journal) -> Desk:
     return desk_on(machine, keep=journal)
 
 
-def cells(page: SpecialPage, row: int) -> tuple[str, ...]:
+def cells(page: SpecialFunctionsPage, row: int) -> tuple[str, ...]:
     return page.table_panel.table.rows[row].cells
 
 
 def test_shift_report_is_created_and_saved(hands: Hands) -> None:
     hands.key(Key.Key_F10)
     page = hands.frame.current_page
-    assert isinstance(page, SpecialPage)
+    assert isinstance(page, SpecialFunctionsPage)
     page._enter([each.name for each in page.model.functions].index("SHIFT REPORT"))
     hands.sees(lambda: bool(page.table_panel.table.rows) and cells(page, 0) == ("Parts", "0"))
     hands.key(Key.Key_F3)

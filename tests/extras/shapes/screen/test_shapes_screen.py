@@ -189,13 +189,13 @@ def test_touch_targets_over_the_text_open_their_function(writer: Writer) -> None
     keyboard, shapes, sums = range(3)
     assert len({box.x() for box, *_ in head._places}) == len(head._places) == 3
     touch(writer, head, shapes)
-    assert (writer.editor.mode, shapes_of(writer).model.lists_shapes) == (EditorMode.PANEL, True)
+    assert (writer.editor.mode, shapes_of(writer).model.is_listing_shapes) == (EditorMode.PANEL, True)
     shapes_of(writer).refresh()
     assert shapes_of(writer).rows_panel.heading.startswith("SHAPES")
     touch(writer, head, shapes)
     assert writer.editor.mode is EditorMode.TEXT
     touch(writer, head, sums)
-    assert (writer.editor.mode, shapes_of(writer).model.lists_shapes) == (EditorMode.PANEL, False)
+    assert (writer.editor.mode, shapes_of(writer).model.is_listing_shapes) == (EditorMode.PANEL, False)
     shapes_of(writer).refresh()  # the list of before stood there, and another form was opened by a touch
     assert shapes_of(writer).rows_panel.heading == wording("shapes.calculators")
     assert "TRIANGLE" in shapes_of(writer).rows_panel.displayed_rows[0].label

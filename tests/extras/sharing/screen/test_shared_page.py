@@ -60,7 +60,7 @@ def sharing(day: Day, other: ProgramSharing, tmp_path: Path) -> ProgramSharing:
     before.close()
     day.desk.page_registry.attach_model(SharingModel(day.desk, made))
     made.synchronize()
-    other.copy_version(other.synchronize().programs["peg.nc"].newest_versions[0])
+    other.copy_version(other.synchronize().versions_by_program["peg.nc"].newest_versions[0])
     (tmp_path / "other" / "programs" / "peg.nc").write_text(BETTER)
     other.synchronize()
     made.synchronize()
@@ -169,7 +169,7 @@ def test_change_to_the_loaded_program_is_reported_once(day: Day, sharing: Progra
     )  # on the sharing thread: a question is not spoilt in the middle of being asked
     assert day.desk.prompt_notice == "PRESS Y TO DELETE IT"
     day.desk.update()
-    assert (day.desk.prompt_answers.message, day.desk.prompt_answers.question_text) == (
+    assert (day.desk.prompt_line.message, day.desk.prompt_line.question_text) == (
         wording("screen.changed-elsewhere", name="peg.nc", desk="LATHE 2"),
         "PRESS Y TO DELETE IT",
     )
