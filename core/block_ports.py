@@ -24,7 +24,7 @@ class LineOperation(NamedTuple):
 class ArcOperation(NamedTuple):
     """An arc from ``start_x start_z`` to ``x z`` around the center ``center_x center_z``.
 
-    ``is_clockwise`` has the same meaning as in elementary blocks: the direction from Z+ to X+.
+    ``is_clockwise`` is defined as in elementary blocks: clockwise is the direction from Z+ to X+.
     """
 
     start_x: float
@@ -102,7 +102,7 @@ class BlockController(Protocol):
         ...
 
     def submit_block(self, block: BlockOperation) -> int | None:
-        """Submit a block; return its ticket number, or None if the block queue cannot accept it now.
+        """Submit a block; return its ticket number, or None if the block cannot be accepted now.
 
         Raises DriverError if the driver fails.
         """
@@ -125,7 +125,7 @@ class BlockController(Protocol):
         ...
 
     def set_overrides(self, feed_fraction: float, rapid_fraction: float) -> None:
-        """Set the overrides as fractions of the programmed speeds, greater than 0.
+        """Set the overrides as factors of the programmed speeds, greater than 0.
 
         The driver verifies that the controller has accepted them.
         """
@@ -136,7 +136,7 @@ class BlockController(Protocol):
     ) -> bool:
         """Start a jog or renew its lease; return False if no travel remains within ``limits``.
 
-        No motion is queued beyond the end of the lease. Raises DriverError if the driver fails.
+        No motion is queued that lasts longer than the lease. Raises DriverError if the driver fails.
         """
         ...
 

@@ -56,7 +56,7 @@ def run_steps_in_parallel(steps: Iterable[ClosingStep], wait: WaitFunction = wai
 
 
 class _RunningStep:
-    """A closing step that has started."""
+    """A closing step that is running or has ended."""
 
     def __init__(self, step: ClosingStep) -> None:
         self.step = step
@@ -70,7 +70,7 @@ class _RunningStep:
         return self._done.is_set()
 
     def wait_for_success(self, seconds: float, wait: WaitFunction) -> bool:
-        """Wait for the step to end; return whether it succeeds within its time limit."""
+        """Wait until the step ends; return whether it succeeded within its time limit."""
         if not wait(self.step.name, self._done, seconds):
             _log.error("closing: %s does not end within %g s", self.step.name, self.step.timeout_s)
             return False

@@ -117,9 +117,10 @@ SPINDLE_TURNS = "spindle-turns"
 
 
 class TrippedError(DriverError):
-    """An error raised by a tripped driver host, which rejects commands.
+    """An error raised if a tripped driver host rejects a command.
 
-    The driver host has switched something off. It rejects commands until the trip is acknowledged. See
+    The driver host has stopped the machine because it received no messages from the control. It rejects
+    setpoints and commands that switch something on until the trip is acknowledged. See
     ``TrippingDriverHost``.
     """
 

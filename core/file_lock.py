@@ -150,7 +150,7 @@ def remove_abandoned_files(folder: Path) -> None:
 
 
 def _opened(path: Path) -> int:
-    """Return a file handle for locking the path, or -1 if the system cannot open the file."""
+    """Return a file descriptor for locking the path, or -1 if the system cannot open the file."""
     try:
         return os.open(path, os.O_RDONLY)
     except OSError:

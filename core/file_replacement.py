@@ -30,7 +30,7 @@ def write_atomically(path: Path, data: bytes) -> None:
     """Write ``data`` to a file in one step; create its folder if necessary.
 
     ``path`` always refers to either the complete old file or the complete new file. A failed write leaves
-    no temporary file. Raises OSError.
+    no temporary file. Raises OSError if the file cannot be written.
     """
     create_synced_folder(path.parent)
     unfinished = path.with_name(f".{path.name}.new")
@@ -58,7 +58,7 @@ def move_folder_into_place(finished: Path, folder: Path) -> None:
 
 
 def create_synced_folder(folder: Path) -> None:
-    """Create a folder and its parents, and sync each new name to the disk. Raises OSError."""
+    """Create a folder and its parents, and sync each name to the disk. Raises OSError on failure."""
     if folder.is_dir():
         return
     create_synced_folder(folder.parent)
@@ -67,7 +67,7 @@ def create_synced_folder(folder: Path) -> None:
 
 
 def sync_folder(folder: Path) -> None:
-    """Sync the file names in a folder to the disk. Raises OSError."""
+    """Sync the file names in a folder to the disk. Raises OSError on failure."""
     if sys.platform == "win32":
         return  # Windows cannot open folders, but journals their names
     handle = os.open(folder, os.O_RDONLY)
@@ -87,7 +87,7 @@ def sync_all_files() -> None:
 
 
 def sync_file(path: Path) -> None:
-    """Sync the contents of a file to the disk. Raises OSError."""
+    """Sync the contents of a file to the disk. Raises OSError on failure."""
     # Windows syncs only files that are open for writing. On other systems the file may be read-only.
     with path.open("r+b" if sys.platform == "win32" else "rb") as file:
         os.fsync(file.fileno())

@@ -113,7 +113,7 @@ def _joined(path: str, name: str) -> str:
 
 
 def _collect_paths(declared: Collection[JsonKey]) -> frozenset[str]:
-    """Return every declared path and the paths of the objects that contain it."""
+    """Return every declared path, and the paths of the objects that contain the declared keys."""
     known = set[str]()
     for key in declared:
         parts = key.name.split(".")

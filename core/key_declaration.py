@@ -81,7 +81,7 @@ Words = str  # a list of words, stored as one text separated by spaces
 
 
 class ValueKind(Enum):
-    """Kinds of values, with the descriptions that findings show."""
+    """Kind of a machine file value, with the description that findings show."""
 
     NUMBER = "a number"
     INTEGER = "a whole number"
@@ -127,7 +127,7 @@ class KeyRange(NamedTuple):
 
 
 class _Key(NamedTuple):
-    """A declared key before its class is complete, stored as the attribute's default.
+    """A key declaration. Until the class is complete, it is stored as the default of the attribute.
 
     If ``name`` is empty, the key has the name of the attribute.
     """
@@ -194,7 +194,7 @@ KeySchema = type | tuple[KeyField, ...]  # a class that declares keys, or the ke
 
 
 def get_declared_keys(table: KeySchema) -> tuple[KeyField, ...]:
-    """Return the keys that a class declares, in order."""
+    """Return the keys that a class declares, in the order of declaration."""
     return table if isinstance(table, tuple) else _keys_of_class(table)
 
 

@@ -41,7 +41,7 @@ class Message(str):
         return made
 
     def __str__(self) -> str:
-        """Return the message itself, so that the text of an exception retains its template and values."""
+        """Return the message itself, not a plain string, so that it retains its template and values."""
         return self
 
     def __reduce__(self) -> tuple[object, ...]:
@@ -165,8 +165,7 @@ def _unpacked(stored: object) -> Any:
 class CodedError(Exception):
     """An error with a text for users and a code for programs and tests.
 
-    ``code`` identifies the fault in kebab case, such as ``disk-full``. ``code`` is empty if no code is
-    needed.
+    ``code`` identifies the fault in kebab case, such as ``disk-full``, or is empty if no code is needed.
     """
 
     def __init__(self, text: str = "", code: str = "") -> None:
@@ -177,7 +176,7 @@ class CodedError(Exception):
 def get_error_code(error: BaseException) -> str:
     """Return the code of an error, or an empty string if the error has no code.
 
-    A caller that raises another error instead passes this code on.
+    A caller that raises another error in its place uses the same code.
     """
     return error.code if isinstance(error, CodedError) else ""
 

@@ -26,7 +26,7 @@ ALL_UNKNOWN_PARTS = faults.ALL_UNKNOWN_PARTS
 
 
 class StopMode(StrEnum):
-    """Stop modes of the axes: power off at once, brake and power off, or brake and hold position."""
+    """Stop modes of the axes: remove power at once, brake and remove power, or brake and keep power."""
 
     OFF = "off"
     RAMP_OFF = "ramp-off"
@@ -71,7 +71,7 @@ def is_queue_finished(queue_end: float, now: float) -> bool:
 
 
 class AxisSample(NamedTuple):
-    """State of the axes at one instant, with tuples in the axis order of the sink."""
+    """State of the axes at one time; the tuples are in the axis order of the axis sink."""
 
     t: float
     demand: tuple[float, ...]
@@ -107,7 +107,7 @@ class SampleSource(Protocol):
 
 
 class AxisSink(Protocol):
-    """Destination of axis setpoints, whose queue always contains a complete path that ends at rest."""
+    """Interface for axis setpoints, whose queue always contains a complete path that ends at rest."""
 
     axes: tuple[str, ...]
     commit: float  # nothing before now() + commit can be changed any more
@@ -117,7 +117,10 @@ class AxisSink(Protocol):
         ...
 
     def horizon(self) -> float:
-        """Return the end time of the setpoint queue, which is not before now() while motion is queued."""
+        """Return the end time of the setpoint queue in seconds.
+
+        While motion is queued, this time is not earlier than now().
+        """
         ...
 
     def splice(self, segments: MotionSegments) -> None:
@@ -155,7 +158,7 @@ class AxisSink(Protocol):
         ...
 
     def home(self, axis: str) -> None:
-        """Start homing an axis; ``sample`` reports its end.
+        """Start homing an axis; ``sample`` reports when homing has ended.
 
         Raises DriverError if homing cannot start, for example without power or while an axis is moving.
         """
@@ -199,10 +202,10 @@ class SpindleCAxis(Protocol):
     def set_c_mode(self, is_enabled: bool, should_orient: bool = False) -> None:
         """Request C-axis mode or spindle mode; the position count of C is retained.
 
-        If ``should_orient`` is True, the spindle turns by the shortest path until its position count, apart
-        from whole revolutions, equals its angle from the index. A request for C-axis mode raises
-        DriverError while the spindle turns, with the reason SPINDLE_TURNS, and if the spindle has no power
-        or C has a fault.
+        If ``should_orient`` is True, the spindle then turns by the shortest path until the angle of the
+        position count equals the spindle angle from the index (modulo 360°). A request for C-axis mode
+        raises DriverError if the spindle turns (reason SPINDLE_TURNS), if it has no power, or if C has a
+        fault.
         """
         ...
 
@@ -221,8 +224,8 @@ class OrientingSpindle(Protocol):
         """Turn the spindle to ``angle`` in degrees from its index, from 0 to less than 360.
 
         The angle increases in the direction of M03. ``direction`` is 1 for the direction of M03, -1 for the
-        direction of M04, or 0 for the shortest path. Raises DriverError while the spindle turns, with the
-        reason SPINDLE_TURNS, has no power or has a fault.
+        direction of M04, or 0 for the shortest path. Raises DriverError if the spindle turns (reason
+        SPINDLE_TURNS), has no power or has a fault.
         """
         ...
 
@@ -240,9 +243,9 @@ class Cam(NamedTuple):
 
     ``segments.start_times_s`` and ``segments.durations_s`` are revolutions from the encoder count
     ``start_revolutions`` on, in the direction ``sign`` of the spindle. ``segments.velocities`` and
-    ``segments.accelerations`` are per revolution. The axes are at rest before the start and after the end
-    of the cam. ``following_segments`` continue from that end as a function of time; their ``start_times_s``
-    are seconds from there.
+    ``segments.accelerations`` are per revolution. The axes are at rest before and after the cam.
+    ``following_segments`` is motion as a function of time after the cam; its ``start_times_s`` are seconds
+    from the end of the cam.
     """
 
     start_revolutions: float
@@ -421,7 +424,7 @@ class Clock(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class MachinePorts:
-    """All ports that the executor uses, assembled in one place of the app."""
+    """All ports that the executor uses to access the machine, assembled in one place of the app."""
 
     clock: Clock
     axes: AxisSink

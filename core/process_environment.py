@@ -12,8 +12,8 @@ _FOLDER = str(Path(__file__).parents[1])
 def make_module_environment(**more: str) -> Mapping[str, str]:
     """Return environment variables with which ``python -m`` finds the modules of this TurnDesk first.
 
-    They are necessary because an installed TurnDesk has its packages in a folder that is not in the module
-    path of other Python processes.
+    An installed TurnDesk has its packages in a folder that is not in the module path of other Python
+    processes.
     """
     path = os.environ.get("PYTHONPATH", "")
     return {**os.environ, **more, "PYTHONPATH": os.pathsep.join(filter(None, (_FOLDER, path)))}

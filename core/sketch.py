@@ -21,7 +21,7 @@ class Outline:
 class Dimension:
     """A dimension from ``start`` to ``end``, drawn at ``line_distance`` from these points.
 
-    If ``end`` is None, the dimension is a number at ``start``. ``field_label`` is the label of the input
+    If ``end`` is None, only the number is drawn, at ``start``. ``field_label`` is the label of the input
     field with the value. ``prefix`` is a symbol in front of the number.
     """
 

@@ -79,9 +79,9 @@ class TableDescription:
 
 
 class FileValues:
-    """Values of a machine file by path, in the model's units.
+    """Values of a machine file by key path, in the units of the machine model.
 
-    Lengths can be read only if the file specifies its unit.
+    Lengths can be read only if the file specifies its unit of length.
     """
 
     def __init__(self, is_inch: bool | None) -> None:
@@ -158,8 +158,8 @@ class FileValues:
     ) -> _Model:
         """Return the dataclass object for a table without errors.
 
-        A field gets its value from ``given``, from the key that ``keys`` specifies for it, or from the key
-        of the same name.
+        The value of a field comes from ``given``, from the key that ``keys`` specifies for the field, or
+        from the key with the field's name.
         """
         keys = keys or {each.attribute: each.key for each in get_declared_keys(kind)}
         names = [field.name for field in fields_of(kind) if field.name not in given]
@@ -173,7 +173,10 @@ def join_path(path: str, key: str) -> str:
 
 
 def find_unknown_keys(table: Mapping[str, object], known: list[str], path: str) -> list[FileFinding]:
-    """Return a finding for every unknown key; it names the most similar known key or the replacement."""
+    """Return a finding for every unknown key.
+
+    The finding names the most similar known key, or the replacement if the key was removed.
+    """
     found = []
     for key in table:
         place = join_path(path, key)
@@ -274,7 +277,10 @@ def _is_words(raw: object) -> bool:
 
 
 def _parts(raw: object) -> list[float]:
-    """Return the numbers in a raw value; integers that are too large for a float become infinite."""
+    """Return the numbers in a raw value.
+
+    Integers that are too large for a float become infinite.
+    """
     numbers = [part for part in (raw if isinstance(raw, list) else [raw]) if _number(part)]
     return [float(part) if abs(part) < _HUGE else inf for part in numbers]
 
@@ -413,10 +419,10 @@ class DriverDeclaration:
       ``backend_name`` is empty for a driver that is used in addition to a backend.
     - ``can_orient_spindle`` means that the spindle can stop at an angle.
     - ``max_count_rate`` is the highest rate in counts per second that the driver accepts for an axis.
-    - ``normalize_terminal`` returns equal values for equivalent addresses, and None for an address of
-      another driver.
+    - ``normalize_terminal`` returns the same value for equivalent terminal addresses, and None for an
+      address of another driver.
     - ``inputs`` yields the possible input addresses in order.
-    - ``address_prefix`` is the prefix of addresses on the driver's device outside the backend.
+    - ``address_prefix`` is the prefix of the addresses of a device that is not part of the backend.
     """
 
     tables: tuple[DriverTable, ...]

@@ -28,7 +28,7 @@ FIRST_NAMED_TOOL = 32_768
 
 
 class NamedToolNumber(int):
-    """Number of a tool or cutting edge that a program calls by a name that is not in the tool table."""
+    """Number assigned to a tool or cutting edge whose name in the program is not in the tool table."""
 
     name: str
 

@@ -92,7 +92,7 @@ class PanelState:
             self._hold_until = now + self._pulse
 
     def is_state_constant(self, now: float) -> bool:
-        """Return whether the reported state will not change until the operator acts."""
+        """Return whether the reported state will not change before the next action of the operator."""
         pulse = now < self._hold_until or self.relay.will_output_turn_off(now)
         return self._silent is None and not self.noise_amplitude and not pulse
 
@@ -249,7 +249,7 @@ class OnScreenStation(StationControls):
 
 
 class PotSettings(Protocol):
-    """Pot settings in the machine file: the values at both ends and the input that enables the pot."""
+    """Settings of a potentiometer: the values at both ends, and the input that enables it."""
 
     @property
     def low_value(self) -> float:

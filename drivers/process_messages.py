@@ -1,6 +1,6 @@
 """Messages between two processes: two lengths, a JSON head, and numbers in binary form.
 
-The HAL bridge runs under the system's Python, so this module uses only the standard library.
+This module uses only the standard library, because the HAL bridge runs under the system's Python.
 """
 
 from __future__ import annotations

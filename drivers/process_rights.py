@@ -37,8 +37,8 @@ def lock_process_memory(*, only_used: bool = False) -> tuple[str, int]:
     """Lock the current and future memory of the process, and reduce garbage collection.
 
     Return the reason why locking failed (empty if it succeeded), and the limit of locked memory in bytes (0
-    if there is none). With ``only_used``, reserved memory is locked only when it is first used. With a
-    limit, only current memory is locked: with ``MCL_FUTURE``, the first allocation beyond the limit would
+    without a limit). With ``only_used``, reserved memory is locked only when it is first used. If there is
+    a limit, only current memory is locked. With ``MCL_FUTURE``, the first allocation above the limit would
     fail during a cut.
     """
     gc.collect()

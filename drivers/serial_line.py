@@ -72,7 +72,7 @@ class FlowControlTransport(SerialTransport, Protocol):
         ...
 
     def enable_xon_xoff(self) -> None:
-        """Let the other side stop and resume the output with XOFF (DC3) and XON (DC1).
+        """Let the connected device stop and resume the output with XOFF (DC3) and XON (DC1).
 
         If the line does not support flow control, these characters are returned as received data.
         """
@@ -124,7 +124,7 @@ _REMEDIES = {
 
 
 def why(error: Exception) -> str:
-    """Return how to fix a serial port error, or the system's error text if no remedy is known."""
+    """Return the remedy for a serial port error, or the system's error text if no remedy is known."""
     number = _error_number(error)
     if number is None and error.__context__ is not None:  # The library hides the cause in its own text.
         number = _error_number(error.__context__)

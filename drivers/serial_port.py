@@ -79,7 +79,8 @@ class SerialPort:
     """Serial port of this computer, opened for exclusive use.
 
     With ``count_damaged``, damaged characters are counted. If the port does not support seven bits with
-    parity, this class adds the parity bit in software; it then ignores XOFF and XON from the other side.
+    parity, this class adds the parity bit in software. It then ignores XOFF and XON from the connected
+    device.
     """
 
     def __init__(self, settings: LineSettings, *, count_damaged: bool = False) -> None:
@@ -127,8 +128,8 @@ class SerialPort:
     def send(self, data: bytes) -> None:
         """Send bytes.
 
-        Raises SerialLineError if the line has failed, or if the other side stops the output for more than
-        one second.
+        Raises SerialLineError if the line has failed, or if the connected device stops the output for more
+        than one second.
         """
         try:
             self._port.write(self._coded(data))
@@ -208,9 +209,9 @@ class SerialPort:
     def close(self) -> None:
         """Close the port.
 
-        If the other side has stopped the output, the remaining output is discarded, because closing would
-        block. Otherwise the output is not discarded, because some UARTs and pseudo terminals would then
-        also lose the bytes that they are transmitting.
+        If the connected device has stopped the output, the remaining output is discarded, because closing
+        would block. Otherwise the output is not discarded, because some UARTs and pseudo terminals would
+        then also lose the bytes that they are transmitting.
         """
         with suppress(*_FAILURES):  # A disconnected cable does not block.
             if not self._is_sending():
@@ -219,7 +220,10 @@ class SerialPort:
             self._port.close()
 
     def _is_sending(self) -> bool:
-        """Return whether the kernel is expected to transmit the remaining output within the usual time."""
+        """Wait briefly, and return whether the kernel has transmitted the remaining output.
+
+        The result is False if the output appears to be stopped.
+        """
         for _ in range(_ENDING):
             if not (left := self._port.out_waiting):
                 return True
@@ -281,7 +285,7 @@ if sys.platform != "win32":
         return bool(termios.tcgetattr(handle)[2] & _FRAME == wanted)
 
     def enable_kernel_flow_control(handle: int) -> None:
-        """Let XOFF and XON from the other side stop and resume the output in the kernel.
+        """Let XOFF and XON from the connected device stop and resume the output in the kernel.
 
         Raises termios.error if the port has failed.
         """

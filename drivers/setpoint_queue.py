@@ -20,17 +20,17 @@ _BATCH_SIZE = 100  # Pieces per step; their conversion takes 0.1 ms.
 
 
 def _do_nothing() -> None:
-    """Do nothing; default for a callback that yields the CPU."""
+    """Do nothing; this is the default callback for yielding the CPU to other work."""
 
 
 def convert_segments(
     segments: MotionSegments, axis_count: int, yield_cpu: Callable[[], None] = _do_nothing
 ) -> list[MotionPiece]:
-    """Convert segments into motion pieces.
+    """Convert motion segments into motion pieces.
 
-    ``yield_cpu`` is called repeatedly, because some drives cannot wait until thousands of pieces are
-    converted. Raises DriverError if an array has the wrong shape, a value is not finite or a duration is
-    negative.
+    ``yield_cpu`` is called repeatedly during the conversion, because some drives need commands before
+    thousands of pieces are converted. Raises DriverError if an array has the wrong shape, a value is not
+    finite or a duration is negative.
     """
     count = len(segments.start_times_s)
     shapes = {segments.positions.shape, segments.velocities.shape, segments.accelerations.shape}
@@ -80,7 +80,8 @@ def check_setpoint_limits(
 ) -> None:
     """Raise DriverError if a setpoint is too fast or outside the travel of a homed axis.
 
-    ``actual_positions`` permits an axis outside its travel to move back from its current position.
+    If ``actual_positions`` is specified, an axis outside its travel may move back from its current
+    position.
     """
     for n, axis in enumerate(axes):
         if abs(segments.velocities[:, n]).max(initial=0.0) > axis.vmax * 1.001 + 0.01:

@@ -1,6 +1,6 @@
-"""Time limits for the silence of another process, and the stop of a machine whose control is silent.
+"""Time limits for the silence of another process, and the stop that a silent control triggers.
 
-The HAL bridge runs under the system's Python, so this module uses only the standard library.
+This module uses only the standard library, because the HAL bridge runs under the system's Python.
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ _SPINDLE_STOP_S = 8.0  # Maximum wait in s for a spindle to brake.
 class SilenceTimer:
     """Timer of the time since the last message of another process.
 
-    Each check adds at most ``max_step_s``, so that a delay of this process counts only in part.
+    Each check adds at most ``max_step_s`` seconds, so that a delay of this process is not mistaken for a
+    silence of the other process.
     """
 
     def __init__(self, timeout_s: float, now: float = 0.0, max_step_s: float = math.inf) -> None:
@@ -40,7 +41,7 @@ class SilenceTimer:
         self._checked_at, self._silence_s = now, 0.0
 
     def measure(self, now: float) -> float:
-        """Return the silence in seconds without counting the time since the last check for later."""
+        """Return the duration of the silence in seconds, without updating the timer."""
         return self._silence_s + min(now - self._checked_at, self._max_step_s)
 
     def check(self, now: float) -> bool:
@@ -66,11 +67,11 @@ class StopSteps:
 
 
 class SilenceStop(SilenceTimer):
-    """The timer of the silence of a control, which stops the machine.
+    """Timer that stops the machine if its control is silent.
 
     The setpoint queue is executed to its end, where the axes are at rest. Then the spindle and the outputs
-    are switched off. If the control has ended, the drives are also switched off, and the stop is done when
-    the spindle is at standstill.
+    are switched off. If the control has ended, the drives are also switched off. The stop is then complete
+    when the spindle is at standstill.
     """
 
     def __init__(self, timeout_s: float, now: float, steps: StopSteps) -> None:

@@ -87,9 +87,10 @@ class GearAxes(NamedTuple):
 
 
 class CamSpeedLimit(NamedTuple):
-    """Limit of the spindle speed on a section of the cam, whose ends are in revolutions.
+    """Limit of the spindle speed on a section of the cam.
 
-    ``max_speed_squared`` is the square of the permitted speed in rev²/s².
+    The ends of the section are in revolutions. ``max_speed_squared`` is the square of the permitted speed
+    in rev²/s².
     """
 
     start_rev: float
@@ -117,8 +118,8 @@ class CamSpeedLimits:
     def get_max_speed_squared(self, position_rev: float, braking_rev: float) -> float:
         """Return the square of the permitted spindle speed at ``position_rev``, in rev²/s².
 
-        At this speed, the spindle can still slow down to each later limit by ``braking_rev`` revolutions
-        before that limit begins.
+        At this speed, the axes can still slow down to each later limit, ``braking_rev`` revolutions before
+        that limit begins.
         """
         near = position_rev + braking_rev
         ahead = bisect_right(self._begins, near)
@@ -133,7 +134,7 @@ class CamGearing:
     """Cam (a path over spindle revolutions) and the current position of the axes on it.
 
     The object is not thread-safe, so the driver must lock it. The axes start at ``rest_position``. Raises
-    DriverError if the spindle does not turn in the direction of the cam, and in the cases that
+    DriverError if the spindle does not turn in the direction of the cam, or for a reason that
     ``core.ports.SpindleGear`` lists.
     """
 
@@ -274,10 +275,11 @@ class CamGearing:
         self.cam_position_rev += self._speed * dt
 
     def _speed_and_accel_limit(self, reach: float) -> tuple[float, float]:
-        """Return the limits of spindle speed (rev/s) and acceleration (rev/s²) at the current position.
+        """Return the limits of spindle speed (rev/s) and acceleration (rev/s²) at this position.
 
-        The limits are inf where the axes are at rest. The speed also permits braking to each limit ahead,
-        ``reach`` revolutions before that limit, because a setpoint is valid for its whole interval.
+        The limits are inf where the axes are at rest. The speed limit also permits braking to each later
+        limit. Braking ends ``reach`` revolutions before that limit, because a setpoint is valid for its
+        whole interval.
         """
         _, per_turn, accel = self._queue.get_commanded_motion(self.cam_position_rev)
         bend = math.inf
@@ -348,8 +350,8 @@ class GearedQueue(SetpointQueue):
         """Make the axes follow the spindle from time ``now`` on.
 
         ``phase`` measures the spindle angle. If the axes already move on a cam, the new cam replaces the
-        rest of that cam. Raises DriverError if an axis is moving without a cam, and in the cases that
-        ``CamGearing`` and ``core.ports.SpindleGear`` list.
+        rest of that cam. Raises DriverError if an axis is moving without a cam, or for a reason that
+        ``CamGearing`` or ``core.ports.SpindleGear`` lists.
         """
         gearing = self._gearing
         if gearing is not None and (gearing.has_axis_moved or gearing.is_same_cam_reference(cam)):

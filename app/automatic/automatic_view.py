@@ -34,7 +34,7 @@ _NO_LINES: tuple[str, ...] = ()
 
 
 class AutomaticPage(Page):
-    """Screen page for automatic operation, which redraws a part only after that part changes.
+    """Page for automatic operation. Each view on the page is redrawn only when its content changes.
 
     ``Frame`` shows the large readouts above the page.
     """
@@ -73,7 +73,7 @@ class AutomaticPage(Page):
         )
 
     def apply_theme(self) -> None:
-        """Redraw all parts in the colors of the current theme."""
+        """Redraw all views of the page in the colors of the current theme."""
         self.file_prompt.apply_theme()
         self.path_view.redraw()
 
@@ -86,7 +86,10 @@ class AutomaticPage(Page):
         return True
 
     def prompt_text(self) -> str:
-        """Return the prompt of the file dialog or of measuring, or an empty string during motion."""
+        """Return the text of the open file prompt or of measuring; it is empty if neither is active.
+
+        During motion, the text is always empty.
+        """
         if self.file_prompt.isVisible() and not self._moving:
             return self.file_prompt.prompt_text()
         return make_measuring_prompt() if self.path_view.measurement is not None and not self._moving else ""
@@ -102,7 +105,7 @@ class AutomaticPage(Page):
         return measuring
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Lay out all parts of the page again after its size has changed."""
+        """Rearrange all views of the page after the page is resized."""
         listing, comment, path = divide_work_area(Rect(0, 0, self.width(), self.height()), self.theme.unit_px)
         for part, rect in (
             (self.program_listing, listing),
@@ -172,7 +175,7 @@ class AutomaticPage(Page):
         return self.path_view.part_player is not None and self.path_view.part_player.is_playing
 
     def find_disabled_keys(self) -> frozenset[str]:
-        """Return the keys for program choice, editor and SEARCHTO that are currently disabled."""
+        """Return those of the keys for program choice, editor and SEARCHTO that are currently disabled."""
         snapshot, loaded = self.desk.read_snapshot(), self.desk.program_loader.loaded_program
         asking = self.file_prompt.isVisible()
         named = bool(self.file_prompt.requested_name) if asking else loaded.path is not None

@@ -58,7 +58,7 @@ def run(args: argparse.Namespace) -> int:
 def _block_texts(
     timeline: Timeline, source: ProgramSource, output_module: ModuleType, *, json_output: bool
 ) -> Iterator[tuple[int, str]]:
-    """Yield the number of the last block and the text of each single block or series of moves."""
+    """For each single block or series of moves, yield the number of its last block and its text."""
     from core.interpreter.shared.elementary_blocks import TimedSeries
     from core.proving.program_timeline import iter_timed_series
 

@@ -252,7 +252,7 @@ def format_check_table(rows: TableRows) -> Iterator[str]:
 
 
 def summarize_names(names: Sequence[str]) -> str:
-    """Return the names as one line, but only the count of inputs or outputs if there are several."""
+    """Return the names as one line of text. Several inputs or outputs are replaced by their count."""
     parts = [name for name in names if not name.startswith(("input ", "output "))]
     for kind in ("input", "output"):
         terminals = [name for name in names if name.startswith(f"{kind} ")]

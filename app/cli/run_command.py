@@ -105,7 +105,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _prove_program(args: argparse.Namespace, circumstances: CommandContext, job: Job) -> ProofReport:
-    """Return the proof of the program and of its part."""
+    """Prove the program and the part that it makes, and return the proof report."""
     from app.cli.part_options import apply_stored_stock, read_part_settings
     from core.proving.part_proof import prove_program_and_part
 

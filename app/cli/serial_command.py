@@ -122,7 +122,10 @@ def _add_send_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Run the action. Return 1 if nothing was transferred or if the received program has errors."""
+    """Run an action of ``turndesk serial``, and return the exit status.
+
+    The exit status is 1 if nothing was transferred or if the received program has errors.
+    """
     if args.action == "ports":
         return _ports()
     from app.compose.machine.machine_setup import read_machine
@@ -185,7 +188,7 @@ def _send(args: argparse.Namespace, settings: SerialLineModel) -> int:
 
 
 def _check_readable(path: Path) -> None:
-    """Raise CommandError if the file cannot be read. The check precedes the opening of the serial line."""
+    """Raise CommandError if the file cannot be read. Call this before opening the serial line."""
     try:
         with open_input_file(path) as file:
             file.read(1)
@@ -276,9 +279,9 @@ def _format_received(progress: TransferProgress) -> str:
 
 
 def _tell(last_reason: str, progress: TransferProgress) -> str:
-    """Print why the received data is not a program, and return this reason.
+    """Print why the received data is not a program, unless this reason equals ``last_reason``.
 
-    The reason is not printed again if it equals ``last_reason``.
+    Returns the reason that was printed last.
     """
     if not progress.leading_text or last_reason == progress.wait_reason:
         return last_reason

@@ -195,7 +195,7 @@ class EventDistributor:
         self.report_event("warning", text)
 
     def report_event(self, kind: str, text: str) -> None:
-        """Distribute an event that has the current time."""
+        """Distribute a new event with the current time as its time stamp."""
         self.hear(LogEvent(self._clock.now(), kind, text))
 
 

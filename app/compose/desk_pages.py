@@ -109,7 +109,7 @@ def _register_editor(setup: PageSetup) -> None:
 def _create_editor(setup: PageSetup) -> EditorModel:
     """Return the model of the editor, which proves the edited text.
 
-    It does not save a version after each key press.
+    Proving does not save a version of the text after each key press.
     """
     from app.editor.editor_model import EditorModel
     from app.editor.version_history import NullVersionArchive

@@ -229,10 +229,10 @@ def list_drawing_suffixes() -> tuple[str, ...]:
 def insert_items_after(
     items: Iterable[T], get_name: Callable[[T], str], additions: Iterable[tuple[T, str]]
 ) -> list[T]:
-    """Return ``items`` with each addition inserted after the item that the addition names.
+    """Return ``items`` with each addition inserted after the item whose name it specifies.
 
     The named item may also be an addition. Additions that follow the same item retain their order. An
-    addition is appended if the item that it names does not exist.
+    addition is appended if no item has the name.
     """
     found, waiting = list(items), list(additions)
     newest: dict[str, str] = {}

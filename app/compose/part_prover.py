@@ -1,7 +1,6 @@
 """Proof of the part that the loaded program makes, with a severity for each finding.
 
-The part is proved after the program. Decision record 0011 specifies which functions wait for the proof of
-the part.
+The part is proved after the program. Decision record 0011 specifies which functions wait for this proof.
 """
 
 from __future__ import annotations
@@ -109,7 +108,7 @@ class PartProver:
     def prove_part(
         self, program_steps: ProgramSteps, stock_finding: Diagnostic | None, report_progress: ProgressCallback
     ) -> PartProof:
-        """Return the proof of the part. An exception while proving becomes a warning."""
+        """Return the proof of the part. An exception during the proof is reported as a warning."""
         from core.proving.part_proof import PartProof
 
         try:
@@ -146,7 +145,7 @@ def _unusable(why: str) -> Diagnostic:
 def _assign_severity(findings: Iterable[Diagnostic], report: PartReport | None) -> PartProof:
     """Return the proof of the part, with a severity for each finding.
 
-    The proof also contains the texts of the findings that are shown when the operator starts the program.
+    The proof also contains short texts of the findings that the operator sees before the program starts.
     """
     findings = tuple(findings)
     warned = [each for each in findings if _is_announced(each)]

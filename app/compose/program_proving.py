@@ -1,6 +1,6 @@
 """Proving of programs, MDI lines and restarts on this machine.
 
-The module also proves how changed offsets would alter a tool path.
+The module also draws the tool path and compares the part for changed offsets.
 """
 
 from __future__ import annotations
@@ -215,7 +215,7 @@ def create_path_drawer(machine: Machine) -> DrawPaths:
 
 
 def _shift_part_zero(blocks: Iterator[TimedBlocks], frame: Mapping[int, ToolOffset]) -> Iterator[TimedBlocks]:
-    """Yield the blocks with part zero shifted to the position from the tool offsets ``frame``."""
+    """Yield the blocks with part zero moved to the position that the tool offsets ``frame`` define."""
     for block, start, end in blocks:
         modal = block.modal
         offset = frame.get(modal.tool, ToolOffset())
@@ -233,14 +233,14 @@ def _shift_part_zero(blocks: Iterator[TimedBlocks], frame: Mapping[int, ToolOffs
 
 
 def make_checkpoint(snapshot: Snapshot) -> Checkpoint:
-    """Return the modal state of the machine that the next line inherits."""
+    """Return the current modal state of the machine, which the next MDI line inherits."""
     return Checkpoint(
         snapshot.modal, tool_line=-1 if snapshot.is_tool_move_pending else 0, kept=snapshot.kept
     )
 
 
 def create_line_prover(machine: Machine, read_offsets: Callable[[], Offsets]) -> ProveLine:
-    """Return a function that proves an MDI line like a program.
+    """Return a function that proves an MDI line as if it were a program.
 
     The line starts at the current position of the axes.
     """

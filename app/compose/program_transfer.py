@@ -79,10 +79,7 @@ class _LineTransfer:
 
 
 class FileSendTransfer(_LineTransfer):
-    """Transfer that sends a program file.
-
-    Its result is the number that ``run_transfer`` returns.
-    """
+    """Transfer that sends a program file. The result is the number of bytes sent."""
 
     def __init__(self, settings: TransferSettings, path: Path, clock: Clock) -> None:
         super().__init__()
@@ -117,11 +114,11 @@ class ProgramReceiveTransfer(_LineTransfer):
         self._settings, self._clock, self._check, self._ending = settings, clock, check_program, file_suffix
 
     def run_transfer(self) -> ReceivedProgram:
-        """Receive a program and prove it.
+        """Receive a program and prove it, without saving any data.
 
-        If the program cannot be proved, for example because stored offsets cannot be read, the reason is its
-        finding. Raises DriverError if the transfer fails or is canceled, or if the received data is not a
-        program. This method saves nothing.
+        If the program cannot be proved, for example because stored offsets cannot be read, the result
+        contains the reason as a finding. Raises DriverError if the transfer fails or is canceled, or if the
+        received data is not a program.
         """
         inner = ReceiveTransfer(
             open_serial_port(self._settings.receiving_settings, count_damaged=True),

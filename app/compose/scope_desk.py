@@ -46,10 +46,10 @@ class RecordedSamples:
 
 
 def register_scope(desk: Desk, live_samples: LiveSamples | None) -> None:
-    """Register the scope with ``live_samples``, or with the samples of the control.
+    """Register the SCOPE page with ``live_samples``, or with the samples of the control if it is None.
 
-    Without a source of samples, the scope shows only files. The scope is created when the operator first
-    opens its page.
+    Without a source of samples, the page shows only saved records. Its model is created when the operator
+    first opens the page.
     """
     desk.page_registry.attach_lazy_model(
         "app.scope.scope_model.ScopeModel", partial(_scope, desk, live_samples)

@@ -57,9 +57,9 @@ def _setup_sheet(
 def _create_transfer(
     desk: Desk, machine: Machine, persistence: Persistence, workshop: LoadingSteps, program_folder: Path
 ) -> SpecialFunction:
-    """Return the special function for RS-232, which proves received programs.
+    """Return the special function that transfers programs over RS-232 and proves received programs.
 
-    Its initial settings are in [dnc] of the machine file.
+    Its initial settings are from [dnc] of the machine file.
     """
     lines = SerialPortLines(
         create_program_checker(workshop), get_default_extension(Dialect(machine.mdi_language))

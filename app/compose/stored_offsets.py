@@ -160,11 +160,11 @@ def make_offsets_reader(path: str | None) -> Callable[[], Offsets]:
 
 
 def create_offset_book(load_offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBook:
-    """Return the book of offsets that the operator screen shows.
+    """Return the offset book that the operator screen shows.
 
-    If there is a ``journal`` and ``load_offsets`` is ``read_stored_offsets``, they are the offsets of the
-    store of the journal. Otherwise they are the read-only offsets that ``load_offsets`` returns, such as
-    those of a file. Raises CommandError if ``load_offsets`` finds errors.
+    With a ``journal``, and if ``load_offsets`` is ``read_stored_offsets``, the book has the offsets of the
+    journal's store. Otherwise the book is read-only and has the offsets that ``load_offsets`` returns, such
+    as those of a file. Raises CommandError if ``load_offsets`` finds errors.
     """
     if journal is not None and load_offsets is read_stored_offsets:
         return journal.book()

@@ -1,4 +1,4 @@
-"""Signed-in user, access level and permissions, without Qt. No function of this module waits.
+"""Signed-in user, access level and permissions, without Qt. No function of this module blocks.
 
 Without configured users, access levels are off and every change is allowed. Signing in is an optional
 feature. If users are stored but the feature is not installed, the level remains OPERATOR.

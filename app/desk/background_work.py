@@ -185,7 +185,7 @@ class LatestRequestWorker:
             self.progress_count = 0
 
     def deliver_results(self) -> None:
-        """Deliver the results of completed work in the order in which the work was done.
+        """Deliver the results of completed work in the order of completion.
 
         The screen calls this method once per frame.
         """
@@ -305,7 +305,7 @@ def _is_defect(error: BaseException) -> bool:
 
 
 class RepeatingThread:
-    """Thread that calls ``read_status`` at regular intervals.
+    """Thread that calls the function ``read_status`` at regular intervals.
 
     The first call occurs after ``first_delay_s`` seconds, and each further call after ``interval_s``
     seconds. The watchdog identifies the thread by its name.

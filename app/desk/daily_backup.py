@@ -121,7 +121,7 @@ class DailyBackup:
     def _check_disk(self) -> None:
         """Report once if the backup folder is on the same disk as the data.
 
-        The folder is on the same disk if, for example, the backup disk is not mounted.
+        One possible cause is that the backup disk is not mounted.
         """
         if self.data_folder is not None and not self._hinted:
             self._hinted = self.folder.stat().st_dev == self.data_folder.stat().st_dev

@@ -13,7 +13,7 @@ RECORDS_FOLDER_NAME = "records"  # Subfolder for recordings of the scope.
 
 
 class DataFolderError(CodedError):
-    """Error if TURNDESK_HOME must be set, or if it is set to a path that is not a folder.
+    """Error raised because TURNDESK_HOME must be set but is not, or is not the path of a folder.
 
     The text explains how to set the variable.
     """

@@ -1,4 +1,4 @@
-"""Model of the Automatic page and of the running TurnDesk, which does not use Qt and never waits.
+"""Model of the Automatic page and of the running TurnDesk. It does not use Qt and never blocks.
 
 Every method that a key or a touch calls returns immediately. If the action is not possible, the prompt line
 shows the reason (``prompt_notice``). Otherwise the method posts a command, and a later snapshot shows the
@@ -169,7 +169,7 @@ class Desk:
         """Ask the operator to confirm an action that loses data or moves the machine.
 
         The question has the form ``PRESS Y TO …, N TO …``. Esc means N. ``key`` is the key that means yes.
-        It must differ from the key that caused the question. On a touch screen, the prompt line has a
+        It must differ from the key that opened the question. On a touch screen, the prompt line has a
         button for the reply.
         """
         self.prompt_line.ask_question(question, on_confirmed, key)
@@ -252,7 +252,7 @@ class Desk:
         self.apply_setting("readout", self.readout_kind.next_kind.value)
 
     def close(self) -> None:
-        """Stop the machine and close its drivers. Then end the workers and close all attached models."""
+        """Stop the machine, close its drivers, end the workers, and close all attached models."""
         own = [
             ClosingStep("loading", self.program_loader.close),
             ClosingStep("levels", self.user_access.close),
@@ -370,7 +370,7 @@ class Desk:
     def reset_control(self) -> None:
         """Acknowledge an alarm, or cancel an interrupted program after the operator confirms.
 
-        If the control does not respond, start a new control where possible.
+        If the control does not respond, the method starts a new control where possible.
         """
         state = self.read_snapshot().state
         if self.desk_control.silence_watch.is_silent and self.desk_control.restart_control is not None:

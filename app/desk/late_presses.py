@@ -1,8 +1,8 @@
-"""Actions that a late key press or touch must not start.
+"""Filter for late key presses and touches, which must not start certain actions.
 
 A press is late if it was made before the end of a stall of the screen. All other effects of late presses
 are executed in order. One key has many meanings, so each press is checked at the point where it would start
-an action. These points are the posting of a command, the simulated station, and the reply to a question.
+an action: when a command is posted, at the simulated station, and when a question is answered.
 """
 
 from __future__ import annotations
@@ -182,9 +182,9 @@ class LatePressFilter:
 
     @contextmanager
     def suspend_check(self) -> Iterator[None]:
-        """Return a context in which actions are not attributed to the current press.
+        """Return a context in which actions are not attributed to the current key press.
 
-        Once per frame, the screen uses this context to renew keys that are held down.
+        The window uses this context once per frame while it processes keys that are held down.
         """
         late, self.is_press_late = self.is_press_late, False
         try:

@@ -1,4 +1,4 @@
-"""Description of a page of the main window, which names the page's classes without importing them."""
+"""Description of a page of the main window by class names, without importing the classes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Interface between the screen and the data store, with a substitute without a store."""
+"""Interface between the screen and the data store, and its substitute if no store is available."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NOTHING_SAVED = "no data is being saved; start turndesk with a writable folder (
 
 @dataclass(frozen=True, slots=True)
 class NullRunRecords:
-    """Substitute for run records if no store is open, which drops every record and counts no parts.
+    """Substitute for run records if no store is open. It discards every record and counts no parts.
 
     ``error_text`` is the reason why no store is open. It is empty for scripts, which do not have a store.
     """
@@ -62,7 +62,7 @@ class Persistence:
     """Storage of settings, run records, versions, users and the event log.
 
     This base class is for scripts and for a store that cannot be opened. It stores only settings, and only
-    until the program ends. Reading may raise StoreError. Writing is queued and never waits.
+    until the program ends. Reading may raise StoreError. Writing is queued and never blocks.
 
     Call ``backup``, ``restore``, ``save_settings``, ``events`` and ``save_version`` only on a worker
     thread. Wait for changes of ``require_store`` only on a worker thread.
@@ -88,10 +88,10 @@ class Persistence:
             self.save_setting(key, value)
 
     def log_change(self, text: str, user_name: str = "") -> None:
-        """Write a change of data that have no history of their own to the event log.
+        """Log a change of data that have no history of their own.
 
         ``user_name`` is the user who requested the change, or empty for the signed-in user. If access
-        levels are off, nothing is written.
+        levels are off, no entry is written.
         """
 
     def log_access(self, text: str, user_name: str) -> None:

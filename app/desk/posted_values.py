@@ -26,9 +26,9 @@ class PostedValues:
         return bool(self.change_value(name, displayed_state, lambda now: not now))
 
     def change_value(self, name: str, displayed_value: float, change: Callable[[float], float]) -> float:
-        """Return the result of ``change``, which the caller must post immediately.
+        """Return the new value that ``change`` calculates. The caller must post this value immediately.
 
-        The function is applied to the value that was posted last, or to ``displayed_value`` if no value was
+        ``change`` is applied to the value that was posted last, or to ``displayed_value`` if no value was
         posted in the last 0.3 s.
         """
         now = self.read_time_s()

@@ -22,9 +22,9 @@ class DisplayUnits(StrEnum):
     METRIC = "MM"
 
     def metric(self, is_control_metric: bool) -> bool:
-        """Return whether displayed values are metric.
+        """Return whether values are displayed in metric units.
 
-        ``is_control_metric`` is True if the control uses metric units now.
+        ``is_control_metric`` is True if the control currently uses metric units.
         """
         return is_control_metric if self is DisplayUnits.PROGRAM else self is DisplayUnits.METRIC
 

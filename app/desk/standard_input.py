@@ -1,6 +1,6 @@
-"""Reading of standard input for an argument ``-``, which selects it instead of a file.
+"""Reading of standard input for the argument ``-``, which is used in place of a file name.
 
-Only one argument can use standard input.
+Only one argument of a command can use standard input.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ _read_inputs: dict[str, bytes] = {}
 
 
 def reset_standard_input() -> None:
-    """Discard the stored bytes of standard input. Call this function at the beginning of a command."""
+    """Discard the bytes that were read from standard input. Call this at the beginning of a command."""
     _read_inputs.clear()
 
 

@@ -69,11 +69,11 @@ class StationPanel(Protocol):
 
 @dataclass(slots=True)
 class PalmButtons:
-    """Pressed palm buttons and their press times, used to find the reason for a failed start.
+    """Pressed palm buttons and their press times, used to find the reason why a start failed.
 
-    A pair of presses is invalid if the buttons were not pressed within the time limit, or if one button was
-    released while the other remained pressed. An invalid pair has no effect until both buttons are
-    released, so that a button that is taped down cannot start a cycle.
+    A pair of presses is invalid if the second button was pressed too late, or if one button was released
+    while the other remained pressed. An invalid pair has no effect until both buttons are released. A
+    button that is taped down therefore cannot start a cycle.
     """
 
     # "left" or "right", with its monotonic time in seconds.
@@ -112,10 +112,10 @@ POT_SLEW_RATE = 1.0  # Fraction of the range per second. A control treats a fast
 
 @dataclass(slots=True)
 class OverridePot:
-    """An override pot on the screen.
+    """Override pot on the screen.
 
-    ``wanted`` is the target that a touch sets. ``current_fraction`` moves toward the target at a limited
-    speed.
+    ``wanted`` is the target that the operator sets. ``current_fraction`` moves toward the target at a
+    limited speed.
     """
 
     max_fraction: float
@@ -125,9 +125,10 @@ class OverridePot:
     late_presses: LatePressFilter | None = None
 
     def set(self, fraction: float) -> None:
-        """Set the target of the pot, toward which it turns at a limited speed.
+        """Set the target of the pot, toward which the pot turns at a limited speed.
 
-        A late press does not raise the target, because an operator who sees no effect presses too often.
+        A late press does not raise the target. While the screen is stalled, the operator sees no effect and
+        may press too often.
         """
         if (
             self.late_presses is None
@@ -195,11 +196,10 @@ class StationControls:
         return self.clock() - self.find_press_age_s()
 
     def palm(self, side: str, is_down: bool) -> None:
-        """Press or release a palm button.
+        """Press or release a palm button. The station's relay decides whether two presses start a cycle.
 
-        The station's relay decides whether two presses start a cycle. The relay receives a press when this
-        method is called, not at the time of the key event. If the buttons were not pressed together, this
-        method therefore forwards only one press.
+        The relay receives a press when this method is called, which can be later than the key event. If the
+        buttons were not pressed together, this method therefore forwards only one press.
         """
         station = self.station
         if station is None:

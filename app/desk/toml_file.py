@@ -19,7 +19,7 @@ _LEADING_POINT = re.compile(r"""(?:"(?:\\.|[^"\\\n])*"|'[^'\n]*'|\#.*)|([=\[,]\s
 def read_toml(path: Path) -> dict[str, object]:
     """Return the tables of a TOML file. Raises CommandError if the file cannot be read or is invalid.
 
-    Shops write ``.25``, which is not valid TOML. This function reads it as 0.25.
+    Numbers such as ``.25`` are common in shops but not valid TOML. This function reads ``.25`` as 0.25.
     """
     try:
         text = _read_bytes(path).decode("utf-8").replace("\r\n", "\n")

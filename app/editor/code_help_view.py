@@ -99,7 +99,7 @@ def _make_threading_sketch(lead: str, start: str, last: str, end: str) -> Sketch
 
 
 def _make_side_sketch(*, outside: bool) -> Sketch:
-    """Return the sketch of a tool nose that follows an outside or inside contour to the chuck."""
+    """Return the sketch of a tool nose moving toward the chuck along an outside or inside contour."""
     solid = make_part_outline((0, 0), (0, 5), (-8, 5), (-12, 8), (-18, 8), (-18, 0))
     off = 1.2 if outside else -1.2
     path = make_cut_outline((2, 5 + off), (-8, 5 + off), (-12, 8 + off), (-18, 8 + off))
@@ -114,10 +114,7 @@ def _make_side_sketch(*, outside: bool) -> Sketch:
 
 
 def _make_quadrant_sketch() -> Sketch:
-    """Return the sketch of the tip quadrants around the nose center.
-
-    The radius axis points up, toward the operator.
-    """
+    """Return the sketch of the tip quadrants around the nose center. X points up, toward the operator."""
     nose = Outline(_arc((0, 0), 3, 0, 360), "tool", is_closed=True)
     tips = tuple(Dimension(str(n), (6.0 * z, 6.0 * x)) for n, (z, x) in TIP_DIRECTIONS.items() if n)
     cross = (Outline(((-4, 0), (4, 0)), "part"), Outline(((0, -4), (0, 4)), "part"))

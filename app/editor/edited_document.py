@@ -50,7 +50,7 @@ class Document:
         return self.path.name
 
     def encode_text(self, text: str) -> bytes:
-        """Return ``text`` as bytes with the line ending of the file."""
+        """Return ``text`` as bytes with the line ending that the file uses."""
         return add_final_newline(text).replace("\n", self.line_ending).encode("utf-8", "replace")
 
 
@@ -144,12 +144,9 @@ def save_document(document: Document, text: str, archive: VersionArchive, may_ov
     """Write ``text`` to the file of ``document`` and archive it as a version.
 
     Returns an empty string on success, or the reason why no version was archived. If another program has
-    changed the file, nothing is written and the result is ``CHANGED_EXTERNALLY`` in two cases:
-
-    - ``may_overwrite`` is False.
-    - The changed content of the file cannot be archived.
-
-    Raises FileOperationError if the file cannot be read or written.
+    changed the file, it is overwritten only if ``may_overwrite`` is true and its changed content can be
+    archived. Otherwise nothing is written and the result is ``CHANGED_EXTERNALLY``. Raises
+    FileOperationError if the file cannot be read or written.
     """
     there = read_file_if_exists(document.path)
     foreign = there is not None and not _matches_opened(document, there)
@@ -200,7 +197,7 @@ WHY = "unsaved draft"
 
 @dataclass(slots=True)
 class DraftStore:
-    """Store of draft files, with one file for each document that has unsaved text.
+    """Store of draft files, one for each document with unsaved text.
 
     A worker writes the latest text of each document.
     """

@@ -1,7 +1,4 @@
-"""Messages of the editor.
-
-The first two messages are texts of the original control.
-"""
+"""Messages of the editor. The first two messages are original texts of the OmniTurn control."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
-"""Model of the editor, independent of Qt, which opens, creates, saves and closes programs.
+"""Model of the editor, which opens, creates, saves and closes programs. It does not use Qt.
 
-No method blocks. A request of the operator starts work, which a later call of ``EditorModel.poll``
-completes. ``EditorModel.poll`` is called once per frame. The page owns the text and passes it with each
-request.
+No method blocks. A request of the operator starts background work, and ``EditorModel.poll`` processes its
+result once per frame. The page owns the text and passes it with each request.
 """
 
 from __future__ import annotations
@@ -194,7 +193,7 @@ class EditorModel:
             self.draft_store.set_text(self.document, text)
 
     def preview_text(self, text: str) -> None:
-        """Prove the text that a form would produce, without storing that text."""
+        """Prove a text that a form would produce, without storing it."""
         self.live_proof.submit_text(self.name, add_final_newline(text), self.is_block_delete_on)
 
     def is_dirty(self, text: str) -> bool:
@@ -203,7 +202,7 @@ class EditorModel:
         return document is not None and text != document.text
 
     def restore_version(self, text: str, version_number: int) -> None:
-        """Replace the text with the text of an older version, as one step of the undo history."""
+        """Replace the text with the text of an older version. One undo reverses the change."""
         self._put(text, restored=True)
         self.message = messages.VERSION_RESTORED.format(version_number)
 
@@ -216,7 +215,7 @@ class EditorModel:
     def save_document(self, text: str, *, leave_after: bool = False, may_overwrite: bool = False) -> None:
         """Save the file, archive the version, and close the editor if ``leave_after`` is true.
 
-        ``may_overwrite`` permits replacing a file that another program has changed.
+        ``may_overwrite`` permits overwriting a file that another program has changed.
         """
         document = self.document
         if document is None or self.stage is not EditorStage.OPEN:
@@ -356,7 +355,7 @@ def open_editor(desk: Desk, editor: EditorModel) -> bool:
 
 
 def find_load_label(desk: Desk, editor: EditorModel, *, is_dirty: bool) -> str:
-    """Return the label of F3: SAV+LOAD, LOAD or LEAVE, depending on what F3 would do now."""
+    """Return the label of F3, which is SAV+LOAD, LOAD or LEAVE depending on its current function."""
     if is_dirty:
         return "SAV+LOAD"
     document, now = editor.document, desk.program_loader.loaded_program

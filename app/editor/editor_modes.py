@@ -1,4 +1,4 @@
-"""Modes of the editor page, which determine the meaning of the keys, with their prompts."""
+"""Modes of the editor page and their prompts. The mode determines the meaning of the keys."""
 
 from __future__ import annotations
 

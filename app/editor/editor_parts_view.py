@@ -1,4 +1,4 @@
-"""Parts of the editor page: head line, tool path, findings and keyboard, with their layout."""
+"""Areas of the editor page and their layout: head line, path, findings and on-screen keyboard."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class EditorPathView(PathView):
     """View of the tool path of the edited text.
 
     While the text changes, the view retains the zoom and pan that the operator set. When the operator
-    touches a path, the constructor's ``jump_to_line`` function receives the source line.
+    touches a path, the function ``jump_to_line`` of the constructor is called with the path's source line.
     """
 
     title = "PATH TO THE CURSOR"
@@ -105,13 +105,13 @@ class EditorPathView(PathView):
         }
 
     def make_pan_actions(self) -> dict[int, Callable[[], None]]:
-        """Return the action of each arrow key, which pans the view of the path."""
+        """Return the actions of the arrow keys, each of which pans the view of the path."""
         steps = {Qt.Key.Key_Left: (-1, 0), Qt.Key.Key_Right: (1, 0), Qt.Key.Key_Up: (0, -1)}
         steps[Qt.Key.Key_Down] = (0, 1)
         return {key: partial(self.pan_view, *step) for key, step in steps.items()}
 
     def _set_measured_point(self) -> None:
-        """Set one point of a measurement to the position of the crosshair."""
+        """Set one point of the distance measurement to the position of the crosshair."""
         if self.measurement is not None:
             self.measurement.set_measured_point()
             self.update()
@@ -131,7 +131,7 @@ FINDING_ROW_HEIGHT = 5.2  # units: two lines of text, at least a fingertip high
 class FindingList(RowPanel):
     """List of the proof's findings, sorted by line.
 
-    The finding in the cursor line is marked and always visible.
+    The finding in the line of the cursor is highlighted and always visible.
     """
 
     scroll_step = 1
@@ -145,7 +145,7 @@ class FindingList(RowPanel):
         self._line = 0
 
     def show_findings(self, findings: ProofFindings, line: int) -> None:
-        """Show the findings and mark the cursor line."""
+        """Show the findings, and highlight the finding in the line of the cursor."""
         if findings is not self.findings or line != self._line:
             self.findings, self._line = findings, line
             self.update()
@@ -168,7 +168,7 @@ class FindingList(RowPanel):
         )
 
     def find_next_error(self, line: int) -> Diagnostic | None:
-        """Return the first error after a line, continuing the search at the first line.
+        """Return the first error after a line. After the last error, the search continues at line 1.
 
         If there are no errors, return the next warning or note. If no finding has a line number, return
         None.
@@ -229,7 +229,7 @@ class EditorHeading(NamedTuple):
 
 
 class EditorHeadLine(Panel):
-    """Head line that shows the edited program, unlike the title line, which shows the loaded program."""
+    """Head line with the name of the edited program. The title line shows the loaded program instead."""
 
     background_color = "panel"
     heading = RedrawingAttribute(EditorHeading())
@@ -245,8 +245,8 @@ class EditorHeadLine(Panel):
     ) -> None:
         """Create the head line.
 
-        ``toggle_keyboard`` shows or hides the drawn keyboard. ``open_panel`` opens the feature panel that a
-        key name identifies.
+        ``toggle_keyboard`` shows or hides the on-screen keyboard. ``open_panel`` opens the feature panel
+        with the given key name.
         """
         super().__init__(theme, parent)
         self._keys, self._panel = toggle_keyboard, open_panel
@@ -283,7 +283,7 @@ class EditorLayout(NamedTuple):
     """Rectangles of the areas on the editor page.
 
     - ``question_line`` is empty if no question is shown.
-    - ``keyboard_area`` is empty while the drawn keyboard is hidden.
+    - ``keyboard_area`` is empty while the on-screen keyboard is hidden.
     - ``code_strip`` explains the code at the cursor, and ``code_list`` is the list of codes.
     - ``path_area`` contains all pictures of the program.
     """
@@ -302,10 +302,10 @@ class EditorLayout(NamedTuple):
 def make_editor_layout(
     width: int, height: int, u: float, *, has_question: bool, keyboard_height: float = 0.0
 ) -> EditorLayout:
-    """Return the layout of the page in pixels.
+    """Return the layout of the page in pixels. ``u`` is the layout unit of the page in pixels.
 
-    ``u`` is the layout unit of the page in pixels. ``keyboard_height`` is the height of the drawn keyboard
-    in these units, or 0 if it is hidden. If the keyboard is shown, the text has the full width above it.
+    ``keyboard_height`` is the height of the on-screen keyboard in layout units, or 0 if it is hidden. If
+    the keyboard is shown, the text has the full width above it.
     """
     gap = max(4, round(0.7 * u))
     head = Rect(0, 0, width, round(HEAD_LINE_HEIGHT * u))
@@ -330,9 +330,9 @@ def make_editor_layout(
 
 
 class EditorParts(Page):
-    """Base class of ``EditorPage``, with the parts of the page and their layout.
+    """Base class of ``EditorPage``, with the areas of the page and their layout.
 
-    ``mode`` determines which parts are visible.
+    ``mode`` determines which areas are visible.
     """
 
     mode: EditorMode
@@ -388,7 +388,7 @@ class EditorParts(Page):
         self.path_view.continue_drawing()
 
     def show_mode(self) -> None:
-        """Show the parts that belong to the current mode."""
+        """Show the areas of the page that belong to the current mode, and hide the others."""
         self.path_view.switch_measuring(is_on=self.mode is EditorMode.PATH)
         self.version_list.setVisible(self.mode is EditorMode.HISTORY)
         self.code_list.setVisible(self.mode is EditorMode.CODES)
@@ -408,14 +408,14 @@ class EditorParts(Page):
 
     @property
     def is_keyboard_shown(self) -> bool:
-        """Return whether the drawn keyboard is visible.
+        """Return whether the on-screen keyboard is visible.
 
-        The keyboard is visible if the user has requested it and the mode accepts text.
+        The keyboard is visible if the operator has requested it and the mode accepts text.
         """
         return self._with_letters and self.mode in ENTRY_MODES | {EditorMode.TEXT}
 
     def toggle_keyboard(self) -> None:
-        """Show or hide the drawn keyboard."""
+        """Show or hide the on-screen keyboard."""
         self._with_letters = not self._with_letters
         self.show_mode()
 
@@ -423,7 +423,7 @@ class EditorParts(Page):
         send_key(key, self.letter_pad.focusProxy() or self.text_field)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Lay out all parts again after the size of the page has changed."""
+        """Lay out all areas of the page again after it is resized."""
         self._lay_out()
         self.apply_theme()
 
@@ -450,7 +450,7 @@ class EditorParts(Page):
             part.update()
 
     def apply_theme(self) -> None:
-        """Apply the current colors and font sizes to all parts."""
+        """Apply the current colors and font sizes to all areas of the page."""
         self.text_field.apply_theme()
         self.question_line.apply_theme()
         self.path_view.redraw()

@@ -130,10 +130,10 @@ class EditorPage(EditorParts):
         return not self.editor.message and self.editor.stage is not EditorStage.OFFERED
 
     def handle_escape(self) -> bool:
-        """Cancel the question, mode or message. If there is none, close the editor.
+        """Cancel the question, mode or message. If none of them is open, close the editor.
 
-        If the text has unsaved changes, the editor does not close. While an axis moves and no question is
-        pending, Esc starts a feed hold instead. Returns False if the window must handle Esc.
+        An editor with unsaved changes does not close. While an axis moves and no question is pending, Esc
+        starts a feed hold instead. Returns False if the window must handle Esc.
         """
         if self._moving and self.is_esc_stop_key():
             self.desk.start_feed_hold()  # Esc must do the safe action on every page.
@@ -263,7 +263,7 @@ class EditorPage(EditorParts):
         }
 
     def enter_mode(self, mode: EditorMode) -> None:
-        """Switch the page to a mode and show its parts."""
+        """Switch the page to a mode and show the areas that belong to it."""
         self.mode = mode
         self._update_question_line()
         self.show_mode()
@@ -296,7 +296,8 @@ class EditorPage(EditorParts):
     def _show_finding(self, found: Diagnostic) -> None:
         """Move the cursor to a finding.
 
-        If the finding is about the machined part, the picture shows the part after the finding's line.
+        If the finding concerns the machined part, the picture shows the part as machined after the
+        finding's line.
         """
         self.move_cursor_to(found.line, found.column)
         if found.block_number:
@@ -374,15 +375,15 @@ class EditorPage(EditorParts):
             self.editor_panel.model.open_file(file)
 
     def handle_key(self, key: str) -> bool:
-        """Pass a key to the form or list of the panel, and return whether it was used."""
+        """Pass a key to the open panel of a feature, and return whether the panel used it."""
         return self.mode is EditorMode.PANEL and self.editor_panel.model.handle_key(key)
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether the form accepts a character as text."""
+        """Return whether the open panel of a feature accepts a character as text."""
         return self.mode is EditorMode.PANEL and self.editor_panel.model.accepts_key(key)
 
     def has_text_field(self) -> bool:
-        """Return whether the form has the keyboard focus."""
+        """Return whether a feature panel is open, because its form accepts letters."""
         return self.mode is EditorMode.PANEL
 
     def find_marked_help(self) -> Sequence[GuideBlock]:
@@ -422,10 +423,7 @@ class EditorPage(EditorParts):
     # --- Qt's calls ----------------------------------------------------------------------------------
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Handle the keys of the question line.
-
-        Keys of the drawn keyboard go to the field with the focus.
-        """
+        """Handle the keys of the question line, and send on-screen keys to the field that has the focus."""
         if event.type() == QEvent.Type.FocusIn and isinstance(watched, QWidget):
             self.letter_pad.set_target_field(watched)
         if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress:
@@ -433,7 +431,7 @@ class EditorPage(EditorParts):
         return False
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Handle a key that no field has used, or pass it to the main window."""
+        """Handle a key that no field has used, or else pass it to the main window."""
         if not self._key(event):
             event.ignore()
 
@@ -444,7 +442,7 @@ class EditorPage(EditorParts):
         return action is not None
 
     def _find_action(self, event: QKeyEvent) -> Callable[[], None] | None:
-        """Return the action of a key that is neither text nor a function key, or None if it has none."""
+        """Return the action of a key that is neither text nor a function key, or None if it has no action."""
         key, modifiers = event.key(), event.modifiers()
         if modifiers & Qt.KeyboardModifier.ControlModifier:
             return self._make_chord_actions().get(key)

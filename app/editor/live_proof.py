@@ -28,7 +28,7 @@ _SEVERITY_WEIGHTS = {Severity.ERROR: 2, Severity.WARNING: 1, Severity.NOTE: 0}
 
 @dataclass(frozen=True, slots=True)
 class ProofFindings:
-    """Findings of the proof of one text, which ``number`` identifies.
+    """Findings of the proof of one text. ``number`` identifies the text.
 
     ``picture`` may still show an older text.
     """
@@ -118,7 +118,8 @@ class LiveProof:
     ) -> ProofFindings:
         """Prove a text on the worker.
 
-        The findings of the proof are published first. The picture and the findings about the part follow.
+        The findings of the program proof are published first. The picture and the findings about the part
+        follow later.
         """
         job = self.loading_steps.make_job(source, block_delete)
         proved = self.loading_steps.prove_job(job, request)

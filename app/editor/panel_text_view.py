@@ -1,4 +1,7 @@
-"""Text of the editor's feature panel, which is proved as a preview and copied into the text field."""
+"""Transfer of text between the editor's text field and a feature panel.
+
+The text of the panel is proved as a preview and then copied into the text field.
+"""
 
 from __future__ import annotations
 

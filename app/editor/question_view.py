@@ -55,7 +55,7 @@ class TextSearch:
         return pattern + "(?![A-Za-z])" if self.search_text[-1].isalpha() else pattern
 
     def inside(self, text: str) -> int:
-        """Return the number of matches that lie inside longer words or numbers."""
+        """Return the number of matches that are part of longer words or numbers."""
         return len(TextSearch(self.search_text, matches_whole_words=False).find_matches(text)) - len(
             self.find_matches(text)
         )
@@ -167,7 +167,7 @@ class QuestionLine(Panel):
 
 
 class TextFinder:
-    """Finder for the text in the question line, which moves the cursor to the next match."""
+    """Search and replacement of the text in the question line, with the cursor at the selected match."""
 
     def __init__(self, text_field: ProgramTextField, question_line: QuestionLine) -> None:
         self._field, self._ask = text_field, question_line
@@ -175,10 +175,7 @@ class TextFinder:
         question_line.first_field.textEdited.connect(lambda _text: self.count_matches())
 
     def find_initial_text(self) -> str:
-        """Return the initial search text.
-
-        This is the selected text if it is within one line, or else the previous search text.
-        """
+        """Return the selected text if it is within one line, and otherwise the previous search text."""
         marked = self._field.textCursor().selectedText()
         return marked if marked and "\u2029" not in marked else self._ask.first_field.text()
 
@@ -225,7 +222,7 @@ class TextFinder:
         )
 
     def toggle_whole_words(self) -> None:
-        """Switch between a search for whole words and a search for parts of words."""
+        """Toggle whether the search matches only whole words or also parts of words."""
         self.matches_whole_words = not self.matches_whole_words
         self.count_matches()
 

@@ -51,9 +51,9 @@ _TOKEN_COLORS = {
 
 
 class SyntaxHighlighter(QSyntaxHighlighter):
-    """Highlighter of the syntax of a program text.
+    """Syntax highlighter for a program text.
 
-    Which highlighting state is passed from line to line depends on the program language.
+    The state that each line passes to the next line depends on the program language.
     """
 
     def __init__(self, theme: ScreenTheme, document: QTextDocument) -> None:
@@ -199,7 +199,7 @@ class ProgramTextField(QPlainTextEdit):
         cursor.endEditBlock()
 
     def show_findings(self, line_findings: Mapping[int, Diagnostic]) -> None:
-        """Show the findings next to their lines."""
+        """Show each finding next to the line that it concerns."""
         if line_findings != self._found:
             self._found = line_findings
             self.line_margin.update()
@@ -392,7 +392,7 @@ class TextSynchronizer:
         return self._dirty
 
     def synchronize(self) -> None:
-        """Copy a new text of the editor model into the field, or pass typed text to the proof.
+        """Copy a new text of the editor model into the field, or submit typed text to the live proof.
 
         This method is called once per frame.
         """
@@ -424,7 +424,7 @@ class TextSynchronizer:
 
     @property
     def mark(self) -> str:
-        """Return the word for the state of the text: CHANGED, SAMPLE, NEW, or empty if unchanged."""
+        """Return the label for the state of the text: CHANGED, SAMPLE, NEW, or empty if unchanged."""
         document = self._editor.document
         if document is None:
             return ""

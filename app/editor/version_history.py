@@ -37,7 +37,7 @@ class VersionArchive(Protocol):
 
 
 class NullVersionArchive:
-    """Archive without versions, for scripts, and for TurnDesk if its store cannot be opened."""
+    """Archive without versions, for scripts and for a store that cannot be opened."""
 
     def versions(self, _name: str) -> Sequence[ProgramVersionRow]:
         """Return an empty tuple because this archive stores no versions."""
@@ -77,7 +77,7 @@ class DifferenceRow:
 
 
 def compare_texts(old: str, new: str) -> tuple[DifferenceRow, ...]:
-    """Return the lines of a comparison of two texts, or an empty tuple if the texts are equal."""
+    """Return the rows of a line-by-line comparison, or an empty tuple if the texts are equal."""
     if old == new:
         return ()
     before, after = old.splitlines(), new.splitlines()
@@ -169,7 +169,7 @@ class VersionHistory:
         return self.rows[self.marked].number if self.rows else 0
 
     def words(self) -> str:
-        """Return the status of the history as display text, for example that it is being read."""
+        """Return the status of the history as display text, such as READING while versions are being read."""
         if self.error_text:
             return self.error_text
         if not self.rows:

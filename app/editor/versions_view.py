@@ -31,7 +31,7 @@ SIGN_COLORS = {"+": "run", "-": "alarm", " ": "soft", "…": "off"}
 
 
 class VersionList(RowPanel):
-    """List of versions with the comparison of the selected version.
+    """List of versions, with a comparison between the selected version and the current text.
 
     The history model stores which version is selected. The selected version is in the middle of the list.
     The scroll keys scroll only the comparison.
@@ -122,9 +122,9 @@ class VersionList(RowPanel):
         }
 
     def make_arrow_actions(self) -> dict[int, Callable[[], None]]:
-        """Return the actions of the arrow and page keys, which are the same as those of F4 to F7.
+        """Return the actions of the arrow and page keys, which have the functions of F4 to F7.
 
-        Home selects the newest version, and End the oldest.
+        Home selects the newest version, and End selects the oldest version.
         """
         by = {number: key.action for number, key in self.make_function_keys().items()}
         return {

@@ -2,13 +2,14 @@
 
 The motion ends when one of these events occurs:
 
-- the key is released or stops repeating
-- the window loses the keyboard focus
-- another key or touch is pressed
-- the step changes
-- the screen stalls
+- The key is released or stops repeating.
+- The window loses the keyboard focus.
+- Another key or touch is pressed.
+- The jog step is changed.
+- The screen stalls.
 
-Unless the motion ended by a release, no axis moves again until all keys are released and a key is pressed.
+If the motion ended for another reason than a release, no axis moves again until all keys are released and a
+key is pressed.
 """
 
 from __future__ import annotations
@@ -68,10 +69,10 @@ class JogSpeeds:
         return self.machine.find_axis(axis).is_rotary
 
     def find_step_length(self, axis: str, value_mode: UnitMode, step_index: int | None = None) -> float:
-        """Return the travel of the axis in one step, in mm or degrees.
+        """Return the travel of an axis in one jog step, in mm or degrees.
 
-        If X is displayed as a diameter, the displayed diameter changes by the selected length, so the
-        result for X is half of the selected length.
+        If X is displayed as a diameter, one step changes the displayed diameter by the selected length. The
+        travel of X is then half of the selected length.
         """
         step_index = self.step_index if step_index is None else step_index
         if self._turns(axis):
@@ -143,7 +144,7 @@ _NO_ARROW: ArrowPoint = (0, 0)
 
 @dataclass(frozen=True, slots=True)
 class JogDirection:
-    """Jog direction: its axis and sign, its cell in the cross of arrow keys, and its key.
+    """Jog direction: its axis and sign, its key, and its cell in the cross of arrow keys.
 
     ``key_name`` is the Qt name of the key, and ``label`` is the text on the key.
     """
@@ -230,9 +231,9 @@ class ActiveJog:
 class HeldJog:
     """Jog that runs while a key or touch is held down.
 
-    ``motion_lease_s`` is the time in seconds after which the motion ends unless the lease is renewed.
-    ``find_refusal`` returns the reason why jogging is not possible now, or an empty string. ``read_clock``
-    returns a monotonic time in seconds.
+    ``motion_lease_s`` is the time in seconds after which the control stops the motion unless the lease is
+    renewed. ``find_refusal`` returns the reason why jogging is not possible now, or an empty string if it
+    is possible. ``read_clock`` returns a monotonic time in seconds.
     """
 
     starting_action: ClassVar[BlockedLateAction] = BlockedLateAction.JOG
@@ -257,10 +258,9 @@ class HeldJog:
     def handle_direction_press(
         self, key_source: str, axis: str, direction_sign: int, *, is_rapid: bool, button_name: str = ""
     ) -> None:
-        """Handle a press on a jog direction.
+        """Handle a press on a jog direction. ``key_source`` identifies the key or touch.
 
-        ``key_source`` identifies the key or touch. ``button_name`` is the input name of a button on the
-        machine, or an empty string for other keys.
+        ``button_name`` is the input name of a jog button on the machine, or an empty string for other keys.
         """
         others, self._ended = self.pressed_keys - {key_source}, ""
         self.is_rapid_armed = False
@@ -318,7 +318,7 @@ class HeldJog:
         self.post_command(command)
 
     def record_key_repeat(self, key_source: str) -> None:
-        """Store the time of a key repeat. A repeat shows that the key is still held down."""
+        """Store the time of a key repeat, which shows that the key is still held down."""
         if self.active_jog is not None and self.active_jog.input_source == key_source:
             self.active_jog.key_repeat_time_s = self.read_clock()
 
@@ -360,7 +360,7 @@ class HeldJog:
             self.show_message(reason)
 
     def update(self, snapshot: Snapshot) -> None:
-        """Renew the lease of the jog, or stop the jog if it is no longer permitted.
+        """Renew the motion lease of the jog, or stop the jog if it is no longer permitted.
 
         This method is called once per frame.
         """
@@ -386,7 +386,7 @@ class HeldJog:
             self.post_command(StopJog())
 
     def _repeat_reason(self, snapshot: Snapshot) -> None:
-        """Show the reason why the jog stopped again if a change of the machine state has cleared it."""
+        """Show again why the jog stopped, if a change of the machine state has cleared the message."""
         if self._ended and snapshot.state is not MachineState.JOG:
             self.show_message(self._ended)
             self._ended = ""

@@ -1,4 +1,4 @@
-"""Base of pages with keys and touch targets that move an axis only while they are held down."""
+"""Base class of pages with keys and touch targets that move an axis only while they are held down."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TouchHandler = Callable[[str, str, int], None]  # Arguments: source, axis, sign.
 
 
 def draw_arrow(painter: ThemedPainter, box: QRectF, direction: tuple[int, int], color: str) -> None:
-    """Draw an arrow in its touch target, near the edge to which the arrow points."""
+    """Draw an arrow in a touch target, near the edge toward which the arrow points."""
     size = 0.16 * min(box.width(), box.height())
     centre = box.center() + QPointF(direction[0] * 0.30 * box.width(), direction[1] * 0.28 * box.height())
     forward, side = (
@@ -154,7 +154,7 @@ class HeldKeysModel(PageModel, Protocol):
 class HeldKeysPage(ModelPage):
     """Page with keys that act only while they are held down.
 
-    The page detects presses and releases, and the model acts on them. ``jog_cross`` is the cross of touch
+    The page detects presses and releases, and the model moves the axes. ``jog_cross`` is the cross of touch
     targets.
     """
 
@@ -224,8 +224,8 @@ class HeldKeysPage(ModelPage):
     def _has_keyboard(self) -> bool:
         """Return whether this page has the keyboard focus, and not a dialog, a menu or another window.
 
-        Without a window manager, the window is never active. Only a change from active to inactive then
-        counts as lost focus.
+        Without a window manager, the window is never active. Focus then counts as lost only if the window
+        was active before.
         """
         active = self.window().isActiveWindow()
         if not self.model.is_active:

@@ -1,8 +1,8 @@
 """Handwheel of the Jog page, and jog buttons on the machine.
 
-The axis of the handwheel is selected by key or touch, or by switches of the operator station. After the
-handwheel was turned off, a key can select the same axis again, but a switch must first be set to another
-position.
+The operator selects the axis of the handwheel by key or touch, or by switches of the operator station.
+After the handwheel was turned off, a key can select the same axis again. A switch must first be set to
+another position.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ WheelChoice = tuple[str, int]  # Axis and step index.
 class JogHandwheel:
     """Handwheel that moves the selected axis on the Jog page.
 
-    ``wheel_choice`` is the axis and the step of the handwheel, or None if no axis is selected.
+    ``wheel_choice`` is the selected axis and step, or None if no axis is selected.
     """
 
     machine: Machine
@@ -126,7 +126,7 @@ class JogHandwheel:
             self.held_jog.stop_jog(reason)  # This shows the reason again when the axis is at rest.
 
     def update(self, snapshot: Snapshot) -> None:
-        """Renew the selection of the handwheel, or turn the handwheel off.
+        """Renew the control's selection of the handwheel axis, or turn the handwheel off.
 
         This method is called once per frame.
         """
@@ -150,10 +150,10 @@ class JogHandwheel:
             self._renew(wanted, now)
 
     def _find_wanted_choice(self, snapshot: Snapshot) -> WheelChoice | None:
-        """Return the requested axis and step of the handwheel, or None if no axis is selected.
+        """Return the axis and the step that the operator requests, or None if no axis is selected.
 
-        They are selected by key, touch or switches. If no switch selects the step, the step of the Jog page
-        applies.
+        They are requested by key, touch or switches. If no switch selects the step, the step of the Jog
+        page applies.
         """
         axis, step = self._by_hand, self._speeds.step_index
         if self.has_axis_switch:
@@ -208,10 +208,7 @@ class MachineJogButtons:
         self.jog_buttons = {name: jog_move for name, jog_move in named.items() if name in self.machine.inputs}
 
     def update(self, snapshot: Snapshot) -> None:
-        """Handle presses and releases of the buttons.
-
-        This method is called once per frame.
-        """
+        """Handle presses and releases of the jog buttons. This method is called once per frame."""
         now, before, on = self.held_jog.read_clock(), self._on, snapshot.inputs
         away, self._looked, self._on = now - self._looked, now, on
         for name in self.jog_buttons:

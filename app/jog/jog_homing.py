@@ -37,7 +37,7 @@ class HomingState(StrEnum):
 class HomingQuestion:
     """Question that asks which axes to home.
 
-    Enter homes all axes in order. Pressing the letter of an axis homes only that axis.
+    Enter homes all axes in order. The letter of an axis homes only that axis.
     """
 
     machine: Machine
@@ -140,9 +140,9 @@ class HomingQuestion:
 
 
 def _make_tool_warning(snapshot: Snapshot) -> str:
-    """Return a warning if a tool may still be in the part after an interrupted run.
+    """Return a warning that a tool may still be in the part after an interrupted run, if necessary.
 
-    The warning precedes the homing question. The result is an empty string if no run was interrupted.
+    The warning precedes the homing question. It is an empty string if no run was interrupted.
     """
     found = snapshot.interrupted
     if found is None:

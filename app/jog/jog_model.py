@@ -99,7 +99,7 @@ class JogModel:
         return self.desk.station_controls.clock()
 
     def find_jog_refusal(self) -> str:
-        """Return the reason why axes cannot be jogged now, or an empty string.
+        """Return the reason why axes cannot be jogged now, or an empty string if they can.
 
         This method cancels an open homing question.
         """
@@ -113,7 +113,7 @@ class JogModel:
         return find_jog_refusal(state)
 
     def _find_wheel_refusal(self) -> str:
-        """Return the reason why the handwheel cannot move an axis now, or an empty string.
+        """Return the reason why the handwheel cannot move an axis now, or an empty string if it can.
 
         Unlike ``find_jog_refusal``, this method does not cancel an open question.
         """
@@ -124,7 +124,7 @@ class JogModel:
         return find_jog_refusal(self.desk.read_snapshot().state)
 
     def update(self, snapshot: Snapshot) -> None:
-        """Update all parts of the page and renew the lease of the jog.
+        """Update all models of the page and renew the motion lease of the jog.
 
         This method is called once per frame.
         """
@@ -151,7 +151,7 @@ class JogModel:
         return self._make_work_prompt(snapshot) or self._prompt_of_jog(snapshot)
 
     def _make_work_prompt(self, snapshot: Snapshot) -> str:
-        """Return the prompt for an activity other than jogging, or an empty string."""
+        """Return the prompt for an activity other than jogging, or an empty string if there is none."""
         hand = self.manual_functions
         if hand.is_asking_speed or hand.selected_function or hand.is_line_running(snapshot):
             return hand.prompt_text(snapshot)
@@ -184,7 +184,7 @@ class JogModel:
         self.jog_speeds.select_next_step()
 
     def select_step(self, step_index: int) -> None:
-        """Select the touched jog step, and stop the jog."""
+        """Stop the jog, and select the jog step with this index."""
         self._another_step()
         self.jog_speeds.step_index, self.held_jog.is_rapid_armed = step_index, False
 
@@ -194,14 +194,14 @@ class JogModel:
         self.jog_speeds.select_next_speed()
 
     def select_speed(self, speed_index: int) -> None:
-        """Select the touched jog speed, and stop the jog."""
+        """Stop the jog, and select the jog speed with this index."""
         self._another_speed()
         self.jog_speeds.speed_index, self.held_jog.is_rapid_armed = speed_index, False
 
     def toggle_rapid(self) -> None:
         """Turn rapid speed on or off for the next jog by touch.
 
-        A jog by other means turns rapid speed off.
+        A jog by key or button turns rapid speed off.
         """
         self._another_speed()
         self.held_jog.is_rapid_armed = not self.held_jog.is_rapid_armed
@@ -238,7 +238,7 @@ class JogModel:
     def toggle_tilted_jog(self) -> None:
         """Turn jogging in the tilted coordinate system (3D-ROT) on or off.
 
-        The handwheel is turned off in both cases.
+        The handwheel is always turned off.
         """
         self.handwheel.turn_off("")
         self.tilted_jog.toggle_tilted_frame(find_jog_refusal(self.desk.read_snapshot().state))
@@ -247,7 +247,7 @@ class JogModel:
         self.held_jog.release_all_keys(why)
 
     def select_manual_function(self, name: str) -> None:
-        """Select the touched manual function, and stop the jog."""
+        """Stop the jog, and select the manual function with this name."""
         self.held_jog.stop_for_other_key()
         self.manual_functions.select_function(name)
 
@@ -275,7 +275,7 @@ class JogModel:
 
     @property
     def is_handwheel_shown(self) -> bool:
-        """Return whether the on-screen handwheel is shown and can move an axis now.
+        """Return whether the on-screen handwheel is shown and an axis is selected for it.
 
         The handwheel is on the screen only if the operator station is simulated.
         """
@@ -315,7 +315,8 @@ class JogModel:
     def on_open(self) -> None:
         """Prepare the model when the Jog page opens.
 
-        Earlier offset changes are ignored from then on, and Cycle Start runs the lines of manual functions.
+        From then on, earlier offset changes are ignored, and Cycle Start runs the lines of manual
+        functions.
         """
         self.tool_setting.offset_history.on_open()
         self.manual_functions.on_open()
@@ -354,10 +355,7 @@ class JogModel:
         return key.lower() in own
 
     def handle_escape(self) -> bool:
-        """Handle Esc, and return False if Esc has no function now.
-
-        Esc stops the jog, or cancels a question or an entry.
-        """
+        """Stop the jog, or cancel a question or an entry. Return False if Esc currently has no function."""
         if self.held_jog.active_jog is not None:
             self.held_jog.release_all_keys()
             return True
@@ -394,8 +392,8 @@ class JogModel:
     def try_leave(self) -> bool:
         """Return whether the page can close.
 
-        Held jog keys are treated as released in any case. If the page can close, all manual motion ends,
-        and open questions and entries are canceled.
+        Jog keys that are held down are treated as released in any case. If the page can close, all manual
+        motion ends, and open questions and entries are canceled.
         """
         self.held_jog.release_all_keys()
         if not self.manual_functions.try_leave():
@@ -413,7 +411,7 @@ class JogModel:
 
 
 def find_jog_refusal(state: MachineState) -> str:
-    """Return the reason why the machine state prevents manual motion, or an empty string."""
+    """Return the reason why the machine state prevents manual motion, or else an empty string."""
     words = {
         MachineState.DISABLED: tr("DRIVES ARE OFF. PRESS D TO TURN THEM ON"),
         MachineState.ESTOP: tr("E-STOP IS PRESSED. NO AXIS CAN MOVE"),
@@ -431,7 +429,7 @@ def make_jog_prompt(state: MachineState, unhomed_axes: list[str], wheel_axis: st
     """Return the prompt for manual motion.
 
     ``unhomed_axes`` are the axes that are not homed. ``wheel_axis`` is the axis of the handwheel, or an
-    empty string. ``step_index`` is the index of the selected step.
+    empty string if the handwheel is off. ``step_index`` is the index of the selected jog step.
     """
     why = find_jog_refusal(state)
     if why:

@@ -40,8 +40,9 @@ SHORT_LABEL_LENGTH = 4  # Letters: a longer word gets a wider tile.
 class TileRow:
     """Row of touch keys (tiles).
 
-    ``name_and_key`` contains the name of the row and its key. ``is_warning`` shows the selected tile in the
-    warning color. ``alarmed_indices`` are the indices of the tiles in the alarm color.
+    - ``name_and_key`` contains the name of the row and its key.
+    - ``is_warning`` means that the selected tile has the warning color.
+    - ``alarmed_indices`` are the indices of the tiles with the alarm color.
     """
 
     name_and_key: tuple[str, str]
@@ -78,7 +79,7 @@ def _name(painter: ThemedPainter, box: QRectF, name: tuple[str, str]) -> None:
 
 
 def _draw_tile(painter: ThemedPainter, box: QRectF, word: str, tiles: TileRow, number: int) -> None:
-    """Draw one tile, which is filled if it is selected and can have the warning or alarm color."""
+    """Draw one tile. A selected tile is filled, and a tile can have the warning or alarm color."""
     ink, ground, line = "text", "key", "frame"
     if number in tiles.alarmed_indices:
         ink = line = "alarm"
@@ -226,7 +227,7 @@ class JogPad(JogCross):
     def _tile_height(self, area: QRectF, rows: int) -> float:
         """Return the height of a tile row in pixels.
 
-        A row is at least as high as a fingertip if this leaves enough height for the jog targets.
+        A row is at least as high as a fingertip if enough height remains for the jog targets.
         """
         u = self.theme.unit_px
         finger = self.theme.find_row_height(ROW, 9.0, is_touchable=True)
@@ -296,7 +297,7 @@ class JogPad(JogCross):
 
     @property
     def _active_rotary_axis(self) -> str:
-        """Return the rotary axis that is jogged or moved by the handwheel, or an empty string.
+        """Return the rotary axis that is jogged or selected for the handwheel, or else an empty string.
 
         The steps and speeds of a rotary axis are in degrees.
         """

@@ -1,6 +1,6 @@
 """Jog page with the jog pad on the left, and tool setting or manual functions on the right.
 
-The entry line is below tool setting or the manual functions.
+The entry line is at the bottom on the right.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class ManualFunctionPanel(TouchPanel):
         self._model = model
 
     def show_functions(self, snapshot: Snapshot) -> None:
-        """Update which functions are shown as selected, prepared or on."""
+        """Update which manual functions are displayed as selected, prepared or on."""
         hand = self._model.manual_functions
         self._shown = (
             hand.selected_function,
@@ -159,7 +159,7 @@ def find_strip_key_height(theme: ScreenTheme) -> float:
 class ManualFunctionStrip(TouchPanel):
     """Strip below tool setting with keys for manual functions and for a skim cut.
 
-    The strip is shown while no question is open.
+    The strip is hidden while a question is open.
     """
 
     _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
@@ -231,7 +231,8 @@ WIDE, ASKED, WORDS = 0.46, 12.0, 2.6
 class JogPage(HeldKeysPage):
     """Screen page for manual axis motion.
 
-    ``refresh`` renews the lease of the jog. If the screen stalls, the motion therefore stops.
+    ``refresh`` renews the motion lease of the jog. If the screen stalls, the lease expires and the motion
+    stops.
     """
 
     NAME = page_table.JOG
@@ -301,7 +302,7 @@ class JogPage(HeldKeysPage):
         return {**common, **touch, "F4": model.tool_setting.ask_to_undo_change}
 
     def find_disabled_keys(self) -> frozenset[str]:
-        """Return the disabled function keys: touch-off and undo, or 3D-ROT on a mill."""
+        """Return the touch-off and undo keys, or 3D-ROT on a mill, that are currently disabled."""
         model, snapshot = self.model, self.desk.read_snapshot()
         if model.is_mill:
             return frozenset() if model.tilted_jog.is_available(snapshot) else frozenset({"F5"})
@@ -332,7 +333,7 @@ class JogPage(HeldKeysPage):
         return self.model.try_leave()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
-        """Update the model, which also renews the lease of the jog, and show the state of the model."""
+        """Update the model, which renews the motion lease of the jog, and show its state."""
         if not self._has_keyboard():
             self.stop_if_active()
         self.model.update(snapshot)

@@ -39,9 +39,9 @@ SPEED_KEY = "9"  # The key that asks for the spindle speed.
 
 
 class Words(NamedTuple):
-    """Program words of the manual functions in a programming language.
+    """Program words of the manual functions in one program language.
 
-    ``speed_line`` sets the speed in a separate line, for languages that do not permit S with M3.
+    ``speed_line`` sets the spindle speed in a separate line, for languages that do not permit S with M3.
     """
 
     forward_line: str
@@ -85,7 +85,7 @@ class ManualFunctions:
 
     @property
     def function_codes(self) -> Words:
-        """Return the program words of the functions in the programming language of the machine."""
+        """Return the program words of the functions in the program language of the machine."""
         return CODES_BY_LANGUAGE[self.machine.mdi_language]
 
     @property
@@ -163,8 +163,8 @@ class ManualFunctions:
     def start_speed_rpm(self) -> float:
         """Return the speed in rpm for FORWARD and REVERSE, or 0 if no speed is known.
 
-        This is the programmed speed S that is active. An entered speed has priority if the line of the
-        function contains S.
+        This is the active programmed speed S. If the line of the function contains S, an entered speed has
+        priority.
         """
         modal = self.desk.read_snapshot().modal
         typed = 0.0 if self.function_codes.speed_line else self.entered_rpm
@@ -198,7 +198,7 @@ class ManualFunctions:
         )
 
     def _find_refusal(self, snapshot: Snapshot) -> str:
-        """Return the reason why no manual function can be selected now, or an empty string.
+        """Return the reason why no manual function can be selected now, or else an empty string.
 
         When the line starts, the executor repeats these checks and makes further checks.
         """
@@ -336,9 +336,9 @@ class ManualFunctions:
     # --- every frame ---------------------------------------------------------------------------------
 
     def update(self, snapshot: Snapshot) -> None:
-        """Process the result of proving a line.
+        """Process the result of proving a line, and cancel a prepared line if the axes have moved.
 
-        If the axes have moved, a prepared line is canceled. This method is called once per frame.
+        This method is called once per frame.
         """
         self._arm(snapshot)
         if self._armed:

@@ -2,10 +2,9 @@
 
 A skim cut has these steps: cut, retract, stop the spindle, measure, and enter the size. The measured axis
 is X for a diameter and Z for a face. It must not move between the cut and the entry, so the tool retracts
-along the other axis.
-
-The offset is calculated from the position of the measured axis during the cut. If this axis moves after the
-cut, the position is discarded because it could belong to another cut.
+along the other axis. The offset is calculated from the position of the measured axis during the cut. If
+this axis moves after the cut, the stored position is discarded, because it may no longer belong to this
+cut.
 """
 
 from __future__ import annotations
@@ -83,7 +82,7 @@ class SkimCut:
     # --- keys ----------------------------------------------------------------------------------------
 
     def begin_skim_cut(self) -> None:
-        """Ask whether to cut a diameter or a face, or show the reason why no tool can be set now."""
+        """Ask whether to cut a diameter or a face. If no tool can be set now, show the reason instead."""
         if self.is_in_progress:
             return
         why = self.tool_setting.find_refusal(TOUCH_X, self.desk.read_snapshot())
@@ -119,7 +118,7 @@ class SkimCut:
         )
 
     def _find_cut_refusal(self, snapshot: Snapshot) -> str:
-        """Return the reason why the cutting step cannot end yet, or an empty string."""
+        """Return the reason why the cutting step cannot end yet, or an empty string if it can end."""
         if snapshot.state is not MachineState.IDLE:
             return tr("AXES ARE STILL MOVING. WAIT UNTIL THEY STOP")
         if self.cut_length_mm >= MIN_CUT_MM:
@@ -187,7 +186,7 @@ class SkimCut:
             self.cut_step = SkimCutStep.RETRACT
 
     def _find_failure(self, snapshot: Snapshot) -> str:
-        """Return the reason why the skim cut cannot continue, or an empty string."""
+        """Return the reason why the skim cut cannot continue, or an empty string if it can continue."""
         if snapshot.state in {
             MachineState.ESTOP,
             MachineState.FAULT,
@@ -202,10 +201,9 @@ class SkimCut:
         return ""
 
     def _follow_cut(self, snapshot: Snapshot) -> None:
-        """Update the length of the cut.
+        """Update the length of the cut, which is the travel along the other axis while the spindle turns.
 
-        The length is the travel along the other axis while the spindle turns, since the measured axis last
-        moved.
+        The travel is measured from the position at which the measured axis last moved.
         """
         if self._stands is None or abs(self._place(snapshot) - self._stands[0]) > MOVE_TOLERANCE_MM:
             self._anew(snapshot)
@@ -319,8 +317,8 @@ def format_direction(direction: TouchDirection) -> str:
 class ToolSetterTouchOff:
     """Touch-off of a tool at the tool setter.
 
-    ``is_armed`` means that the next direction key starts a touch-off. ``directions`` contains the
-    directions of those keys.
+    ``is_armed`` means that the next direction key starts a touch-off. ``directions`` contains the jog
+    directions of the direction keys.
     """
 
     desk: Desk
@@ -442,7 +440,7 @@ class ToolSetterTouchOff:
 
 @dataclass(slots=True)
 class HeldTouchOff(HeldJog):
-    """Held jog, in which a direction key starts a touch-off while ``tool_setter_touch_off`` is armed."""
+    """Jog in which a direction key starts a touch-off while ``tool_setter_touch_off`` is armed."""
 
     tool_setter_touch_off: ToolSetterTouchOff | None = None
     _asked: Command | None = field(default=None)

@@ -23,8 +23,8 @@ _UPRIGHT_TOLERANCE = 1e-6  # Tolerance of a unit vector within which a tool coun
 class JogFrame:
     """Coordinate frame that defines the jog directions X, Y and Z.
 
-    The columns of ``axis_matrix`` are the directions in machine coordinates. ``frame_name`` is the name of
-    the frame.
+    The columns of ``axis_matrix`` are the jog directions in machine coordinates. ``frame_name`` is the
+    displayed name.
     """
 
     axis_matrix: Matrix
@@ -42,9 +42,9 @@ class JogFrame:
 
 
 def make_jog_frame(kinematics: Kinematics | None, snapshot: Snapshot) -> JogFrame | str:
-    """Return the tilted frame for jogging, or the reason as text if there is no such frame.
+    """Return the tilted frame for jogging, or the reason as text if no frame is available.
 
-    If a tilted plane is active, its frame is used, but only if the rotary axes are at the angles of the
+    If a tilted plane is active, its frame is used, but only while the rotary axes are at the angles of the
     plane. If no plane is active, the frame of a tilted head is used.
     """
     swivel = snapshot.swivel
@@ -82,7 +82,7 @@ def _is_angle_different(system: PlaneCoordinateSystem, axis: RotaryAxis, angle: 
 
 @dataclass(slots=True)
 class TiltedJog:
-    """Jog in a tilted frame (3D-ROT), which is turned off if the frame is no longer available.
+    """Jog in a tilted frame (3D-ROT). It is turned off when the frame is no longer available.
 
     ``release_keys`` stops the jog, and ``show_message`` shows the reason.
     """
@@ -114,9 +114,9 @@ class TiltedJog:
         self.is_on = False
 
     def update(self, snapshot: Snapshot) -> None:
-        """Update the tilted frame. Turn 3D-ROT off if the frame is no longer available.
+        """Update the tilted frame, and turn 3D-ROT off if no frame is available.
 
-        This method is called once per frame of the screen.
+        This method is called once per screen frame.
         """
         found = make_jog_frame(self.kinematics, snapshot)
         self.jog_frame, self.refusal_reason = (None, found) if isinstance(found, str) else (found, "")

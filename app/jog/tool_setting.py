@@ -70,14 +70,14 @@ class ToolSetting:
 
     @property
     def is_tool_setter_result(self) -> bool:
-        """Return whether the open question is whether to save a measurement of the tool setter."""
+        """Return whether the open question asks whether to save a measurement of the tool setter."""
         return self.question_name in TOUCH_FIELDS and self.touch_off.measured_position_mm is not None
 
     def ask_to_save_measurement(self, quantity: str, position_mm: float, reason: str) -> None:
         """Ask whether to save a measurement of the tool setter.
 
         ``position_mm`` is the machine position in mm with the tool tip at part zero. If the value is
-        suspicious, the operator is asked to confirm the suspicious change instead.
+        suspicious, the operator is instead asked to confirm a suspicious change.
         """
         self.question_name, self.text = quantity, ""
         self.touch_off.set_measurement(quantity, position_mm, reason)
@@ -131,7 +131,7 @@ class ToolSetting:
         return f"{name}  {translate_field_name(self.question_name)}?" if self.question_name else ""
 
     def make_note_text(self) -> str:
-        """Return the note that the operator must read before answering, or an empty string."""
+        """Return the note that the operator must read before answering, or an empty string without a note."""
         number, new = self.tool_number, self.tool_fields.incomplete_tool
         if self.is_master_touch_off and self.touch_off.moves_only_this_tool:
             return tr(
@@ -254,7 +254,7 @@ class ToolSetting:
             self.touch_off.store_touch_position(quantity, snapshot)
 
     def find_refusal(self, quantity: str, snapshot: Snapshot) -> str:
-        """Return the reason why a value of the tool cannot be changed now, or an empty string."""
+        """Return the reason why a value of the tool cannot be changed now, or an empty string if it can."""
         why = self.offset_book.lock_reason or find_change_refusal(
             snapshot, is_correction=quantity in CORRECTION_FIELDS[OffsetKind.TOOL]
         )
@@ -310,7 +310,7 @@ class ToolSetting:
             self.desk.say(why)
 
     def _save_answer(self) -> str:
-        """Process the entered answer, and return the message to show, or an empty string.
+        """Process the entered answer, and return the message to show, or else an empty string.
 
         The message is the reason why the answer is rejected or, after a touch-off, the note that the
         operator must read. Raises InvalidEntryError if the entered text is invalid.
@@ -370,7 +370,7 @@ class ToolSetting:
         )
 
     def find_undo_refusal(self) -> str:
-        """Return the reason why the tool's last offset change cannot be undone, or an empty string."""
+        """Return why the last offset change of the tool cannot be undone, or an empty string if it can."""
         why = self.offset_book.lock_reason or find_change_refusal(
             self.desk.read_snapshot(), is_correction=False
         )

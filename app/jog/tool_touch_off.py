@@ -21,7 +21,7 @@ MOVE_TOLERANCE_MM = (
 
 
 def find_touch_off_refusal(quantity: str, snapshot: Snapshot) -> str:
-    """Return the reason why an axis cannot be touched off now, or an empty string."""
+    """Return the reason why an axis cannot be touched off now, or an empty string if it can."""
     axis = TOUCH_FIELDS[quantity].upper()
     if not snapshot.homed[snapshot.axes.index(axis)]:
         return tr(Message("{axis} IS NOT HOMED AND ITS POSITION IS UNKNOWN. HOME IT FIRST", axis=axis))
@@ -41,8 +41,9 @@ class TouchOff:
 
     - ``touch_position_mm`` is the machine position in mm at the touch.
     - ``measured_position_mm`` is the result of the tool setter: the machine position in mm with the tip at
-    part zero.
-    - ``change_reason`` describes the measurement. After it, no entry is necessary and the axis may move.
+      part zero.
+    - ``change_reason`` describes a measurement of the tool setter. After this measurement, no entry is
+      necessary and the axis may move.
     """
 
     measured_quantity: str = ""
@@ -119,7 +120,7 @@ class TouchOff:
     def save_touch_off(
         self, tool_number: int, text: str, history: OffsetHistory, new_tool: IncompleteTool
     ) -> str:
-        """Save the touch-off, and return the reason if it is rejected, or an empty string.
+        """Save the touch-off. Return an empty string, or the reason if the touch-off is rejected.
 
         X and Z of a new tool are saved together. Raises InvalidEntryError if the entry is invalid.
         """
@@ -162,7 +163,7 @@ class TouchOff:
         )
 
     def _find_tip_x(self, place: float) -> float | None:
-        """Return X of the tool tip relative to part zero at the touch in mm, or None if X was not touched."""
+        """Return X of the touching tool tip relative to part zero in mm, or None if X was not touched."""
         return (
             self.touch_position_mm - place
             if self.field_name == "x" and self.measured_position_mm is None

@@ -292,7 +292,7 @@ class MdiModel:
         return taken
 
     def prove_entered_line(self) -> None:
-        """Prove the entered line from the current machine state, or show the reason if this is impossible."""
+        """Prove the entered line from the current machine state. If this is not possible, show the reason."""
         snapshot = self.read_snapshot()
         self.clear_message()
         if snapshot.state is not MachineState.IDLE:
@@ -349,7 +349,7 @@ class MdiModel:
     # --- every frame ---------------------------------------------------------------------------------
 
     def update(self, snapshot: Snapshot) -> None:
-        """Process the result of proving the line. When the line starts, add it to the history.
+        """Process the result of proving the line. After the line has started, add it to the history.
 
         This method is called once per frame.
         """

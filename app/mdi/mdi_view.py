@@ -226,7 +226,7 @@ class MdiPage(ModelPage):
         }
 
     def find_disabled_keys(self) -> frozenset[str]:
-        """Return the disabled keys: DRIVES (F5) and RESET (F6) if they have no function in this state."""
+        """Return those of the keys DRIVES (F5) and RESET (F6) that have no function in the current state."""
         state = self.desk.read_snapshot().state
         found = {"F5": state in {MachineState.ESTOP, MachineState.FAULT}, "F6": state in MOVING_STATES}
         return frozenset(key for key, refused in found.items() if refused)
@@ -236,7 +236,7 @@ class MdiPage(ModelPage):
             self.model.recall_line(back)
 
     def _toggle_letter_pad(self) -> None:
-        """Show the letter keyboard instead of the history, or show the history again."""
+        """Show the letter keyboard instead of the history, or the history instead of the letter keyboard."""
         self.letter_pad.setVisible(self.letter_pad.isHidden())
         self.letter_pad.raise_()
 

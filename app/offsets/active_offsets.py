@@ -64,8 +64,10 @@ class MillOffsets:
 def add_mill_offsets(job_setup: InterpreterSetup, offsets: MillOffsets) -> InterpreterSetup:
     """Return the job setup with the offset tables of a mill added.
 
-    The setup of a lathe is returned unchanged. Only tools of the mill's tool table are used. Lathe tool
-    offsets in the same store are ignored. ``job_setup.kinematics`` must be unchanged from the machine file.
+    The setup of a lathe is returned unchanged.
+
+    Only tools of the mill's tool table are used, and lathe tool offsets in the same store are ignored.
+    ``job_setup.kinematics`` must be the kinematics of the machine file, without a preset.
     """
     machine = job_setup.kinematics
     if machine is None:
@@ -109,7 +111,7 @@ def find_rotary_zero_positions(row: PresetRow) -> dict[str, float]:
 
 
 def _make_tool_offset(row: MillToolRow) -> ToolOffset:
-    """Return the length and radius of a mill tool, each increased by its oversize (DL, DR)."""
+    """Return the length and radius of a mill tool. The length includes DL, and the radius includes DR."""
     return ToolOffset(z=row.length + row.dl, nose_radius=max(row.radius + row.dr, 0.0), name=row.name)
 
 

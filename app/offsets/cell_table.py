@@ -61,7 +61,7 @@ class CellTable(OffsetTable):
 
     @abstractmethod
     def find_active_row(self, snapshot: Snapshot) -> int:
-        """Return the number of the row that the machine currently uses, or 0 if it uses none."""
+        """Return the number of the row that the machine currently uses, or 0 if it uses no row."""
 
     def field_of(self, name: str) -> RowField:
         """Return the field definition of a column."""
@@ -80,7 +80,7 @@ class CellTable(OffsetTable):
         return empty if row is None else getattr(row, name)
 
     def tone_at(self, _number: int, _name: str) -> StatusTone:
-        """Return the color tone of a cell, which shows whether its value needs attention."""
+        """Return the color tone of a cell, which shows whether the operator should check its value."""
         return StatusTone.OFF
 
     @property
@@ -152,9 +152,9 @@ class CellTable(OffsetTable):
         return tr("ENTER A NUMBER OR EXPRESSION   ARROWS, TAB: OTHER CELL")
 
     def find_change_refusal(self, snapshot: Snapshot, *, is_correction: bool = False) -> str:
-        """Return the reason why this table cannot be changed now, or an empty string.
+        """Return the reason why this table cannot be changed now, or an empty string if it can be changed.
 
-        A change moves a zero point or a tool tip. Changes are therefore allowed only between cycles.
+        A change moves a zero point or a tool tip, so changes are allowed only between cycles.
         """
         if (
             snapshot.state in ACTIVE_STATES - {MachineState.JOG, MachineState.HOMING}

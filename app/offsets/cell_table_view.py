@@ -81,8 +81,8 @@ class CellPanel(RowPanel):
     def _find_visible_columns(self, available_width: float) -> range:
         """Return the indices of the visible columns.
 
-        The first column is visible if the selected column then also fits. Otherwise the selected column is
-        the last visible column. ``available_width`` is in the units of the column widths.
+        They begin with the first column if the selected column then also fits. Otherwise they end with the
+        selected column. ``available_width`` is in the units of the column widths.
         """
         first, end, used = 0, 0, 0.0
         while end < len(self._wide) and (
@@ -140,8 +140,8 @@ _ROW_LETTERS = {ZeroOffsetTable.kind: "G", MillToolTable.kind: "T", PresetTable.
 class CellTablePage(OffsetPage):
     """Base class of the three pages whose tables are edited cell by cell.
 
-    F2 sets the selected field from the current position (touch-off). These pages do not show the effect of
-    a change on the path.
+    F2 sets the selected field from the current position (touch-off). These pages do not show how a change
+    affects the tool path.
     """
 
     model: CellTable

@@ -2,10 +2,9 @@
 
 The rules define which changes are suspicious, and which access right each change requires. A rule compares
 the new value with the value in use. The limits are larger than the usual size correction between two parts,
-but smaller than most errors of a digit, a sign or a decimal point.
-
-Zero offsets and presets are not checked, because a new setup can move them by any distance. Instead, the
-proof of the program checks the resulting path against the axis travel.
+but smaller than most errors of a digit, a sign or a decimal point. Zero offsets and presets are not
+checked, because a new setup can move them by any distance. Instead, the proof of the program compares the
+resulting path with the axis travel.
 """
 
 from __future__ import annotations
@@ -115,7 +114,7 @@ def _make_changed_row(
 def find_suspicious_changes(
     number: int, old: OffsetRow | None, new: OffsetRow, travel: TravelLimits
 ) -> tuple[SuspiciousChange, ...]:
-    """Return the suspicious fields of a change from ``old`` to ``new``, the most serious first."""
+    """Return the suspicious fields of a change from ``old`` to ``new``, the most serious reason first."""
     found: list[SuspiciousChange] = []
     if isinstance(new, ToolOffsetRow):
         found = list(_of_tool(number, old if isinstance(old, ToolOffsetRow) else None, new, travel))
@@ -190,7 +189,7 @@ def _moved(
 def _check_new_master(
     table: Mapping[int, OffsetRow], new: Mapping[int, OffsetRow]
 ) -> Iterator[SuspiciousChange]:
-    """Yield a suspicion for each tool that would become the master tool while other tools exist.
+    """Yield a suspicious change for each tool that would become the master of existing tools.
 
     The other tools would then follow its touch-offs.
     """
@@ -221,7 +220,7 @@ def find_following_tools(tools: Iterable[int], master: int) -> tuple[int, ...]:
 def find_suspicious_follower_changes(
     tools: Mapping[int, ToolOffsetRow], master: int, new: ToolOffsetRow, travel: TravelLimits
 ) -> tuple[SuspiciousChange, ...]:
-    """Return a suspicion for each tool that would move outside the travel with the master tool."""
+    """Return a suspicious change for each tool that would leave the travel with the master tool."""
     old = tools[master]
     x, z = (after - before for before, after in zip(old.offset, new.offset, strict=True))
     found: list[SuspiciousChange] = []

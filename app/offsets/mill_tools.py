@@ -78,7 +78,7 @@ class MillToolTable(CellTable):
     def footer_text(self) -> str:
         """Return the hint below the table.
 
-        The hint explains the keys F2 and Esc, or a tool life column if one is selected.
+        The hint explains the keys F2 and Esc, or the tool life column if such a column is selected.
         """
         if self.name in {"life", CUTTING_TIME_FIELD}:
             return tr(
@@ -92,7 +92,7 @@ class MillToolTable(CellTable):
     def save_fields(self, values: Mapping[str, FieldValue], reason: str) -> str:
         """Save CUR.TIME in the tool life counter, or other fields in the tool table.
 
-        Returns the reason if the change is rejected, or an empty string on success.
+        Returns an empty string on success, or the reason if the change is rejected.
         """
         if CUTTING_TIME_FIELD not in values:
             return super().save_fields(values, reason)
@@ -104,7 +104,7 @@ class MillToolTable(CellTable):
         return ""
 
     def find_position_refusal(self) -> str:
-        """Return the reason why the tool length cannot be touched off now, or an empty string."""
+        """Return the reason why the tool length cannot be touched off now, or an empty string if it can."""
         if self.name != "length":
             return tr("SELECT COLUMN L, THEN PRESS F2 TO TOUCH OFF THE LENGTH")
         nose = MillTouchCalculator.get_for_desk(self.desk).find_spindle_nose_height()

@@ -1,4 +1,4 @@
-"""Calculation of touch-offs with the kinematics of a mill, and tool life counters of its tools."""
+"""Calculation of touch-offs with the kinematics of a mill, and the tool life counters of the mill."""
 
 from __future__ import annotations
 
@@ -64,8 +64,8 @@ class MillTouchCalculator:
     ) -> Vector:
         """Return the machine position in mm to which the rotary axes move a point of the workpiece.
 
-        ``workpiece_point`` is the machine position of the point with the rotary axes at ``angles_before``.
-        The result is its machine position with the rotary axes at ``angles_after``.
+        ``workpiece_point`` is the machine position of the point while the rotary axes are at
+        ``angles_before``. The result is its position when the rotary axes are at ``angles_after``.
         """
         if self.kinematics is None:
             return workpiece_point
@@ -102,7 +102,7 @@ class MillTouchCalculator:
     def _find_stationary_state(self) -> tuple[Kinematics, dict[str, float], Vector] | str:
         """Return the kinematics with the active preset, the rotary angles and the linear positions.
 
-        If these are unknown, for example while an axis moves, the reason is returned as text.
+        If they are unknown, for example while an axis moves, the reason is returned as text instead.
         """
         snapshot, book = self.desk.read_snapshot(), self.desk.offset_book
         if self.kinematics is None:
@@ -135,8 +135,8 @@ def _none() -> Mapping[int, ToolLife]:
 class MillToolLives:
     """Access to the tool life counters of a mill's tools.
 
-    ``read_lives`` returns the tool life by tool number. It returns the same object until something changes.
-    ``set_cutting_time`` sets the cutting time of a tool in seconds, which is 0 for a new tool.
+    ``read_lives`` returns the tool life by tool number. It returns the same object until the tool life data
+    change. ``set_cutting_time`` sets the cutting time of a tool in seconds, which is 0 for a new tool.
     """
 
     read_lives: Callable[[], Mapping[int, ToolLife]] = _none

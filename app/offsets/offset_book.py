@@ -68,9 +68,9 @@ def read_store_rows(store: Store) -> OffsetRows:
 class OffsetBook:
     """Offsets and tool shapes by number, in mm and degrees, with X as a radius.
 
-    A change that the access level permits is queued for the writer of the store. The new value is shown
-    after it has been written to the disk. ``poll_saving`` is called once per frame. Without ``store``,
-    nothing can be changed, and ``lock_reason`` contains the reason.
+    A change that the access level permits is queued for writing to the store. The new value is shown after
+    it is on the disk. ``poll_saving`` must be called once per frame. Without a ``store``, the offsets
+    cannot be changed, and ``lock_reason`` contains the reason.
     """
 
     store: Store | None = None
@@ -232,7 +232,7 @@ class OffsetBook:
         )
 
     def barred(self, change: ProtectedChange) -> str:
-        """Return the reason why a change of this type cannot be saved now, or an empty string."""
+        """Return the reason why a change of this type cannot be saved now, or an empty string if it can."""
         if self.store is None or self.is_saving:
             return self.lock_reason or SAVE_IN_PROGRESS
         return self.user_access.find_refusal_reason(change)
@@ -254,9 +254,9 @@ class OffsetBook:
         return self._saving is not None
 
     def poll_saving(self) -> str:
-        """Check whether the pending change has been saved.
+        """Check whether the pending change has been saved. Return an error message if saving failed.
 
-        Returns the error message if saving failed, or an empty string.
+        Otherwise, the result is an empty string.
         """
         if self._reopened is not None:
             return self._turn_to(*self._reopened)
@@ -273,7 +273,7 @@ class OffsetBook:
         """Use another store from the next call of ``poll_saving`` on.
 
         This method can be called from any thread. If ``store`` is None, ``error_text`` is the reason.
-        ``rows`` are the offsets set by another TurnDesk process that owns the store.
+        ``rows`` are the offsets of a store that belongs to another TurnDesk process.
         """
         self._reopened = store, error_text, rows
 

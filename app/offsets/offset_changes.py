@@ -57,10 +57,10 @@ NUMBER_PREFIXES = {
 
 
 def find_change_refusal(snapshot: Snapshot, *, is_correction: bool) -> str:
-    """Return the reason why offsets cannot be changed now, or an empty string.
+    """Return the reason why offsets cannot be changed now, or an empty string if they can be changed.
 
     A correction (wear, secondary offset) may be entered while parts are being cut, because the current part
-    uses the offsets with which it was proved. A change of a tool tip position must wait until no program is
+    uses the offsets with which it was proved. A change that moves a tool tip must wait until no program is
     running.
     """
     if snapshot.state in {MachineState.JOG, MachineState.HOMING}:
@@ -71,9 +71,10 @@ def find_change_refusal(snapshot: Snapshot, *, is_correction: bool) -> str:
 
 
 def describe_effective_time(snapshot: Snapshot) -> str:
-    """Return a text about when a change entered now takes effect.
+    """Return a text that states when a change entered now takes effect.
 
-    The result is an empty string if no cycle is running.
+    The result is an empty string if no cycle is running. This includes a cycle that is stopped, for example
+    in feed hold.
     """
     if snapshot.state not in ACTIVE_STATES:
         return ""
@@ -83,7 +84,7 @@ def describe_effective_time(snapshot: Snapshot) -> str:
 
 
 def _describe_applied_next(snapshot: Snapshot) -> str:
-    """Return the addition to a SAVED message that says when the change applies.
+    """Return the suffix of a SAVED message that states when the change applies.
 
     The result is an empty string if no cycle is running.
     """
@@ -195,7 +196,7 @@ class OffsetHistory:
         self.listed_changes = None if self.listed_changes is not None else self._read()
 
     def can_undo(self, number: int | None) -> bool:
-        """Return whether a change of a row can be undone, or of the table if ``number`` is None.
+        """Return whether the last change of a row can be undone. ``number`` None means the whole table.
 
         The result is cached until the next change.
         """
@@ -226,7 +227,7 @@ _MAX_NAMES = 6  # Followers that a question lists by name.
 class ConfirmedOffsetChanges:
     """Changes to offsets, which the operator must confirm if they are suspicious.
 
-    The methods that make a change return the reason if it is rejected, or an empty string.
+    Each method that makes a change returns an empty string, or the reason if the change is rejected.
     """
 
     offset_history: OffsetHistory
@@ -236,7 +237,10 @@ class ConfirmedOffsetChanges:
     def change_fields(
         self, kind: OffsetKind, number: int, values: Mapping[str, FieldValue], reason: str
     ) -> str:
-        """Save some fields of an offset row. If a value is suspicious, ask for confirmation first."""
+        """Save some fields of an offset row.
+
+        If a value is suspicious, ask the operator to confirm it first.
+        """
         book = self.offset_history.offset_book
         table = book.get_rows(kind)
         return self._ask_if_intended(
@@ -349,7 +353,7 @@ class ConfirmedOffsetChanges:
     # --- the master ----------------------------------------------------------------------------------
 
     def ask_to_toggle_master(self, tool_number: int) -> str:
-        """Ask whether to make a tool the master tool, or to have no master tool if it already is.
+        """Ask whether to make a tool the master tool, or to have no master tool if it already is one.
 
         The question names the tools that follow the master tool.
         """

@@ -1,7 +1,7 @@
 """Effect of an offset change on the loaded program: its path with the old and the new offsets.
 
-A changed tool offset moves the real tip. Both paths are therefore drawn in the coordinate frame of the old
-offsets, so that the distance between them equals the distance that the tip will move.
+A changed tool offset moves the real tool tip. Both paths are therefore drawn in the coordinate frame of the
+old offsets. The distance between them then equals the distance that the tip will move.
 """
 
 from __future__ import annotations
@@ -62,7 +62,10 @@ class ComparedPaths:
 
 
 def compare_pictures(before: ProgramPicture, after: ProgramPicture) -> ComparedPaths:
-    """Return the paths of two program pictures with the largest distance between them in mm."""
+    """Compare the paths of two program pictures, and return both with their largest distance.
+
+    The distance is in mm, or inf if the pictures do not contain the same moves.
+    """
     if len(before.z) != len(after.z) or not np.array_equal(before.stroke, after.stroke):
         return ComparedPaths(before, after, float("inf"))
     if not len(before.z):
@@ -73,7 +76,7 @@ def compare_pictures(before: ProgramPicture, after: ProgramPicture) -> ComparedP
 
 @dataclass(slots=True)
 class OffsetEffectWorker:
-    """Calculation of the effect of an offset change, which runs on a worker.
+    """Worker that calculates the effect of an offset change.
 
     The screen reads only ``compared_paths``, ``compared_part``, ``is_busy`` and ``error_text``.
     """
@@ -190,9 +193,9 @@ class EffectDisplay:
             self.is_part_shown = True
 
     def find_display_refusal(self) -> str:
-        """Return the reason why no effect can be displayed now.
+        """Return the reason why no effect can be displayed now, or else an empty string.
 
-        The result is an empty string if an effect can be or is already displayed.
+        The result is also empty while an effect is displayed.
         """
         if self.is_open:
             return ""
@@ -311,7 +314,7 @@ def _tables(tools: Mapping[int, ToolOffsetRow], secondary: Mapping[int, Secondar
 def _restore_rows(
     rows: Mapping[int, OffsetRowT], changes: tuple[OffsetChange, ...], kind: type[OffsetRowT]
 ) -> dict[int, OffsetRowT]:
-    """Return offset rows as they were before some changes."""
+    """Return the offset rows as they were before the given changes."""
     undone = dict(rows)
     for change in changes:
         undone.pop(change.number, None)

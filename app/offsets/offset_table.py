@@ -1,6 +1,6 @@
-"""Base class of the offset tables that the operator edits, and editor of tool fields.
+"""Base class of the offset tables that the operator edits, and the editor of tool fields.
 
-A page shows the table, the entry line below the table, the history, and the effect of a change on the path.
+A page shows the table, the entry line below it, the history, and the effect of a change on the tool path.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ class OffsetTable(ABC):
 
     @property
     def heading(self) -> str:
-        """Return the name of the offset being entered, or an empty string if it is in the question."""
+        """Return the name of the offset being entered, or an empty string if the question names it."""
         return ""
 
     @property
@@ -142,15 +142,15 @@ class OffsetTable(ABC):
 
     @property
     def is_correction(self) -> bool:
-        """Return whether the entry is a correction, which is allowed while parts run."""
+        """Return whether the entry is a correction, which is allowed while parts are being cut."""
         return True
 
     def find_change_refusal(self, snapshot: Snapshot, *, is_correction: bool) -> str:
-        """Return the reason why the table cannot be changed now, or an empty string."""
+        """Return the reason why the table cannot be changed now, or an empty string if it can be changed."""
         return self.offset_book.lock_reason or find_change_refusal(snapshot, is_correction=is_correction)
 
     def find_undo_refusal(self) -> str:
-        """Return the reason why the last change cannot be undone now, or an empty string."""
+        """Return the reason why the last change cannot be undone now, or else an empty string."""
         return self.find_change_refusal(
             self.desk.read_snapshot(), is_correction=self.kind is OffsetKind.SECONDARY
         )
@@ -184,9 +184,9 @@ class OffsetTable(ABC):
         self.text = apply_edit_key(self.text, key, max_length)
 
     def handle_undo(self) -> None:
-        """Discard the entry, or ask whether to undo the last change if there is no entry.
+        """Discard the entry.
 
-        The last change is that of the selected row.
+        If there is no entry, ask whether to undo the last change of the selected row.
         """
         why = self.find_undo_refusal()
         if why or not self.cancel_entry():
@@ -195,7 +195,7 @@ class OffsetTable(ABC):
             )
 
     def clear_table(self) -> None:
-        """Clear the whole table after confirmation (C)."""
+        """Clear the whole table after the operator confirms (C)."""
         if why := self.find_change_refusal(self.desk.read_snapshot(), is_correction=False):
             self.desk.say(why)
         else:
@@ -233,7 +233,7 @@ class OffsetTable(ABC):
 
 @dataclass(slots=True)
 class IncompleteTool:
-    """Entered X or Z value of a new tool whose other value has not been entered yet.
+    """X or Z value that was entered for a new tool while the other value is still missing.
 
     Both values are saved together, because a tool with only one of them could run into the part.
     """
@@ -264,7 +264,7 @@ class IncompleteTool:
 class ToolFieldEditor:
     """Editor that saves single fields of tools, used by the tool table (F8) and the Jog page.
 
-    The methods that make a change return the reason if it is rejected, or an empty string.
+    Each method that makes a change returns an empty string, or the reason if the change is rejected.
     """
 
     offset_history: OffsetHistory
@@ -333,7 +333,7 @@ class ToolFieldEditor:
         return why
 
     def ask_to_toggle_master(self, tool_number: int) -> str:
-        """Ask whether to make a tool the master tool, or to have no master tool if it already is."""
+        """Ask whether to make a tool the master tool, or to have no master tool if it already is one."""
         if tool_number not in self.offset_history.offset_book.tool_offsets:
             return self.describe_unset_tool(tool_number)
         return ConfirmedOffsetChanges(self.offset_history).ask_to_toggle_master(tool_number)
@@ -379,7 +379,7 @@ class ToolFieldTable(OffsetTable):
         """Return the saved value of the selected field as text."""
 
     def find_cell_refusal(self) -> str:
-        """Return the reason why the selected field cannot be changed now, or an empty string."""
+        """Return the reason why the selected field cannot be changed now, or else an empty string."""
         return self.find_change_refusal(self.desk.read_snapshot(), is_correction=self.is_correction)
 
     @property

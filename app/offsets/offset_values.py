@@ -37,7 +37,7 @@ ZERO_OFFSET_DECIMALS = 3
 
 @dataclass(frozen=True, slots=True)
 class UnitMode:
-    """Length unit of the control, and whether X values are diameters, at one moment."""
+    """Length unit of the control, and whether X values are diameters, at one point in time."""
 
     is_metric: bool = False
     is_diameter: bool = False
@@ -57,7 +57,10 @@ UNKNOWN_VALUE = "?"  # Replaces a value that could not be read.
 
 
 def describe_missing_offset(*, is_unreadable: bool = False) -> str:
-    """Return "not set" for an offset that was never entered, or "unreadable"."""
+    """Return the text "not set" for an offset that was never entered.
+
+    If ``is_unreadable`` is true, return the text "unreadable" instead.
+    """
     return tr("unreadable") if is_unreadable else tr("not set")
 
 
@@ -261,9 +264,9 @@ def _taken(field: RowField, value: FieldValue, mode: UnitMode) -> FieldValue:
 
 
 def _find_factor(name: str, mode: UnitMode) -> float:
-    """Return the factor that converts an entered X (diameter or radius) to the stored radius.
+    """Return the divisor that converts an entered X (diameter or radius) to the stored radius.
 
-    Wear is always a diameter, because it is measured on the part. The control's diameter mode can change
+    Wear is always a diameter, because it is measured on the part and the control's diameter mode can change
     between two parts.
     """
     return 2.0 if name == "wear_x" or (name == "x" and mode.is_diameter) else 1.0

@@ -64,10 +64,11 @@ KEY_ALIASES = {"tip": "quadrant"}  # Name of the field in tool data sheets.
 def read_offset_rows(
     path: Path,
 ) -> tuple[dict[int, ToolOffsetRow], dict[int, SecondaryOffsetRow], dict[int, ZeroOffsetRow]]:
-    """Return the tool, secondary and zero offsets of a file as rows of the store.
+    """Return the tool, secondary and zero offsets of a file as database rows.
 
-    A missing key is read as 0 or empty. A tool that has a shape but neither X nor Z has no offset, because
-    its tip position is not specified. Raise CommandError with all mistakes of the file.
+    A missing key is read as 0 or as an empty text. A tool that has a shape but neither X nor Z gets no
+    offset, because its tip position is not specified. Raise CommandError, which lists all mistakes of the
+    file.
     """
     data = read_toml(path)
     mistakes = _unknown_tables(data)
@@ -109,10 +110,10 @@ def read_offset_rows(
 
 
 def read_shape_rows(path: Path) -> dict[int, ToolShapeRow]:
-    """Return the tool shapes of a file as rows of the store.
+    """Return the tool shapes of a file as database rows.
 
-    Raise CommandError with all mistakes of the tool tables. The secondary and zero offsets of the file are
-    not checked.
+    Raise CommandError, which lists all mistakes of the tool tables. The secondary and zero offsets of the
+    file are not checked.
     """
     data = read_toml(path)
     mistakes = _unknown_tables(data)
@@ -122,10 +123,11 @@ def read_shape_rows(path: Path) -> dict[int, ToolShapeRow]:
 
 
 def read_tool_shapes(path: Path) -> dict[int, ToolShape]:
-    """Return the tools of a file that have a shape, in mm, with the nose radius and tip of the same table.
+    """Return all tool shapes of a file in mm, with the nose radius and tip quadrant of each tool.
 
-    In the file, lengths are in inches. Outlines of holder and profile are texts in mm. Raise CommandError
-    with all mistakes of the tool tables. The secondary and zero offsets of the file are not checked.
+    In the file, lengths are in inches. The outlines of holder and profile are texts in mm. Raise
+    CommandError, which lists all mistakes of the tool tables. The secondary and zero offsets of the file
+    are not checked.
     """
     data = read_toml(path)
     mistakes = _unknown_tables(data)
@@ -288,7 +290,7 @@ def _values(
 
 
 def _find_mistake(where: str, field: RowField, value: object) -> CodedError | None:
-    """Return the mistake in a value of the file, or None if the value is valid."""
+    """Return the mistake in a value of the offsets file, or None if the value is valid."""
     if not _fits_field(field, value):
         return CodedError(
             Message("{place} must be {expected}", place=where, expected=_EXPECTED_TYPES[field.field_type]),
@@ -302,7 +304,7 @@ def _find_mistake(where: str, field: RowField, value: object) -> CodedError | No
 
 
 def _fits_field(field: RowField, value: object) -> bool:
-    """Return whether the TOML type of a value matches the field."""
+    """Return whether a TOML value has the type that its offset field requires."""
     if isinstance(value, bool):
         return field.field_type is FieldType.BOOLEAN
     if isinstance(value, str):

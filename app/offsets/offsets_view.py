@@ -39,9 +39,9 @@ CLOSE_UP_SEPARATION = 0.06  # Distance of the two paths in the close-up, as a fr
 
 
 class OffsetEffectView(PathView):
-    """A view of the loaded program's paths with the old and new offsets.
+    """Picture of the loaded program's paths, calculated with the old and with the new offsets.
 
-    The model selects the paths.
+    The model selects which two paths are compared.
     """
 
     def __init__(self, theme: ScreenTheme, model: EffectDisplay, parent: QWidget) -> None:
@@ -51,7 +51,7 @@ class OffsetEffectView(PathView):
         self.hide()
 
     def update_effect(self) -> None:
-        """Show the paths that are ready, and continue to draw the view."""
+        """Show the old and new paths that are already calculated, and continue drawing them."""
         pair = self._model.compared_paths
         self.show_comparison(pair.picture_before if pair else None, pair.picture_after if pair else None)
         if pair is not None and self._model.is_close_up_shown != self._near:
@@ -159,7 +159,7 @@ class OffsetPage(ModelPage):
         }
 
     def find_disabled_keys(self) -> frozenset[str]:
-        """Return the keys of the page that are disabled now."""
+        """Return the function keys of the page that are currently disabled."""
         return frozenset(key for key, why in self.find_key_refusals().items() if why)
 
     def find_key_refusals(self) -> dict[str, object]:
@@ -213,13 +213,13 @@ class OffsetPage(ModelPage):
         return not self.effect_display.is_open
 
     def prompt_text(self) -> str:
-        """Return the prompt of the table or, while the effect on the path is shown, its description."""
+        """Return the prompt of the table, or a description of the path effect while it is shown."""
         if self.effect_display.is_open:
             return self.effect_display.words
         return self.model.prompt_text(self.desk.read_snapshot())
 
     def find_marked_help(self) -> Sequence[GuideBlock]:
-        """Return the explanation of the selected field."""
+        """Return the help text for the selected field."""
         return make_field_help(self.model.kind, self.model.selected_field_name, self.model.question_text)
 
     def apply_theme(self) -> None:
@@ -237,7 +237,10 @@ class OffsetPage(ModelPage):
         return False
 
     def handle_escape(self) -> bool:
-        """Close the effect, the history, a question or an entry, or else open the Automatic page."""
+        """Close what is open: the effect, the history, a question or an entry.
+
+        If nothing is open, go to the Automatic page.
+        """
         if self.effect_display.is_open:
             self.effect_display.close_view()
         elif not self.model.handle_escape():

@@ -21,9 +21,10 @@ _NO_VALUE = "–"
 
 
 def make_part_table(part: OffsetComparisonResult, value_mode: UnitMode) -> TableContent:
-    """Return a table of the part features, starting at the face.
+    """Return a table of the diameters, bores and shoulders of the part, starting at the face.
 
-    The table also lists the findings that appear or disappear. A lamp marks the features that change.
+    The table also lists the findings that the offset change adds or removes. A lamp marks each feature that
+    changes, or that exists only in the old or the new part.
     """
     unit = tr("MM") if value_mode.is_metric else tr("INCH")
     return TableContent(

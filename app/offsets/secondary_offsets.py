@@ -47,7 +47,7 @@ class SecondaryOffsetStep(IntEnum):
 def apply_correction(
     step: SecondaryOffsetStep, old_value: float, entered_value: float, mode: UnitMode
 ) -> float:
-    """Return the new value in mm for an entry.
+    """Return the new offset value in mm after an entry by the operator.
 
     For X, half of the entry is added. For Z, the entry is added. For R, it replaces the value.
     """
@@ -104,7 +104,7 @@ class SecondaryOffsetEntry(OffsetTable):
 
     @property
     def preview_row(self) -> SecondaryOffsetRow | None:
-        """Return the offset as it would be after the current entry, or None if no offset is selected."""
+        """Return the offset with the current entry applied, or None if no offset is selected."""
         if not self.offset_number:
             return None
         old = self.stored_row or SecondaryOffsetRow()
@@ -135,7 +135,7 @@ class SecondaryOffsetEntry(OffsetTable):
 
     @property
     def footer_text(self) -> str:
-        """Return the hint on how to exit and how to clear the table, in the words of the original control."""
+        """Return the hint on how to exit and how to clear the table, worded as on the original control."""
         leave = tr("Press Esc to exit offset adjustment screen")
         return f"{leave}        {tr('Press C to clear all offsets')}"
 
@@ -148,15 +148,15 @@ class SecondaryOffsetEntry(OffsetTable):
         )
 
     def make_proposed_offsets(self) -> ProposedOffsets:
-        """Return all offsets as they would be after the current entry."""
+        """Return all offsets with the current entry applied."""
         tools, secondary = super().make_proposed_offsets()
         preview = self.preview_row
         return tools, {**secondary, **({self.offset_number: preview} if preview else {})}
 
     def update(self, snapshot: Snapshot) -> None:
-        """Read the unit of the control, and discard the entry if the unit has changed.
+        """Read the current length unit of the control, and discard the entry if the unit has changed.
 
-        This is called once a frame. X is always a diameter correction. A change of the control's diameter
+        This is called once a frame. X is always entered as a diameter correction. A change of the diameter
         mode therefore does not discard the entry.
         """
         before = self.unit_mode
@@ -207,7 +207,10 @@ class SecondaryOffsetEntry(OffsetTable):
             super().clear_table()
 
     def handle_undo(self) -> None:
-        """Ask whether to undo the last change of the entered number, if no value has been entered yet."""
+        """Ask whether to undo the last change of the entered offset number.
+
+        This is possible only before a value is entered.
+        """
         if self.entry_step is not SecondaryOffsetStep.X or self.text or self.find_undo_refusal():
             super().handle_undo()
             return

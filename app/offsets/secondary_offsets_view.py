@@ -185,19 +185,19 @@ class SecondaryOffsetsPage(OffsetPage):
         self.content_panel = SecondaryOffsetTable(self.theme, self.model.select_offset, self)
 
     def handle_escape(self) -> bool:
-        """Show all offsets again, or go back one step."""
+        """Leave the enlarged view of eight offsets, or otherwise go back one step of the entry."""
         if self.content_panel.first_enlarged_number:
             self.content_panel.enlarge_rows(0)
             return True
         return super().handle_escape()
 
     def try_leave_page(self) -> bool:
-        """Show all offsets again, discard unfinished entries, and allow the page to close."""
+        """Leave the enlarged view, discard unfinished entries, and allow the page to close."""
         self.content_panel.enlarge_rows(0)
         return super().try_leave_page()
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
-        """Update the table from the model."""
+        """Update the displayed table with the offsets of the model."""
         super().refresh(snapshot, status, loaded)
         model = self.model
         marked = {change.number for change in model.offset_history.last_changes}

@@ -123,7 +123,7 @@ class ToolOffsetTable(ToolFieldTable):
         return describe_effective_time(snapshot) or tr("TYPE A NUMBER OR EXPRESSION   ENTER: SET   F2: ADD")
 
     def make_proposed_offsets(self) -> ProposedOffsets:
-        """Return the offsets as they would be with the entered text."""
+        """Return all tool offsets with the current entry applied."""
         tools, secondary = super().make_proposed_offsets()
         if self.tool_row is None or not self.text:
             return tools, secondary
@@ -135,7 +135,10 @@ class ToolOffsetTable(ToolFieldTable):
 
     @property
     def is_correction(self) -> bool:
-        """Return whether the field is a wear value or a remark, which may change while parts run."""
+        """Return whether the selected field is a wear value or a remark.
+
+        These fields may be changed while parts run.
+        """
         return self.name in CORRECTION_FIELDS[OffsetKind.TOOL]
 
     def find_cell_refusal(self) -> str:
@@ -145,10 +148,10 @@ class ToolOffsetTable(ToolFieldTable):
         return super().find_cell_refusal()
 
     def update(self, snapshot: Snapshot) -> None:
-        """Read the unit of the control, and discard the entry if the unit has changed.
+        """Read the unit and diameter mode of the control, and discard an entry that no longer fits them.
 
-        This is called once a frame. An entry of X or Z is also discarded if the diameter mode changes. An
-        entry of wear is not, because wear is always a diameter.
+        This is called once a frame. A new unit discards every entry. A new diameter mode discards an entry
+        of X or Z, but not of wear, because wear is always a diameter.
         """
         before = self.unit_mode
         super().update(snapshot)
@@ -188,7 +191,7 @@ class ToolOffsetTable(ToolFieldTable):
             self.handle_enter()
 
     def add_entered_value(self) -> None:
-        """Handle F2: add the entered value to the saved value."""
+        """Handle F2: add the entered value to the stored value of the cell."""
         if why := self.find_add_refusal():
             self.desk.say(why)
             return
@@ -218,9 +221,9 @@ class ToolOffsetTable(ToolFieldTable):
         self._select_cell(rows[max(0, min(len(rows) - 1, self.row_index + down))], self.column_index + right)
 
     def add_cutting_edge(self) -> None:
-        """Handle D: add a row for the next cutting edge of this tool.
+        """Handle D: add a row for the next cutting edge of the selected tool.
 
-        The edge is set when X and Z are entered.
+        The new cutting edge is saved only when its X and Z have been entered.
         """
         tool = get_tool_number(self.tool_number)
         free = (

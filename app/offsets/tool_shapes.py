@@ -92,7 +92,7 @@ class ToolShapeTable(ToolFieldTable):
 
     @property
     def shape_mistakes(self) -> tuple[ShapeMistake, ...]:
-        """Return the mistakes in this shape."""
+        """Return the mistakes in the shape of the selected tool."""
         return () if self.shape_row is None else find_shape_row_mistakes(self.shape_row, self.tool_row)
 
     @property
@@ -136,7 +136,7 @@ class ToolShapeTable(ToolFieldTable):
 
     @property
     def is_correction(self) -> bool:
-        """Return False, because a change of a shape must wait until no program is running."""
+        """Return False, because a tool shape must not be changed while a program is running."""
         return False
 
     @property
@@ -243,9 +243,9 @@ class ToolShapeTable(ToolFieldTable):
         )
 
     def _check_shape(self, name: str, value: FieldValue) -> None:
-        """Raise InvalidEntryError if the value is not valid for this field.
+        """Raise InvalidEntryError if the entered value is not valid for the selected field.
 
-        Mistakes in other fields are only shown.
+        Mistakes in other fields are shown but do not prevent saving.
         """
         tool, row = self.tool_row or ToolOffsetRow(), self.shape_row or ToolShapeRow()
         if name in ToolOffsetRow._fields:

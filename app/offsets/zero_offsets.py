@@ -24,7 +24,8 @@ _MIN_EDGE_LENGTH_MM = 1.0  # Millimeters: closer points of an edge do not define
 class PresetTable(CellTable):
     """The preset table with its selected cell.
 
-    ``first_edge_point`` is the first touched point of the edge that defines a basic rotation.
+    To set a basic rotation, the operator touches two points of an edge. ``first_edge_point`` is the first
+    of them.
     """
 
     kind = OffsetKind.PRESET
@@ -71,7 +72,7 @@ class PresetTable(CellTable):
         return self.offset_book.presets.get(self.number, PresetRow())
 
     def choose(self, row: int, column: int) -> None:
-        """Select another cell, and discard the first point of an edge."""
+        """Select another cell, and discard the first touched point of an edge."""
         self.first_edge_point = None
         super().choose(row, column)
 
@@ -139,7 +140,10 @@ class PresetTable(CellTable):
         )
 
     def _find_linear_offsets(self, zero: FieldValue) -> Mapping[str, FieldValue]:
-        """Return X, Y and Z that keep the workpiece zero in place when a rotary axis gets this zero."""
+        """Return the X, Y and Z offsets for a new zero of a rotary axis.
+
+        With these offsets, the workpiece zero remains at the same point of the part.
+        """
         row = self.selected_preset
         if self.stored_row is None:
             return {}
@@ -166,10 +170,10 @@ class PresetTable(CellTable):
             self.first_edge_point = None
 
     def _find_rotation(self, first: Vector, last: Vector, reads: float) -> float:
-        """Return the basic rotation in degrees with which the edge is at ``reads`` degrees from X.
+        """Return the basic rotation in degrees that makes the touched edge ``reads`` degrees from X.
 
-        An edge has no direction, so half revolutions are ignored. Raise InvalidEntryError if the points are
-        too close.
+        An edge has no direction, so half revolutions are ignored. Raise InvalidEntryError if the two
+        touched points are too close together.
         """
         dx, dy = last[0] - first[0], last[1] - first[1]
         if hypot(dx, dy) < _MIN_EDGE_LENGTH_MM:
@@ -287,7 +291,7 @@ class ZeroOffsetTable(CellTable):
         self.save_cell(lambda: self._find_offset(snapshot.actual[place], evaluate_expression(reads)), words)
 
     def _find_offset(self, at: float, reads: float) -> float:
-        """Return the offset with which machine position ``at`` is displayed as ``reads``.
+        """Return the zero offset that makes the display show ``reads`` at machine position ``at``.
 
         Full revolutions of C are ignored.
         """

@@ -42,8 +42,9 @@ class PartPageTable(StrEnum):
 class PartPageModel:
     """Model of the PART page.
 
-    ``check_codes`` are the checks that can be turned off. ``machine_disabled_checks`` are the checks that
-    the machine file turns off. ``show_location`` is called with a finding to show its location.
+    ``check_codes`` are the checks that the operator can turn off. ``machine_disabled_checks`` are the
+    checks that the machine file turns off. ``show_location`` is called with a finding, and shows where it
+    is in the program.
     """
 
     desk: Desk
@@ -172,11 +173,11 @@ class PartPageModel:
 
     @property
     def is_entering_text(self) -> bool:
-        """Return whether a text is being entered, to which every typed character is added."""
+        """Return whether a text is being entered, so that every typed character is added to it."""
         return bool(self.check_to_disable) or self.is_entering_file_name
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is part of an entry."""
+        """Return whether a character can be typed into the current entry."""
         if self.is_entering_text:
             return len(key) == 1 and key.isprintable()
         return self.shown_table is PartPageTable.STOCK and self._figures and key in EXPRESSION_CHARACTERS
@@ -244,10 +245,7 @@ class PartPageModel:
             self._accept_entry()
 
     def handle_escape(self) -> bool:
-        """Cancel the entry, the message or an incomplete stock.
-
-        Return False if there was nothing to cancel.
-        """
+        """Cancel the entry, the message or an incomplete stock, and return whether there was one."""
         if self.entry_text or self.is_entering_text:
             self.cancel_entry()
         elif self.desk.prompt_notice:
@@ -290,7 +288,7 @@ class PartPageModel:
     # --- entries -------------------------------------------------------------------------------------
 
     def _is_refused(self) -> bool:
-        """Return whether the part data cannot be changed now, and show the reason."""
+        """Return whether changes of the part data are refused now, and if so, show the reason."""
         if why := self._find_lock_reason():
             self.desk.say(why)
         return bool(why)
@@ -382,7 +380,7 @@ class PartPageModel:
     # --- checks that are turned off ------------------------------------------------------------------
 
     def _find_silence_refusal(self) -> str:
-        """Return why the selected finding's check cannot be turned off, or an empty string."""
+        """Return why the selected finding's check cannot be turned off, or an empty string if it can."""
         found = self.selected_finding
         if found is None:
             return tr("SELECT THE FINDING WHOSE CHECK YOU WANT TO TURN OFF")
@@ -432,7 +430,7 @@ class PartPageModel:
     # --- store ---------------------------------------------------------------------------------------
 
     def _save_part(self, stored: StoredPart, on_done: str) -> None:
-        """Store the data on the worker thread, then prove the program again."""
+        """Store the part data on the worker thread, then prove the program again."""
         name = self.program_name
         if self.desk.is_refused(ProtectedChange.STOCK):
             return
@@ -467,7 +465,7 @@ class PartPageModel:
 
 
 def _find_most_important(found: tuple[Diagnostic, ...]) -> int:
-    """Return the index of the first error, or else of the first finding about the part."""
+    """Return the index of the first error, or if there is none, of the first finding about the part."""
     errors = [place for place, each in enumerate(found) if each.severity is Severity.ERROR]
     of_part = [place for place, each in enumerate(found) if each.block_number and not each.downgrade_reason]
     return next(iter((*errors, *of_part)), 0)

@@ -112,7 +112,7 @@ def _said(page: PartPageModel, name: StockField) -> str:
 
 
 def _format_assumed(page: PartPageModel, name: StockField) -> str:
-    """Return, as text, the value that is assumed if the operator specifies none."""
+    """Return, as text, the stock value that is assumed when the operator has not specified one."""
     if name is StockField.STICK_OUT:
         return format_length(page.assumed_stick_out_mm, page.is_metric) if page.assumed_stick_out_mm else ""
     part = page.loaded_program.part_proof

@@ -106,10 +106,10 @@ class StockEntry:
         return format_length(value, is_metric) if value else ""
 
     def typed(self, field: StockField, text: str, is_metric: bool) -> StockEntry:
-        """Return a copy of the entry with a typed length.
+        """Return a copy of the entry in which one length is replaced by a typed length.
 
-        The length is in mm if ``is_metric`` is set, and otherwise in inches. Raise InvalidEntryError if the
-        length is not valid for the field.
+        The typed length is in mm if ``is_metric`` is True, and otherwise in inches. Raise InvalidEntryError
+        if the length is not valid for the field.
         """
         value = evaluate_expression(text) * (1.0 if is_metric else MM_PER_INCH)
         if value < 0.0:
@@ -137,7 +137,8 @@ class StockEntry:
     def words(self) -> str:
         """Return the stock in the syntax of the command-line option ``--stock``.
 
-        Return an empty string if no stock is specified. Raise StockError if the stock is not possible.
+        Return an empty string if no stock is specified. Raise StockError if the values do not describe a
+        valid stock.
         """
         if self.kind is StockKind.UNSPECIFIED:
             return ""

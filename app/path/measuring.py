@@ -113,8 +113,8 @@ class SnapPoints:
     def find_next_path_point(self, z: float, x: float, steps: int) -> SnapPoint | None:
         """Return the end point that is ``steps`` end points further along the path.
 
-        After the last end point, the search continues with the first. Return None if the path has no
-        points.
+        End points are the block ends and the points after jumps. After the last end point, the search
+        continues with the first. Return None if the path has no points.
         """
         ends = self._ends
         if not len(ends):
@@ -143,9 +143,9 @@ def _find_end_points(polyline: Polyline) -> FloatArray:
 
 
 def find_intersections(polyline: Polyline, box: Bounds) -> FloatArray:
-    """Return the intersections of the path's chords within a box, as an array of shape (n, 2).
+    """Return the points where lines of the path intersect within a box, as an array of shape (n, 2).
 
-    The result is empty if more than ``MAX_CROSSING_CHORDS`` chords are in the box.
+    The result is empty if more than ``MAX_CROSSING_CHORDS`` lines are in the box.
     """
     z0, x0, z1, x1 = polyline.z[:-1], polyline.x[:-1], polyline.z[1:], polyline.x[1:]
     seen = polyline.stroke[1:] != StrokeKind.JUMP
@@ -277,7 +277,7 @@ def _straight(right: float, across: float, metric: bool, to: str) -> list[Measur
 
 
 class LargestDistance(NamedTuple):
-    """Largest distance between corresponding cutting points of two paths, and its position, in mm."""
+    """Largest distance in mm between corresponding points of the cuts in two paths, and its position."""
 
     distance_mm: float
     z: float
@@ -285,9 +285,9 @@ class LargestDistance(NamedTuple):
 
 
 def find_largest_distance(before: Polyline, after: Polyline) -> LargestDistance | None:
-    """Return the largest distance between corresponding cutting points of two paths.
+    """Return the largest distance between corresponding points of the cuts in two paths.
 
-    Return None if the paths do not consist of the same strokes, or if nothing is cut.
+    Return None if the two paths have different sequences of strokes, or if they contain no cuts.
     """
     if len(before.z) != len(after.z) or not np.array_equal(before.stroke, after.stroke):
         return None

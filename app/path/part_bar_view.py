@@ -31,7 +31,7 @@ class PartTimeline:
     def __init__(self, theme: ScreenTheme, player: PartPlayer, open_stock: OnPress | None = None) -> None:
         """Create the timeline.
 
-        ``open_stock`` opens the entry of the stock.
+        ``open_stock`` is the function that opens the entry of the stock.
         """
         self.theme, self.part_player, self._stock = theme, player, open_stock
         self._track = QRectF()

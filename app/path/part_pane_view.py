@@ -100,7 +100,7 @@ class PartPane(PathPane):
 
     @staticmethod
     def _left_of(shown: PlaybackResult, stock: Stock) -> float:
-        """Return the Z of the left edge of the visible stock.
+        """Return the Z at the left edge of the visible stock.
 
         Most of the stock inside a chuck is not shown.
         """
@@ -108,7 +108,7 @@ class PartPane(PathPane):
         return stock.back_z_mm if chuck is None else max(stock.back_z_mm, chuck)
 
     def set_projection(self, projection: Projection) -> None:
-        """Set the projection, and make the player calculate a section instead of a 3D image."""
+        """Set the projection, and make the part player calculate a section instead of a 3D image."""
         self.projection = projection
         self.part_player.set_image_request(None)
 
@@ -230,7 +230,7 @@ class PartPane(PathPane):
             painter.drawPolygon(area)
 
     def _draw_reach(self, painter: QPainter, shown: PlaybackResult) -> None:
-        """Draw the travel limits as positions of the tool tip."""
+        """Draw the range that the tool tip can reach within the travel limits."""
         if shown.part_instant.tip_range is None:
             return
         (z0, x0), (z1, x1) = shown.part_instant.tip_range
@@ -402,7 +402,7 @@ class SolidPane(PartPane):
     def magnify(self, factor: float, position: QPointF) -> None:
         """Magnify the view by a factor.
 
-        The part axis and the pixel column of ``position`` do not move.
+        The part axis remains in place, and so does the pixel column at ``position``.
         """
         if self.projection is not None:
             self.is_adjusted = True
@@ -445,10 +445,11 @@ class SolidPane(PartPane):
 
 
 def find_removed_quarter(tilt_deg: float) -> tuple[float, float]:
-    """Return the start and end angles of the quarter that is removed from the displayed solid.
+    """Return the start and end angles of the quarter that is cut away from the displayed solid.
 
-    The angles are in degrees from the viewer towards the top. One edge is in the turning plane on the
-    operator's side, where the tool is. The other edge is perpendicular to the first, on the visible side.
+    The angles are in degrees, measured from the direction of the viewer towards the top. One edge is in the
+    turning plane on the operator's side, where the tool is. The other edge is perpendicular to it, on the
+    visible side.
     """
     first = -tilt_deg if tilt_deg >= 0.0 else -tilt_deg - 90.0
     return first, first + 90.0

@@ -49,10 +49,10 @@ class SolidImageRequest(NamedTuple):
 
 
 class ProgramInstant(NamedTuple):
-    """Moment of a program: the finished blocks and the finished fraction of the next block.
+    """Moment of a program: the number of finished blocks and the finished fraction of the next block.
 
-    ``block_end_offset_mm``, if not None, replaces ``next_block_fraction``. It is the offset of the tool from
-    the end of the block as (Z, radius), in millimeters.
+    If ``block_end_offset_mm`` is not None, it is used instead of the fraction. It is the offset of the tool
+    from the end of the block as (Z, radius), in millimeters.
     """
 
     finished_block_count: int = 0
@@ -62,7 +62,7 @@ class ProgramInstant(NamedTuple):
 
 
 class PlaybackResult(NamedTuple):
-    """Result of the worker thread: the part at one instant, and the findings of the whole program."""
+    """Result of the worker thread: the part at one moment, and the findings of the whole program."""
 
     part_instant: PartState
     findings: tuple[Diagnostic, ...] = ()
@@ -195,7 +195,7 @@ class PartPlayer:
     # --- the time line -------------------------------------------------------------------------------
 
     def seek_time(self, time_s: float) -> None:
-        """Show the part at a program time in seconds, and cancel the pending request."""
+        """Show the part at a program time in seconds, and cancel an unfinished request for another time."""
         self.request_part_at_time(time_s)
         if self._picture is not None:
             self._ask()
@@ -290,7 +290,7 @@ class PartPlayer:
     def _make_result(
         self, picture: ProgramPicture, wanted: ProgramInstant, request: WorkRequest
     ) -> PlaybackResult:
-        """Calculate the requested instant on the worker thread.
+        """Calculate the part at the requested moment, on the worker thread.
 
         A new program is first simulated to its end, so that all findings are known.
         """
@@ -312,7 +312,10 @@ class PartPlayer:
     def _find_instant(
         self, history: PartHistory, block: int, share: float, watch: Callable[[], None]
     ) -> PartState:
-        """Return the requested instant of the part, without recalculation if only the view was rotated."""
+        """Return the part at the requested moment.
+
+        The part is not calculated again if only the view was rotated.
+        """
         if self._solid is not None:
             last = self._solid[0]
             if (last.block_count, last.next_block_fraction) == (block, share) and history.is_current_instant(
@@ -369,7 +372,7 @@ class PartPlayer:
     def _publish_progress(
         self, history: PartHistory, request: WorkRequest, last_report_time: list[float]
     ) -> None:
-        """Cancel a long calculation if requested, and otherwise publish an intermediate result."""
+        """Publish an intermediate result, or cancel the calculation if cancellation was requested."""
         request()
         now = self.read_time_s()
         if now - last_report_time[0] > _IMAGE_INTERVAL_S:
@@ -398,7 +401,7 @@ class PartPlayers(list[PartPlayer]):
 
 
 def make_part_player(desk: Desk) -> PartPlayer:
-    """Return a new part player, which is closed together with ``desk``."""
+    """Return a new part player. It is closed when ``desk`` is closed."""
     players = desk.page_registry.find_model(PartPlayers)
     if players is None:
         players = PartPlayers()

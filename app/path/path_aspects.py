@@ -76,17 +76,17 @@ def find_tip_position(snapshot: Snapshot, job: Job | None = None) -> TipPosition
 
 
 def select_polyline(picture: ProgramPicture | None, aspect: PathViewKind) -> Polyline | None:
-    """Return the polyline that shows a picture in this view, or None if there is nothing to show."""
+    """Return the polyline of a program picture for this view, or None if the view would be empty."""
     if picture is None or aspect is PathViewKind.PATH or aspect in PART_ASPECTS:
         return picture
     return picture.face if aspect is PathViewKind.FACE else picture.side
 
 
 def list_available_views(picture: ProgramPicture, *, has_part: bool = False) -> list[AspectView]:
-    """Return the views of a program, in the order in which the view key selects them.
+    """Return the available views of a program, in the order in which the view key selects them.
 
-    The first views show the path next to a face or side that is machined with the C axis. After them, the
-    face and the side are shown alone. If ``has_part`` is True, the views of the part come last.
+    The list starts with the path next to a face or side that is machined with the C axis. Next are the face
+    and the side alone. If ``has_part`` is True, the views of the part come last.
     """
     more = [
         aspect
@@ -112,7 +112,7 @@ class ApproachLeg:
     """One straight move of an approach to (z, x), relative to the part, in mm, with X as a radius.
 
     The position is the machine position minus the tool offset. ``label`` is the number and the axis, for
-    example ``1 X``. The first leg is the current tool position, and its ``is_rapid`` has no meaning.
+    example ``1 X``. The first leg is only the current tool position, so its ``is_rapid`` is ignored.
     """
 
     z: float

@@ -216,15 +216,15 @@ class PathLayers:
 
     @property
     def _mirror_sum(self) -> float:
-        """Return twice the row of X0.
+        """Return twice the pixel row of X0.
 
-        This value minus a row is the mirrored row.
+        This value minus a row is the row mirrored at X0.
         """
         return 2 * float(self.projection.find_pixel_row(0.0))
 
 
 def make_polygon(columns: FloatArray, rows: FloatArray) -> QPolygonF:
-    """Return the points as a ``QPolygonF``, whose memory is filled in one copy."""
+    """Return the points as a ``QPolygonF``, which is filled in a single memory copy."""
     count = len(columns)
     shape = QPolygonF()
     shape.resize(count)
@@ -240,9 +240,9 @@ def draw_stroke_run(painter: QPainter, run: StrokeRun) -> None:
 
 
 def draw_chord_pixels(image: QImage, projection: Projection, shape: Shape, colors: dict[int, QColor]) -> None:
-    """Draw the chords of a shape in the colors of their strokes.
+    """Draw the lines of a shape pixel by pixel, each in the color of its kind of stroke.
 
-    Strokes without a color are skipped.
+    Kinds of stroke without a color are skipped.
     """
     table = np.zeros(256, dtype=np.uint32)
     inked = np.zeros(256, dtype=np.bool_)

@@ -281,7 +281,7 @@ def _label(painter: QPainter, look: ScreenTheme, box: QRectF, text: str) -> None
 
 
 def describe_largest_difference(difference: LargestDistance, is_metric: bool) -> str:
-    """Return the text for the largest difference between two pictures."""
+    """Return the text for the largest distance between the paths of two pictures."""
     if not difference.distance_mm:
         return tr("NO CUTTING MOVE HAS CHANGED")
     length = formats.format_length(difference.distance_mm, is_metric)
@@ -295,7 +295,7 @@ def describe_largest_difference(difference: LargestDistance, is_metric: bool) ->
 
 
 def find_displayed_part_errors(pane: PathPane) -> list[Diagnostic]:
-    """Return the part errors that occur before or at the moment that a pane displays."""
+    """Return the part errors that have occurred up to the moment that a pane displays."""
     shown = pane.part_player.latest_result if pane.part_player is not None else None
     found = shown.part_instant.findings if shown is not None else ()
     return [each for each in found if is_serious_finding(each)]
@@ -339,7 +339,8 @@ def draw_center_lines(
 ) -> None:
     """Draw the center lines, and the C angles as a circle on a face or as lines on a side.
 
-    Moving marks are drawn over these lines later. The origin of the painter is the corner of the pane.
+    Marks that move, such as the tool tip, are drawn over them later. The origin of the painter is the
+    corner of the pane.
     """
     if aspect in SPATIAL_ASPECTS:
         return

@@ -119,7 +119,7 @@ class PathPane:
         return whole.shift(max(0.0, min(free, wanted)) / 2, 0.0)
 
     def redraw(self) -> None:
-        """Draw the same view again in new colors."""
+        """Draw the same view again, in the colors of a new theme."""
         if self.projection is not None:
             self.set_projection(self.projection)
 
@@ -248,7 +248,7 @@ class PathPane:
         tip_position: PlanePosition | None,
         stop_position: PlanePosition | None = None,
     ) -> None:
-        """Set the active block and the tip position, in the z and x of the polyline.
+        """Set the active block and the tip position as (z, x) in the coordinates of the polyline.
 
         ``stop_position`` is the position where an interrupted block stopped.
         """
@@ -267,7 +267,7 @@ class PathPane:
     def find_tip_position(self, tip: TipPosition) -> PlanePosition | None:
         """Return the position of the tool tip in the plane of this pane.
 
-        A face view returns the last position while C turns as the spindle.
+        While C turns as the spindle, a face view returns the last position before that.
         """
         if self.aspect is PathViewKind.PATH or self.aspect in PART_ASPECTS:
             return tip.z, tip.x
@@ -306,7 +306,7 @@ class PathPane:
             painter.drawImage(QPointF(0, 0), self._layers.image)
 
     def draw_run_state(self, painter: QPainter) -> None:
-        """Draw the marked line, the active block and the tip.
+        """Draw the thick lines of the marked blocks, the active block and the tool tip.
 
         In a comparison, draw the largest difference between the two pictures instead.
         """
@@ -387,9 +387,10 @@ class PaneSet:
         self._room = QRectF()
 
     def set_pictures(self, picture: ProgramPicture | None, before: ProgramPicture | None) -> None:
-        """Set the pictures.
+        """Set the pictures to display.
 
-        The current view is retained if it still exists.
+        The selected view remains selected if the available views do not change. Otherwise, the first view
+        is selected.
         """
         self.picture, self.picture_before = picture, before
         with_part = self._with_part and before is None

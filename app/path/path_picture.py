@@ -59,7 +59,7 @@ class FaceViewBuilder:
         self.is_needed = False
 
     def add_mill_move(self, move: PlaneMove, frame: FacePlane, points: list[MillPoint], stroke: int) -> None:
-        """Add a move in a milling plane to the face.
+        """Add a move that was programmed in a milling plane to the face view.
 
         ``frame.heading_deg`` is the direction of mill X on the part.
         """
@@ -75,7 +75,7 @@ class FaceViewBuilder:
             self.polyline_builder.centers.extend((x * cos + y * sin, x * sin - y * cos))
 
     def add_move(self, block: Block, x0: float, x1: float, stroke: int) -> None:
-        """Add any other move with C locked, from lathe X ``x0`` to lathe X ``x1``."""
+        """Add a move with C locked that is not in a milling plane, from lathe X ``x0`` to lathe X ``x1``."""
         self.is_needed |= abs(block.c - block.c0) > STILL_TOLERANCE and abs(x1 - x0) > STILL_TOLERANCE
         self.polyline_builder.move_to(*map_to_face(x0, block.c0))
         pieces = count_turn_chords(block.c - block.c0)
@@ -96,7 +96,7 @@ class FaceViewBuilder:
 class SideViewBuilder:
     """Builder of the side view, which collects the moves that are visible on the side of the part.
 
-    ``x`` is minus C in degrees until the radius is known.
+    Until the radius is known, the coordinate ``x`` is minus C in degrees.
     """
 
     def __init__(self, block_count: int) -> None:
@@ -108,9 +108,9 @@ class SideViewBuilder:
     def add_mill_move(
         self, move: PlaneMove, frame: SidePlane, points: list[MillPoint], stroke: int, dz: float
     ) -> None:
-        """Add a move in a milling plane to the side.
+        """Add a move that was programmed in a milling plane to the side view.
 
-        ``dz`` converts Z of the program to Z of the part.
+        ``dz`` is added to Z of the program to get Z of the part.
         """
         self.is_needed = True
         self._diameter = self._diameter or frame.diameter_mm
@@ -126,7 +126,7 @@ class SideViewBuilder:
             self.polyline_builder.centers.extend((frame.z_start_mm - x + dz, y * degrees - frame.c_start_deg))
 
     def add_move(self, block: Block, x: float, dz: float, stroke: int) -> None:
-        """Add any other move with C locked, to lathe X ``x``."""
+        """Add a move with C locked that is not in a milling plane, to lathe X ``x``."""
         self.is_needed |= (
             abs(block.c - block.c0) > STILL_TOLERANCE and abs(block.z - block.z0) > STILL_TOLERANCE
         )
@@ -176,7 +176,7 @@ class FaceAndSideBuilder:
         self._side.polyline_builder.end_block()
 
     def build_polylines(self) -> tuple[Polyline | None, Polyline | None]:
-        """Return the face and the side, each of them None if it shows no moves.
+        """Return the polylines of the face and of the side, each None if the view is empty.
 
         A program that uses C only for indexing is shown on the face.
         """
@@ -375,7 +375,7 @@ class PictureBuilder:
     def _add_mill_move(
         self, block: Block, plane: PlaneMove, points: list[MillPoint], stroke: StrokeKind
     ) -> None:
-        """Add the X and Z axis motion of a mill move in a plane."""
+        """Add the X and Z motion of a move in a milling plane."""
         modal = block.modal
         dx = block.offset_x - modal.drawing_zero_x + modal.secondary_offset_x
         dz = block.offset_z - modal.drawing_zero_z + modal.secondary_offset_z
@@ -409,7 +409,10 @@ def build_picture(
 
 
 def _find_chord(block: Block) -> float:
-    """Return the distance in mm from start to end in the first two axes, like the distance to go."""
+    """Return the straight distance in mm from start to end in the first two axes.
+
+    The displayed distance to go is measured like this.
+    """
     if block.travel is not None:
         return math.dist(block.travel.start[:2], block.travel.end[:2])
     return math.hypot(block.x - block.x0, block.z - block.z0)

@@ -88,7 +88,7 @@ def fit_projection(
 
 
 class Shape(NamedTuple):
-    """Polyline points in pixels, each with the kind of the stroke that ends at the point."""
+    """Points of a polyline in pixels, each with the kind of stroke that ends there."""
 
     columns: FloatArray
     rows: FloatArray
@@ -141,7 +141,7 @@ def _find_visible_points(
 
 
 def _find_outside(columns: FloatArray, rows: FloatArray, projection: Projection) -> npt.NDArray[np.bool_]:
-    """Return a mask of the chords that are completely outside one edge of the visible area."""
+    """Return a mask of the lines that are completely outside the same edge of the visible area."""
     out = np.zeros(max(0, len(columns) - 1), dtype=np.bool_)
     for beyond in (columns < 0, columns > projection.width_px, rows < 0, rows > projection.height_px):
         out |= beyond[1:] & beyond[:-1]
@@ -222,7 +222,7 @@ def clip_chords(chords: ChordEnds, right: int, bottom: int) -> tuple[ChordEnds, 
 
 
 def rasterize_chords(chords: ChordEnds) -> tuple[IndexArray, IndexArray, IndexArray]:
-    """Return the column, row and chord index of every pixel of all chords, in chord order."""
+    """Return every pixel of all lines as arrays of column, row and line index, line by line."""
     dc, dr = chords.end_columns - chords.start_columns, chords.end_rows - chords.start_rows
     steps = np.ceil(np.maximum(np.abs(dc), np.abs(dr))).astype(np.int64)
     count = steps + 1
@@ -247,16 +247,16 @@ class PixelLine(NamedTuple):
 
 
 class SectionArea(NamedTuple):
-    """One area of the section of a part, with the edges that are drawn as lines."""
+    """One filled area of the section of a part, with those of its edges that are drawn as lines."""
 
     outline: PixelLine
     edge_lines: tuple[PixelLine, ...]
 
 
 def project_section(half: SectionHalf, projection: Projection, *, is_upper: bool) -> list[SectionArea]:
-    """Return the material of one half of the section.
+    """Return the material in one half of the section as areas in pixels.
 
-    ``is_upper`` selects the upper half, on the far side of the axis.
+    If ``is_upper`` is True, it is the upper half, on the far side of the axis.
     """
     first, last = _find_visible_range(half.column_edges, projection)
     found = []
@@ -288,7 +288,7 @@ def project_collision(collision: MaterialHit, projection: Projection) -> list[Pi
 
 
 def project_stock_outline(stock: Stock, projection: Projection) -> list[PixelLine]:
-    """Return the outline of the stock before the first cut."""
+    """Return the outline of the stock before the first cut, in pixels."""
     found = []
     for profile in (stock.outside_profile, stock.bore_profile):
         if profile:
@@ -365,7 +365,10 @@ def _ring(there: PixelLine, back: PixelLine) -> PixelLine:
 
 
 def _thin_line(line: PixelLine) -> PixelLine:
-    """Return the line without points inside horizontal runs and repeated points on a pixel."""
+    """Return the line without points that do not change the picture.
+
+    These are points inside horizontal runs, and points on the same pixel as the preceding point.
+    """
     c, r = np.rint(line.columns * 2.0), np.rint(line.rows * _ROWS_PER_PIXEL)
     keep = np.ones(len(c), dtype=np.bool_)
     keep[1:-1] = (r[1:-1] != r[:-2]) | (r[1:-1] != r[2:])
@@ -382,7 +385,7 @@ def _padded(r: FloatArray) -> FloatArray:
 
 
 def _find_visible_range(edges: FloatArray, projection: Projection) -> tuple[int, int]:
-    """Return the first visible column, and the last visible column plus one."""
+    """Return the first visible column, and the column after the last visible one."""
     half = (projection.width_px / 2 + _OVERDRAW_PX) / projection.pixels_per_mm
     first = int(np.searchsorted(edges, projection.center_z - half)) - 1
     last = int(np.searchsorted(edges, projection.center_z + half))

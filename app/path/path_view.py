@@ -202,7 +202,7 @@ class PathView(Panel):
         self.update()
 
     def _include_points(self) -> None:
-        """Make the visible area include the whole approach if the view shows the approach."""
+        """Enlarge the visible area to include the whole approach if the approach is shown."""
         for pane in self.panes:
             if pane.aspect is PathViewKind.PATH and self.shows_whole_approach:
                 pane.set_extra_visible_points([(leg.z, leg.x) for leg in self.drawn_legs])
@@ -221,13 +221,13 @@ class PathView(Panel):
         return pane.find_tip_position(tip)
 
     def fit_all_panes(self) -> None:
-        """Show the whole path in each pane."""
+        """Zoom every pane so that it shows its whole path."""
         for pane in self.panes:
             pane.fit_view()
         self.update()
 
     def redraw(self) -> None:
-        """Draw the same view again in new colors."""
+        """Draw the same view again, in the colors of a new theme."""
         for pane in self.panes:
             pane.redraw()
         self.update()
@@ -284,7 +284,7 @@ class PathView(Panel):
             self.update()
 
     def make_view_key_actions(self) -> KeyActions:
-        """Return the actions of the zoom and pan keys, as on the Automatic page."""
+        """Return the actions of the zoom and pan keys, which are the same as on the Automatic page."""
         return {
             "Zoom in": partial(self.zoom_view, 1),
             "Zoom out": partial(self.zoom_view, -1),
@@ -313,7 +313,7 @@ class PathView(Panel):
     def switch_measuring(self, *, is_on: bool | None = None) -> None:
         """Start or stop measuring in the last pane.
 
-        With None, start measuring if it is off, and stop it if it is on.
+        If the argument is None, measuring is toggled.
         """
         if is_on is None:
             is_on = self.measurement is None

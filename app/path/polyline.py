@@ -62,7 +62,7 @@ class Polyline:
         return int(self.first[max(0, min(block_count, self.blocks))])
 
     def find_block(self, point: int) -> int:
-        """Return the number of the block whose chord ends at a point.
+        """Return the number of the block that contains the line ending at a point.
 
         Blocks are counted from 1, and points from 0.
         """
@@ -93,7 +93,7 @@ class PolylineBuilder:
         self.strokes.append(stroke)
 
     def add_separate_points(self, z: FloatArray, x: FloatArray, stroke: int) -> None:
-        """Append points, each of which ends a separate block."""
+        """Append points, each as a separate block that consists of one point."""
         first = len(self.z)
         self.z.frombytes(z.tobytes())
         self.x.frombytes(x.tobytes())
@@ -146,7 +146,7 @@ def count_arc_chords(radius_mm: float, sweep_rad: float) -> int:
 
 
 def count_turn_chords(degrees: float) -> int:
-    """Return the number of chords that approximate a move during which C rotates by ``degrees``."""
+    """Return the number of lines that approximate a move during which C rotates by ``degrees``."""
     return max(1, min(MAX_TURN_POINTS, math.ceil(abs(degrees) / TURN_STEP_DEG)))
 
 

@@ -37,11 +37,11 @@ class _Stop:
 
 
 class CycleRecorder:
-    """Recorder of cycles and stops.
+    """Recorder of production cycles and stops.
 
-    ``hear`` receives every event in order, and returns the rows to be stored. The time of day of a row is
-    the time of the call. Durations are calculated from the event times. The reason that ends a cycle counts
-    as a stop until the next cycle starts.
+    - ``hear`` receives every event in order, and returns the rows to be stored.
+    - The time of day of a row is the time of the call. Durations are calculated from the event times.
+    - When a cycle ends, a stop begins with the reason for the end. It lasts until the next cycle starts.
     """
 
     def __init__(self, read_clock: Callable[[], str] = get_utc_now_text) -> None:
@@ -54,7 +54,7 @@ class CycleRecorder:
         self._rows: list[ProductionRow] = []  # rows of the current call
 
     def hear(self, event: LogEvent) -> tuple[ProductionRow, ...]:
-        """Update the current cycle and stop with one event, and return the rows that have changed."""
+        """Process one event, and return the rows of cycles and stops that have changed."""
         self._update(event)
         rows, self._rows = tuple(self._rows), []
         return rows

@@ -144,7 +144,7 @@ class ProductionRecords:
         self._call_done()
 
     def _call_done(self) -> None:
-        """Call the callbacks of changes that have been written to the disk and read again."""
+        """Call the ``on_done`` callbacks of changes that are on the disk and have been read back."""
         callbacks, self._kept = self._kept, []
         for done in callbacks:
             done()

@@ -28,9 +28,9 @@ class ProductionPlan(Protocol):
 
 @dataclass(slots=True)
 class ProductionMonitor:
-    """Monitor of production: tool life, due measurements and reasons to prevent the next part.
+    """Monitor of production, which checks tool life and due measurements and can lock the next part.
 
-    ``observe`` is called once a frame. The prompt line calls ``find_reminder``, which does not wait.
+    ``observe_frame`` is called once a frame. The prompt line calls ``find_reminder``, which never waits.
     """
 
     desk: Desk
@@ -63,7 +63,7 @@ class ProductionMonitor:
         self._update_block(snapshot, loaded)
 
     def _update_block(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
-        """Send the block reason to the executor before the part ends, to prevent the next part."""
+        """Send the reason that locks the next part to the executor before the current part ends."""
         tools = loaded.proof.tool_numbers if loaded.proof is not None else ()
         bars = (
             self.tool_life_monitor.find_lock_reason(snapshot, tools),

@@ -31,8 +31,8 @@ def make_tool_life(row: ToolLifeRow) -> ToolLife:
 class ToolLifeMonitor:
     """Monitor of tool life.
 
-    The use of a tool starts from the stored use. From then on, this object counts the use of the tool. The
-    limits are in the store. On a mill, the counts apply to a whole tool instead of an insert.
+    The stored use of a tool is the initial value. From then on, this object counts the use. The limits are
+    in the store. On a mill, the counts apply to a whole tool instead of an insert.
     """
 
     production_records: ProductionRecords
@@ -53,7 +53,7 @@ class ToolLifeMonitor:
     def find_tool_lives(self) -> dict[int, ToolLife]:
         """Return the tool life of all tools that have a limit or were used.
 
-        The same object is returned until something changes.
+        As long as nothing changes, each call returns the same object.
         """
         of = (self.production_records.load_count, self._changes)
         if self._lives[0] != of:
@@ -221,7 +221,7 @@ class ToolLifeMonitor:
         )
 
     def discard_counts(self) -> None:
-        """Discard the counts, because another store replaces the current store."""
+        """Discard the counts of tool use, because another store replaces the current one."""
         self.tool_use_counts, self._kept = {}, {}
         self._changes += 1
 
@@ -264,7 +264,7 @@ def make_tool_life_notice(life: ToolLife) -> str:
 
 
 def describe_used_up_tool(life: ToolLife, tool_table: OffsetKind) -> str:
-    """Return why no part may start with this tool."""
+    """Return the message that no part may start because the life of this tool is used up."""
     if tool_table is OffsetKind.MILL_TOOL:
         how = "fit a new tool and set its CUR.TIME to 0 in the tool table (F8)"
         return Message(

@@ -10,7 +10,10 @@ TOTALS_SETTING = "tool_totals"  # key of the setting
 
 @dataclass(frozen=True, slots=True)
 class ToolUseTotals:
-    """Totals of a control: finished parts, cutting seconds by tool, and tools of the current part."""
+    """Totals of a control at the time when tool use was last stored.
+
+    They are the finished parts, the cutting seconds of each tool, and the tools of the current part.
+    """
 
     control_identity: str
     finished_part_count: int = 0
@@ -19,7 +22,7 @@ class ToolUseTotals:
 
     @property
     def setting_value(self) -> dict[str, object]:
-        """Return the totals as the value of a setting."""
+        """Return the totals in the form in which they are stored as a setting."""
         cut = {str(number): seconds for number, seconds in self.cutting_seconds_by_tool.items()}
         return {
             "control": self.control_identity,
@@ -30,7 +33,7 @@ class ToolUseTotals:
 
     @classmethod
     def from_setting(cls, value: object) -> ToolUseTotals | None:
-        """Return the totals of a setting value, or None if the value is missing or damaged."""
+        """Return the totals from a stored setting, or None if the setting is missing or damaged."""
         match value:
             case {
                 "control": str() as control,

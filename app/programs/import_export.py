@@ -124,7 +124,7 @@ def export_programs(
 
 @contextmanager
 def _copy_context(medium: TargetMedium, count: int, total: int) -> Iterator[None]:
-    """Convert an error of a USB stick into an operator message with the number of copied programs."""
+    """Convert a USB stick error into an operator message with the number of programs copied so far."""
     try:
         yield
     except FileOperationError as error:
@@ -167,7 +167,7 @@ def _bytes(path: Path) -> bytes:
 
 
 def _find_different(texts: dict[str, bytes], folder: Path) -> tuple[str, ...]:
-    """Return the names of programs that exist in the folder with different text."""
+    """Return the names of programs that already exist in the folder with a different text."""
     found = []
     for name, text in texts.items():
         other = find_matching_file_name(folder, name)
@@ -290,7 +290,7 @@ class ProgramTransfer:
         self.folder_chooser.selected_row = max(0, min(len(self.folder_chooser.listed_entries) - 1, row))
 
     def handle_entry_touch(self, row: int) -> None:
-        """Select the touched line.
+        """Select the touched line of the chooser.
 
         A touch on the line that is already selected acts like Enter.
         """
@@ -372,10 +372,7 @@ class ProgramTransfer:
         )
 
     def _update_progress(self, done: int, total: int) -> None:
-        """Store the progress for the prompt line.
-
-        The worker calls this.
-        """
+        """Store the progress of the transfer, which the prompt line shows. The worker calls this."""
         self._done_of = (done, total)
 
     @staticmethod

@@ -56,14 +56,14 @@ def add_missing_extension(
 def remove_extension(name: str) -> str:
     """Return a program name without its extension.
 
-    If the remaining name ends in another program extension, return the whole name.
+    Return the whole name if the rest would itself end in a program extension.
     """
     left = Path(name).stem
     return name if Path(left).suffix.lower() in PROGRAM_EXTENSIONS - {""} else left
 
 
 def find_matching_file_name(folder: Path, name: str) -> str:
-    """Return the name of a file in the folder that is equal except for upper and lower case.
+    """Return the name of a file in the folder that differs from a name at most in letter case.
 
     Return an empty string if there is no such file.
     """
@@ -165,7 +165,7 @@ class ProgramCommands:
     name_field: InputField = field(default_factory=lambda: InputField(words=True))
 
     def ask_for_name(self, question: str) -> None:
-        """Ask for the name of a copy, or for the new name of a program."""
+        """Ask the operator for the name of a copy, or for the new name of a program."""
         here = self.find_selected_program()
         if here is None:
             self.desk.say(NO_SELECTION)

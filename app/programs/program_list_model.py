@@ -39,7 +39,7 @@ DRAWING_HINT = "{name} IS A DRAWING. F3: MAKE A PROGRAM FROM IT"
 class ProgramListModel:
     """Model of the program list.
 
-    ``operator_folder`` is the operator's folder.
+    ``operator_folder`` is the folder in which the operator's own programs are stored.
     """
 
     desk: Desk
@@ -80,7 +80,7 @@ class ProgramListModel:
     # --- displayed values ----------------------------------------------------------------------------
 
     def on_open(self) -> None:
-        """Read the folders and the records when the page opens."""
+        """Read the program folders and the run records when the page opens."""
         self._after = self.desk.program_loader.loaded_program.name
         self.reload_list()
 
@@ -148,7 +148,7 @@ class ProgramListModel:
         }
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is part of a program name.
+        """Return whether a character is allowed in a program name and can be entered now.
 
         Return False for all characters while the folder chooser is open.
         """
@@ -182,7 +182,7 @@ class ProgramListModel:
     def handle_escape(self) -> bool:
         """Go back one step.
 
-        Return False if the page can close.
+        Return False if there is no step to go back, so that the page can close.
         """
         if self.desk.prompt_notice:
             self.desk.clear_prompt_line()
@@ -320,7 +320,7 @@ def _row(program: ListedFile) -> TableRow:
 
 
 def make_program_details(program: ListedFile) -> tuple[ProgramDetail, ...]:
-    """Return the details of a program.
+    """Return the details of a program as texts for display.
 
     The last two texts can be long. The others are short.
     """

@@ -52,10 +52,10 @@ class ListedFile:
 def list_programs(
     program_folders: ProgramFolders, own_folder: Path, persistence: Persistence
 ) -> tuple[ListedFile, ...]:
-    """Return all programs and drawings of the folders, each with the run record of its text.
+    """Return all programs and drawings of the folders, each with its run record.
 
-    The function reads files whose text is not yet known. Call it on a worker. Raise StoreError if the store
-    cannot be read.
+    A run record belongs to a program text. Files whose text is not yet known are therefore read. Call this
+    function on a worker. Raise StoreError if the store cannot be read.
     """
     runs = persistence.runs.read_records_by_text()
     found = []
@@ -71,7 +71,7 @@ def list_programs(
 
 @lru_cache(maxsize=2 * MAX_PROGRAM_COUNT)
 def _find_run_row(path: Path, _changed: int, _size: int) -> str:
-    """Return the key of a file's run record, or an empty string if the file is not program text."""
+    """Return the key of a file's run record, or an empty string if the file is not a program."""
     try:
         return make_text_record_key(load_source(path).text)
     except SourceError:
@@ -107,12 +107,12 @@ def sort_programs(order: str, programs: Sequence[ListedFile]) -> tuple[ListedFil
 
 
 def format_stored_time(utc_time: str | None) -> str:
-    """Return a time of the store in local time to the minute, or a dash if there is no time."""
+    """Return a time from the store in local time to the minute, or a dash if no time is stored."""
     return formats.format_local_time(utc_time, with_seconds=False) if utc_time else formats.NO_VALUE
 
 
 def format_file_time(unix_time_s: float) -> str:
-    """Return the time of a file in local time to the minute."""
+    """Return the modification time of a file in local time to the minute."""
     return datetime.fromtimestamp(unix_time_s).strftime("%Y-%m-%d %H:%M")
 
 
@@ -122,7 +122,7 @@ ContentKey = tuple[str, float, int]
 
 
 class Thumbnail(NamedTuple):
-    """Small picture with 32 bits per pixel: from the highest bits, alpha, red, green and blue.
+    """Small picture with 32 bits per pixel (alpha, red, green, blue, starting at the highest bits).
 
     The first row is at the top.
     """

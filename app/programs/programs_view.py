@@ -44,7 +44,7 @@ FULL_WIDTH_ROWS = 2  # rows at the end that use the whole width
 
 
 class ProgramDetailPanel(Panel):
-    """Panel of a program's details in two columns, the labels and the values."""
+    """Panel that shows the details of a program in two columns: labels and values."""
 
     title = "DETAILS"
     program: RedrawingAttribute[ListedFile | None] = RedrawingAttribute(None)
@@ -160,7 +160,7 @@ class ProgramsPage(ListPage):
             editor.source_drawing = None
 
     def _use_program_key(self, key: ProgramKey) -> None:
-        """Open the page that belongs to this key, and pass the selected program to it."""
+        """Open the page that belongs to a function key, and pass the selected program to that page."""
         here = self.model.selected_program
         if here is None or here.is_drawing:
             self.desk.say(NO_SELECTION)

@@ -44,7 +44,7 @@ class UsbStick:
 
 @dataclass(frozen=True, slots=True)
 class MountEntry:
-    """Entry of the kernel's list of mounts, with path, block device and read-only state."""
+    """A mounted file system in the kernel's list, with path, block device and read-only state."""
 
     path: Path
     device_number: str
@@ -76,7 +76,10 @@ def list_usb_sticks(
 
 
 def _parse_mounts(text: str) -> Iterator[MountEntry]:
-    r"""Yield the mounts of the kernel's list, which writes a blank in a name as ``\040``."""
+    """Yield the mounts in the list of the kernel.
+
+    In the list, a blank in a name is written as an escape sequence with the octal code 040.
+    """
     for line in text.splitlines():
         words = line.split()
         if len(words) < 6 or "-" not in words:
@@ -136,7 +139,8 @@ def _free(path: Path) -> int:
 class TargetMedium:
     """Target folder of a copy, with the device number that the folder had when it was opened.
 
-    When a stick is unplugged, its folder remains and then belongs to the disk of the control.
+    The device number reveals an unplugged stick: its folder remains, but then belongs to the disk of the
+    control.
     """
 
     folder: Path
@@ -154,7 +158,7 @@ class TargetMedium:
             raise FileOperationError(describe_media_error(error, folder)) from error
 
     def check_medium_present(self) -> None:
-        """Raise FileOperationError if another medium or no medium is present now."""
+        """Raise FileOperationError if the medium was removed or replaced by another medium."""
         if TargetMedium.from_folder(self.folder).device_number != self.device_number:
             raise FileOperationError(describe_unplugged_medium(self.folder))
 

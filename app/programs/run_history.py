@@ -150,15 +150,15 @@ class PartCounter:
 
     @property
     def effective_target_count(self) -> int:
-        """Return the count at which production ends, or 0 without a target.
+        """Return the part count at which production ends, or 0 if no target is set.
 
-        This is the target of the active job if it has one, and otherwise the target of the program.
+        The target of the active job has priority over the target of the program.
         """
         return self.job_target_count or self.target_count
 
     @property
     def is_complete(self) -> bool:
-        """Return whether all requested parts have been made."""
+        """Return whether the target number of parts has been made."""
         return 0 < self.effective_target_count <= self.part_count
 
     def process_snapshot(

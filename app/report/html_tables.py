@@ -90,7 +90,7 @@ HTML_END = "</body></html>\n"
 
 
 def make_page_head(title: str, date_text: str, language: str) -> str:
-    """Return the HTML of a page up to its first section.
+    """Return the HTML of a page from its start to its first section.
 
     ``language`` is an ISO 639-1 code.
     """
@@ -109,7 +109,7 @@ def make_headline(title: str, date_text: str) -> str:
 
 
 def make_result_line(css_class: str, text: str) -> str:
-    """Return the result line as HTML with this CSS class."""
+    """Return a line with the result as HTML, formatted with the given CSS class."""
     return f'<p class="verdict {css_class}">{escape(text)}</p>'
 
 

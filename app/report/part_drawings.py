@@ -151,7 +151,7 @@ def path(
 def draw_finding(
     move: TipMove, material: PartedPiece, tool: ToolShape | None, clamping: Clamping | None
 ) -> str:
-    """Return the drawing of a finding: the previous material, the move, and the tool at its end."""
+    """Return the drawing of a finding: material before the move, the move, and the tool at its end."""
     near = _find_bounds(move.points, material.outside_profile)
     drawing = SvgDrawing(
         *find_drawing_window(near, 3.0, 8.0), max_width_px=_FINDING_WIDTH, max_height_px=_FINDING_WIDTH
@@ -250,7 +250,7 @@ def _half(
 
 
 def _group_moves(moves: Sequence[TipMove]) -> Iterator[tuple[list[PointMm], str]]:
-    """Yield one line for each group of consecutive moves that have the same style.
+    """Yield one polyline for each group of consecutive moves with the same line style.
 
     The first move of the program is omitted.
     """
@@ -268,7 +268,7 @@ def _group_moves(moves: Sequence[TipMove]) -> Iterator[tuple[list[PointMm], str]
 
 
 def _find_bounds(points: Sequence[PointMm], outside: Sequence[PointMm]) -> list[PointMm]:
-    """Return the points of a move, moved to the vicinity of the material if they are far away."""
+    """Return the points of a move, with points far from the material moved close to it."""
     if not outside:
         return list(points[-1:])
     back, front = outside[-1][0] - _MAX_MARGIN_MM, outside[0][0] + _MAX_MARGIN_MM

@@ -25,7 +25,7 @@ class PaperSize(StrEnum):
 
 
 def make_pdf(html: str, title: str, paper: PaperSize) -> bytes:
-    """Return the PDF of a page's HTML body.
+    """Convert the HTML body of a page to PDF, and return the bytes.
 
     The footer shows ``title``. This runs on a worker. Raise OSError on failure.
     """

@@ -193,7 +193,7 @@ class ProgramReport:
         )
 
     def _draw_findings(self, found: Sequence[Diagnostic]) -> dict[int, str]:
-        """Return the pictures of the part findings by block number."""
+        """Return the drawings of the findings about the part, by block number."""
         wanted = list(dict.fromkeys(each.block_number for each in found if each.block_number))[:_MAX_PICTURES]
         if self._part is None or not wanted:
             return {}
@@ -299,7 +299,7 @@ def make_unproved_section(reason: str) -> str:
 
 
 def make_offset_comparison(comparison_text: str) -> str:
-    """Return the effect of other offsets as HTML, with the text that the command line prints."""
+    """Return the effect of changed offsets as HTML, with the same text as on the command line."""
     return f"<h3>With different offsets</h3><pre>{escape(comparison_text)}</pre>"
 
 

@@ -47,7 +47,10 @@ class PlannedStop:
 
 @dataclass(slots=True)
 class ReportRecorder:
-    """Recorder that collects report data from the time spans of a proving pass."""
+    """Recorder of the data for a report.
+
+    It collects the data from the time spans that a proving pass produces.
+    """
 
     part_settings: PartSettings
     tip_moves: list[TipMove] = field(default_factory=list)
@@ -117,5 +120,8 @@ class ReportRecorder:
                     self.tip_moves.append(make_live_tool_move(step))
 
     def find_material_before_blocks(self, block_numbers: Collection[int]) -> dict[int, PartedPiece]:
-        """Return the material before each of these blocks, but only for blocks with X and Z motion."""
+        """Return the material before each of the given blocks.
+
+        Blocks without X or Z motion are omitted.
+        """
         return self._part.find_material_before_blocks(block_numbers)

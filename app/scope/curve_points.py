@@ -28,7 +28,7 @@ class CurvePoints:
 
 @dataclass(slots=True)
 class CurveColumns:
-    """Minimum and maximum of a curve in each column of time.
+    """Minimum and maximum of a curve in equal time intervals, which are the pixel columns of a chart.
 
     Column n of ``column_numbers`` starts at n · ``width_s`` seconds.
     """
@@ -85,7 +85,10 @@ class CurveColumns:
         self.minima, self.maxima = self.minima[cut:], self.maxima[cut:]
 
     def make_points(self) -> CurvePoints:
-        """Return a vertical line per column, and lines that bridge the gaps of a continuous curve."""
+        """Return a vertical line for each column.
+
+        For a continuous curve, also return lines across columns that contain no samples.
+        """
         at = (self.column_numbers + 0.5) * self.column_width_s
         later = 1 + np.flatnonzero(
             (np.diff(self.column_numbers) > 1) & np.isfinite(self.preceding_samples[1:])
@@ -123,7 +126,7 @@ _ROUND_STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 
 
 def make_round_range(low: float, high: float, min_width: float) -> tuple[float, float]:
-    """Return a range with round limits and a margin around two values.
+    """Return a range with round limits that contains two values and a margin.
 
     The range is at least ``min_width`` wide.
     """

@@ -142,13 +142,13 @@ class RecordingStore:
         self._run_reporting(path, path.unlink)
 
     def _make_path(self, stem: str, extension: str) -> Path:
-        """Return an unused path that contains the date and time."""
+        """Return a path that contains the date and time, and at which no file exists."""
         named = f"{stem} {time.strftime('%Y-%m-%d %H-%M-%S', time.localtime(self.read_time_s()))}"
         names = (f"{named}{more}{extension}" for more in ("", *(f" {n}" for n in range(2, 100))))
         return next(self.folder / name for name in names if not (self.folder / name).exists())
 
     def _write_guarded(self, path: Path, write: Callable[[], None]) -> None:
-        """Write a file, but first check that there is enough disk space."""
+        """Check that there is enough disk space, then write a file."""
 
         def write_with_space_check() -> None:
             self.folder.mkdir(parents=True, exist_ok=True)
@@ -178,7 +178,7 @@ def _draft(path: Path) -> _DraftFile:
 
 
 class _DraftFile:
-    """Temporary file next to its target, which is deleted if writing fails."""
+    """Temporary file in the folder of the target file. It is deleted if writing fails."""
 
     def __init__(self, path: Path) -> None:
         self._path = path

@@ -136,13 +136,13 @@ class ScopeChart(Chart):
         return rooms[0].united(rooms[-1]) if rooms else QRectF()
 
     def find_time(self, position: QPointF) -> float:
-        """Return the time at a chart position, in seconds relative to the zero time of the picture."""
+        """Return the time at a horizontal chart position, in seconds relative to the picture's zero time."""
         room, sight = self.curve_area, self.picture
         share = (position.x() - room.x()) / max(1.0, room.width())
         return sight.begin_s + share * (sight.end_s - sight.begin_s)
 
     def find_column(self, time_s: float) -> float:
-        """Return the horizontal chart position of a time, in pixels."""
+        """Return the horizontal position of a time in the chart, in pixels."""
         room, sight = self.curve_area, self.picture
         return room.x() + (time_s - sight.begin_s) / (sight.end_s - sight.begin_s) * room.width()
 

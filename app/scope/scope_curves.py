@@ -240,9 +240,9 @@ class RecordingCurves:
     def _find_cursor_values(
         self, signal: ScopeSignal, cursors: tuple[float, float], metric: bool
     ) -> tuple[float, float]:
-        """Return the values of the samples nearest to the two cursors.
+        """Return the values of the curves at the samples nearest to the two cursors.
 
-        A value outside the record is NaN.
+        If a cursor is outside the recorded time, its values are NaN.
         """
         column, times = self.read_signal_values(signal), self.record.times_s
         if column is None or not len(times):
@@ -279,7 +279,7 @@ class LiveCurves:
     _trigger: tuple[Trigger, float] | None = None  # the trigger and its arming time
 
     def make_picture(self, request: PictureRequest, overlay: RecordingCurves | None = None) -> ScopePicture:
-        """Return the picture of the last seconds up to the newest sample."""
+        """Return the picture of the time window that ends at the newest sample."""
         newest = self.live_samples.newest_time_s
         width = request.width
         known = (request.signals, request.window_span_s, request.width_px, request.metric)
@@ -321,7 +321,7 @@ class LiveCurves:
         )
 
     def _extend_curves(self, wanted: PictureRequest, newest: float) -> float:
-        """Add the new samples to the columns, and return the sample rate."""
+        """Add the new samples to the curves' columns, and return the sample rate."""
         start = newest - wanted.window_span_s
         back = max((each.calculation_window_s for each in wanted.signals), default=0.0) + QUERY_LEAD_S
         done = min((self._done.get(each.key, start) for each in wanted.signals), default=start)
@@ -381,6 +381,6 @@ class LiveCurves:
 
 
 def find_alarm_state_values(record: ScopeRecord) -> frozenset[int]:
-    """Return the values of the channel ``state`` that indicate an alarm or an E-stop."""
+    """Return the values of the channel ``state`` that mean an alarm or an E-stop."""
     words = record.about.get("states", "").split("|")
     return frozenset(i for i, word in enumerate(words) if word in ALARM_STATES)

@@ -21,10 +21,9 @@ class ScopeFiles:
     scope_model: ScopeModel
 
     def make_visible_record(self) -> ScopeRecord | None:
-        """Return the record of the visible window, or None if there is nothing to record.
+        """Return the record of the visible window, or show a message and return None.
 
-        The result is None if the curves are live or the window contains no samples. In both cases, a
-        message is shown.
+        The result is None if the curves are live or the window contains no samples.
         """
         frozen = self.scope_model.frozen_curves
         if frozen is None:

@@ -101,7 +101,7 @@ class ScopeModel:
 
     @property
     def shown(self) -> tuple[ScopeSignal, ...]:
-        """Return the displayed signals in the order of the signal list."""
+        """Return the displayed signals, in the same order as in the signal list."""
         return tuple(each for each in self.signals if each.key in self.selected_signal_keys)
 
     @property
@@ -168,7 +168,7 @@ class ScopeModel:
             self.worker.request_work(lambda _: carried.make_picture(wanted, overlay), taken, self.desk.say)
 
     def _is_unchanged(self, wanted: PictureRequest) -> bool:
-        """Return whether the picture of constant curves is still valid.
+        """Return whether the picture can be reused because all curves are constant.
 
         If the machine state does not change, the picture remains valid for a short time.
         """
@@ -181,7 +181,9 @@ class ScopeModel:
     def _accept_picture(self, sight: ScopePicture, of: tuple[Trigger, float] | None = None) -> None:
         """Store a picture from the worker.
 
-        ``of`` is the trigger of the request. The picture is ignored if the trigger has changed since then.
+        ``of`` is the trigger with which the picture was requested. If the trigger has changed since then,
+        the trigger time of the picture is ignored. A picture is not stored if it was requested before a
+        change between live and frozen curves.
         """
         if sight.is_live is not self.is_live:
             return  # requested before the change between live and frozen
@@ -222,7 +224,7 @@ class ScopeModel:
         self._set_signals(list_signals(self.live_samples.channels))
 
     def _freeze_window(self, instant: float | None, span: float) -> None:
-        """Freeze the samples around an instant, or the last samples if there is no instant.
+        """Freeze the samples around a given time, or the latest samples if no time is given.
 
         The worker copies the samples.
         """
@@ -312,7 +314,7 @@ class ScopeModel:
         self._change_range(quantity, lambda low, high: _about(low, high, 1.0 / factor))
 
     def shift_lane(self, steps: float, quantity: Quantity | None = None) -> None:
-        """Move the range of a lane up by a number of steps of 10 % of the range."""
+        """Move the range of a lane upward by a number of steps, each 10 % of the range."""
 
         def shift_range(low: float, high: float) -> ValueRange:
             by = PAN_STEP_FRACTION * steps * (high - low)

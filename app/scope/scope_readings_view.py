@@ -80,7 +80,7 @@ class ScopeReadings(RowPanel):
         return (f"{formats.format_fixed(value, places)} {unit}" if math.isfinite(value) else "",)
 
     def scroll_by(self, rows: int) -> None:
-        """Select the curve a number of rows further down, or further up if it is negative."""
+        """Move the selection down by a number of rows, or up if the number is negative."""
         self._choose(self.scope_model.marked + rows)
 
     @property
@@ -110,7 +110,7 @@ class ScopeReadings(RowPanel):
             self.add_target(box, partial(self._choose, number), kind="row", is_on=number == marked)
 
     def _draw_between(self, painter: ThemedPainter, area: QRectF) -> QRectF:
-        """Draw the time between the cursors, and return the area that remains below it."""
+        """Draw the time between the two cursors, and return the area below it."""
         u, apart = self.theme.unit_px, self.scope_model.cursors.time_difference_s
         hertz = Message("{item} Hz", item=f"{1.0 / abs(apart):.4g}") if apart else formats.NO_VALUE
         row = QRectF(area.x(), area.y(), area.width(), 2.6 * u)

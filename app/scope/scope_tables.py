@@ -175,7 +175,7 @@ class ScopeTables:
 
     @property
     def needs_value(self) -> bool:
-        """Return whether the operator has to enter a value."""
+        """Return whether the selected action requires the operator to enter a value."""
         return self.scope_model.side_panel is SidePanel.TRIGGER and bool(self._trigger().entry_prompt)
 
     def accepts_key(self, key: str) -> bool:
@@ -207,7 +207,8 @@ class ScopeTables:
     def handle_row_touch(self, row: int) -> None:
         """Handle a touch of a row.
 
-        A curve is shown or hidden at once. Other rows are executed by a second touch.
+        A touch on a curve immediately shows or hides it. For other rows, a second touch executes the
+        action.
         """
         if row >= self.row_count:
             return
@@ -271,7 +272,10 @@ class ScopeTables:
         self.input_field.text = ""
 
     def handle_escape(self) -> bool:
-        """Go back one step, or return False if only the values are shown, without cursors."""
+        """Go back one step.
+
+        Return False if neither a table nor the cursors are shown, so that there is no step to go back.
+        """
         scope = self.scope_model
         if scope.desk.prompt_notice:
             scope.desk.clear_prompt_line()

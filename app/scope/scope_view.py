@@ -268,7 +268,7 @@ class ScopePage(ListPage):
         )
 
     def has_text_field(self) -> bool:
-        """Return whether the operator has to enter a level or a line number."""
+        """Return whether the operator has to enter a trigger level or a line number."""
         return self.scope_tables.needs_value
 
     def handle_escape(self) -> bool:
@@ -356,7 +356,7 @@ class ScopePage(ListPage):
 
 
 class _ScopeKeys:
-    """Adapter that passes keys from the page to its models."""
+    """Adapter that passes the page's keys to the cursors and the tables."""
 
     def __init__(self, scope: ScopeModel, sheets: ScopeTables) -> None:
         self._scope, self._sheets = scope, sheets
@@ -395,7 +395,7 @@ class _ScopeKeys:
 
 
 def _find_view_key(sight: ScopePicture) -> object:
-    """Return a value that is equal for two pictures if they have the same appearance."""
+    """Return a comparison key of a picture. Pictures with the same appearance have equal keys."""
     if sight.constant_values is None:
         return sight
     level_texts = [

@@ -57,7 +57,7 @@ class Quantity(Enum):
 
     @property
     def is_length(self) -> bool:
-        """Return whether the display unit depends on the choice of millimeters or inches."""
+        """Return whether the quantity is displayed in millimeters or inches, as the operator selects."""
         return self.unit(True) != self.unit(False)
 
     def unit(self, is_metric: bool) -> str:
@@ -231,8 +231,8 @@ def list_signals(channels: Sequence[Channel]) -> tuple[ScopeSignal, ...]:
 def find_default_signal_keys(signals: Sequence[ScopeSignal]) -> tuple[str, ...]:
     """Return the keys of the signals that the scope shows initially.
 
-    These are the following errors and velocities of the axes, and the spindle. There are at most as many as
-    the list on the smallest screen can show.
+    These are the following errors and velocities of the axes, and the spindle. The number is limited to the
+    rows that fit on the smallest screen.
     """
     slides = [each.axis_letter for each in signals if each.quantity is Quantity.FOLLOWING_ERROR][:3]
     wanted = [f"{letter} {name}" for name in ("following error", "velocity") for letter in slides]

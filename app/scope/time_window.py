@@ -170,7 +170,7 @@ class Trigger:
         return {TriggerEvent.ALARM: "state", TriggerEvent.LINE: "line"}.get(self.trigger_event, "")
 
     def with_next_position(self) -> Trigger:
-        """Return a copy in which the event is at the next of the possible positions in the window."""
+        """Return a copy with the next choice for the position of the event in the window."""
         at = (
             TRIGGER_POSITIONS.index(self.fraction_before_event)
             if self.fraction_before_event in TRIGGER_POSITIONS
@@ -183,8 +183,8 @@ class Trigger:
     ) -> float | None:
         """Return the time of the first sample that fires the trigger, or None if no sample fires it.
 
-        The first of the samples cannot fire the trigger. ``alarm_values`` contains the values of the
-        channel ``state`` that indicate an alarm or an E-stop.
+        The first sample is only the previous value for the second one, so it cannot fire the trigger.
+        ``alarm_values`` contains the values of the channel ``state`` that mean an alarm or an E-stop.
         """
         if self.trigger_event is TriggerEvent.OFF or len(values) < 2:
             return None

@@ -32,9 +32,9 @@ def register_accessibility() -> None:
 
 
 def _make_interface(kind: str, shown: QObject) -> QAccessibleInterface | None:
-    """Return the accessible interface of a plain QWidget, or None for other classes.
+    """Return the accessible interface of a plain QWidget, or None for all other classes.
 
-    For other classes, Qt provides its own interfaces.
+    Qt has its own interfaces for the other classes.
     """
     if kind != "QWidget" or not isinstance(shown, QWidget):
         return None
@@ -53,7 +53,7 @@ def announce_text(widget: QWidget, text: str) -> None:
 class AccessibleContainer(QAccessibleWidget):
     """Accessible interface of a page or another widget that contains panels.
 
-    A part without an ``accessible_name`` uses the name of its parent widget.
+    A contained widget without an ``accessible_name`` uses the name of its parent widget.
     """
 
     def __init__(self, widget: QWidget, role: QAccessible.Role = Role.Grouping) -> None:
@@ -61,7 +61,7 @@ class AccessibleContainer(QAccessibleWidget):
         self._part = widget
 
     def text(self, kind: QAccessible.Text) -> str:
-        """Return the name in the operator's language."""
+        """Return the accessible name in the operator's language."""
         part: QWidget | None = self._part if kind is Text.Name else None
         while part is not None:
             name: str = getattr(part, "accessible_name", "") or part.accessibleName() or part.windowTitle()
@@ -123,7 +123,7 @@ class AccessiblePanel(AccessibleContainer):
 
 
 class _PressAction(QAccessibleActionInterface):
-    """Accessible action that presses a target, like a touch."""
+    """Accessible action that presses a target with the same effect as a touch."""
 
     def __init__(self, spot: AccessibleTarget) -> None:
         super().__init__()
@@ -165,7 +165,7 @@ class AccessibleTarget(QAccessibleInterface):
         return isValid(self._panel) and self.target_index < len(self._panel.list_targets())
 
     def object(self) -> MaybeInterface:
-        """Return None, because a target is not a widget."""
+        """Return None, because Qt expects a QObject here, and a touch target is not an object of Qt."""
         return None
 
     def parent(self) -> MaybeInterface:

@@ -53,7 +53,10 @@ class ChartAxis(pg.AxisItem):  # type: ignore[misc]
         self.setCacheMode(QGraphicsItem.CacheMode.DeviceCoordinateCache)  # Draw the labels only once.
 
     def find_label_values(self, low: float, high: float, length_px: float) -> list[float]:
-        """Return the labeled values of an axis from ``low`` to ``high``, ``length_px`` pixels long."""
+        """Return the values that get a label on an axis from ``low`` to ``high``.
+
+        The axis is ``length_px`` pixels long.
+        """
         levels = self.tickValues(low, high, length_px) if high > low and length_px > 0.0 else []
         return [float(value) for _spacing, values in levels[:1] for value in values]
 

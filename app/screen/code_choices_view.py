@@ -45,7 +45,7 @@ class CodeChoiceList(RowPanel):
         self._shown = (self._help.choices, self._help.marked)
 
     def _find_foot_height(self) -> float:
-        """Return the total height of the address words and the example in pixels."""
+        """Return the height in pixels of the foot, which contains the address words and the example."""
         return self._find_example_height() + self._count_word_rows() * WORD_ROW_HEIGHT * self.theme.unit_px
 
     def _find_example_height(self) -> float:

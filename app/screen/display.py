@@ -34,7 +34,7 @@ def find_display_error() -> str:
 
 
 def _try_open(gui: object) -> tuple[bool, str]:
-    """Open the display in a child process.
+    """Try to open the display in a child process.
 
     Return whether the display was opened, and the messages of Qt.
     """
@@ -50,9 +50,9 @@ def _try_open(gui: object) -> tuple[bool, str]:
 
 
 def _open_display(gui: object, writes: int) -> None:
-    """Open the display, and exit.
+    """Open the display, then exit.
 
-    This runs in the child process, in which the cleanup functions of the parent process must not run.
+    This runs in the child process, which must not run the cleanup functions of the parent process.
     """
     try:
         import resource
@@ -114,9 +114,9 @@ def _explain_error(qt_messages: str) -> str:
 
 
 def _find_missing_library() -> str:
-    """Return the error about a missing library that Qt's X11 plugin needs.
+    """Return an error text about a missing library that Qt's X11 plugin needs.
 
-    Return an empty string if all libraries exist.
+    Return an empty string if no library is missing.
     """
     import PySide6
 

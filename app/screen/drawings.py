@@ -167,7 +167,7 @@ class SketchPanel(Panel):
         self.add_target(self._make_touch_box(box), partial(self._touch, word))
 
     def _make_touch_box(self, box: QRectF) -> QRectF:
-        """Return a rectangle around a number that is inside the panel and large enough for a touch."""
+        """Return a touchable rectangle around a dimension's number, placed inside the panel."""
         least = max(5.0 * self.theme.unit_px, FINGERTIP_PX)
         side, up = (max(0.0, least - have) / 2.0 for have in (box.width(), box.height()))
         place = box.adjusted(-side, -up, side, up)
@@ -177,7 +177,7 @@ class SketchPanel(Panel):
 
 
 def _is_diameter(dim: Dimension) -> bool:
-    """Return whether a dimension is a diameter, because its line crosses the axis at a right angle."""
+    """Return whether a dimension is a diameter: its line crosses the axis at a right angle."""
     return dim.end is not None and dim.start[1] < 0.0 < dim.end[1] and dim.start[0] == dim.end[0]
 
 
@@ -216,9 +216,9 @@ def draw_tool_outline(
 
 
 def _make_transform(box: QRectF, outline: ToolOutline) -> QTransform:
-    """Return the transform from (z, x) in mm to the box.
+    """Return the transform from (z, x) in mm to pixels of the box.
 
-    Axial tools are shown completely. For other tools, only the vicinity of the cutting edges is shown.
+    Axial tools are shown completely. For other tools, only the surroundings of the cutting edges are shown.
     """
     cutting = _polygon(outline.cutting_outlines[0]).boundingRect()
     for points in outline.cutting_outlines[1:]:

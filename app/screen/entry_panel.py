@@ -68,7 +68,7 @@ class LetterPad(Panel):
         return self.theme.find_key_rows_height(len(self._rows))
 
     def set_target_field(self, text_field: QWidget) -> None:
-        """Keep the focus in this standard text field when a key of the touch keyboard is pressed.
+        """Set the standard text field that keeps the focus when a key of the touch keyboard is pressed.
 
         Otherwise Qt would give the focus to the window.
         """
@@ -103,10 +103,7 @@ def send_key(key: str, widget: QWidget) -> None:
 
 @dataclass(frozen=True, slots=True)
 class EntryTexts:
-    """Texts of an entry panel.
-
-    They are the subject, the prompt, the input text, the change (old → new), and a hint about further keys.
-    """
+    """Texts of an entry panel: subject, prompt, input, change (old → new), and a hint about keys."""
 
     subject_text: str = ""
     question_text: str = ""

@@ -43,7 +43,7 @@ class MenuPage(Page):
         return self._labels
 
     def find_disabled_keys(self) -> frozenset[str]:
-        """Return the keys of the editor and MDI pages if these pages cannot be opened now."""
+        """Return the keys of the editor page and the MDI page while these pages cannot be opened."""
         snapshot, named = self.desk.read_snapshot(), self.desk.program_loader.loaded_program.path is not None
         found = {
             page_table.EDITOR: find_editor_refusal(snapshot, has_name=named),

@@ -73,7 +73,7 @@ _LABELS: Mapping[str, Mapping[str, str]] = {
 
 
 def find_key_label(language: str, label: str) -> str:
-    """Return the text for a key label on a machine with this programming language."""
+    """Return the text of a key label on a machine with the given programming language."""
     return _LABELS.get(language, {}).get(label, label)
 
 
@@ -112,14 +112,14 @@ class Page(QWidget):
         return self.NAME
 
     def make_key_labels(self) -> tuple[str, ...]:
-        """Return the labels that the function keys have now.
+        """Return the current labels of the function keys.
 
         This is called once a frame.
         """
         return tuple(find_key_label(self.desk.machine.program_language, label) for label in self.LABELS)
 
     def find_disabled_keys(self) -> frozenset[str]:
-        """Return the function keys that are disabled now.
+        """Return the function keys that are currently disabled.
 
         This is called once a frame.
         """
@@ -130,9 +130,9 @@ class Page(QWidget):
         return {}
 
     def handle_key_press(self, _event: QKeyEvent) -> bool:
-        """Handle a key press before the window and its other parts.
+        """Handle a key press before the window and its other parts receive it.
 
-        Return False to let those handle the key.
+        Return False to pass the key press on to them.
         """
         return False
 
@@ -143,10 +143,16 @@ class Page(QWidget):
         """
 
     def stop_held_key_actions(self) -> None:
-        """End the actions that last while a key is held down, because another key or touch acts next."""
+        """End the actions that last while a key is held down.
+
+        This is called before another key or touch acts.
+        """
 
     def release_all_keys(self) -> None:
-        """End the actions that last while a key is held down, because no key releases will arrive."""
+        """End the actions that last while a key is held down.
+
+        This is called when no key releases will arrive.
+        """
 
     def handle_key(self, _key: str) -> bool:
         """Handle a key as text input.
@@ -156,7 +162,7 @@ class Page(QWidget):
         return False
 
     def handle_touched_key(self, key: str) -> None:
-        """Handle a touch on a drawn key.
+        """Handle a touch on a key of the on-screen keyboard.
 
         Esc goes to the window, and any other key goes to this page.
         """
@@ -193,7 +199,7 @@ class Page(QWidget):
         return ""
 
     def find_marked_help(self) -> Sequence[GuideBlock]:
-        """Return help about the marked word, field or function, or nothing if nothing is marked."""
+        """Return help about the marked word, field or function, or an empty result if nothing is marked."""
         return ()
 
     def can_open(self) -> bool:
@@ -305,7 +311,7 @@ class EditorPanel(QWidget):
         self.hide()
 
     def make_header_keys(self, program_name: str) -> Sequence[HeaderKey]:  # noqa: ARG002
-        """Return the touch targets above the text of this program, from right to left."""
+        """Return the touch targets above the text of a program, from right to left."""
         return ()
 
     def open_for_text(self, key_name: str, program_name: str, text: str, line_number: int) -> str:  # noqa: ARG002

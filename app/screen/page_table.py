@@ -169,17 +169,20 @@ _REPLACED_PAGES = {
 
 
 def find_replacement_page(language: str, name: str) -> str:
-    """Return the name of the page that replaces the page ``name`` on a machine with this language."""
+    """Return the name of the page that replaces the page ``name`` for a programming language.
+
+    If no page replaces it, the result is ``name``.
+    """
     return _REPLACED_PAGES.get(language, {}).get(name, name)
 
 
 def list_menu_entries(language: str) -> tuple[PageDescription, ...]:
-    """Return the entries of the main menu on a machine with this language."""
+    """Return the entries of the main menu for a machine with the given programming language."""
     return tuple(entry for entry in MENU_PAGES if language in entry.program_languages)
 
 
 def map_menu_keys(language: str) -> dict[str, PageDescription]:
-    """Return the menu keys with the pages that they open.
+    """Return a mapping from each menu key to the page that it opens.
 
     A page that replaces another page can also be opened with the key of the replaced page.
     """
@@ -198,7 +201,7 @@ _ENTRIES_BY_NAME = {entry.name: entry for entry in ALL_PAGES}
 
 
 def list_pages(language: str) -> tuple[PageDescription, ...]:
-    """Return the pages of a machine with this language."""
+    """Return the pages for a machine with the given programming language."""
     return tuple(entry for entry in ALL_PAGES if language in entry.program_languages)
 
 
@@ -316,7 +319,7 @@ class PagePreloader:
     def _load_all(self) -> Iterator[bool]:
         """Import and prepare all pages in slices.
 
-        Yield False after each slice. A slice imports a page or prepares a part of a page.
+        Yield False after each slice. A slice either imports a page or prepares a part of it.
         """
         yield from create_qt_classes()
         for entry in list_pages(self._desk.machine.program_language):

@@ -48,13 +48,14 @@ class RedrawingAttribute(Generic[T]):
 
 
 def ignore_press() -> None:
-    """Do nothing, as the press action of a target that assistive technology cannot drag."""
+    """Do nothing when a drag target is pressed by assistive technology, which cannot drag it."""
 
 
 class TouchTarget(NamedTuple):
     """Touch target of a panel.
 
-    In the accessible name, ``name`` comes before the painted texts. See ``Panel.describe_target``.
+    The accessible name of the target consists of ``name``, followed by the painted texts. See
+    ``Panel.describe_target``.
     """
 
     box: QRectF
@@ -203,7 +204,7 @@ class Panel(QWidget):
         return self.find_full_area().adjusted(1.2 * u, 2.6 * u, -1.2 * u, -0.9 * u)
 
     def frame(self, painter: ThemedPainter, title: str, color: str = "frame", width: float = 0.16) -> None:
-        """Draw a frame with a title in its top edge, as in text-mode programs."""
+        """Draw a frame with a title in its top edge, in the style of text-mode programs."""
         look, u, title = self.theme, self.theme.unit_px, tr(title)
         self._titled = title
         top = 1.0 * u
@@ -264,7 +265,7 @@ class TouchControl:
 
 
 def make_press_control(box: QRectF, press: OnPress, name: str = "") -> TouchControl:
-    """Return a control that acts when any point in its box is pressed."""
+    """Return a control that acts when it is pressed anywhere in its box."""
     return TouchControl(box, lambda _at: press(), name=name)
 
 
@@ -281,7 +282,7 @@ class TouchPanel(Panel):
         self.setAttribute(Qt.WidgetAttribute.WA_AcceptTouchEvents)
 
     def list_targets(self) -> Sequence[TouchTarget]:
-        """Return the targets of the panel and those of its controls."""
+        """Return all touch targets of the panel, including one for each control."""
         return [*super().list_targets(), *(each.make_target() for each in self.controls)]
 
     def has_stop_control_at(self, position: QPointF) -> bool:

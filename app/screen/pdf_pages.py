@@ -129,9 +129,9 @@ class PdfWriter:
 
 
 class _PdfText:
-    """HTML that is ready to be drawn on PDF pages.
+    """HTML text that is ready to be drawn on PDF pages.
 
-    Its SVG drawings are stored separately and drawn as vector graphics.
+    The SVG drawings of the text are stored separately and drawn as vector graphics.
     """
 
     def __init__(self, html: str, width: float) -> None:

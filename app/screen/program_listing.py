@@ -49,7 +49,7 @@ class ProgramListing(RowPanel):
 
     @property
     def active_line(self) -> int:
-        """Return the number of the marked line, or 0 while no line is executed or selected."""
+        """Return the number of the highlighted line, or 0 while no line is executed or selected."""
         return self._line
 
     def show_run_position(self, active_line: int, block_text: str, next_block_text: str) -> None:
@@ -126,7 +126,7 @@ class ProgramListing(RowPanel):
             room.translate(0, high)
 
     def _list_row_drawers(self, painter: ThemedPainter) -> Iterator[Callable[[QRectF], None]]:
-        """Yield the drawing functions of the rows, starting with the first visible row."""
+        """Yield a drawing function for each row, starting with the first visible row."""
         for number in range(self.first_row + 1, len(self._lines) + 1):
             yield partial(self._source, painter, number)
             if number == self._line:

@@ -71,7 +71,7 @@ def run_screen(
 
 
 class _Startup:
-    """Startup steps that follow the first painting of the window."""
+    """The steps of the startup that run after the window has been painted for the first time."""
 
     def __init__(self, window: MainWindow, build: BuildModel, program: str | None) -> None:
         self._window, self._build, self._program = window, build, program
@@ -93,7 +93,7 @@ class _Startup:
             QApplication.exit(1)
 
     def _listen_later(self) -> None:
-        """Start ``_listen`` after the first frames.
+        """Start ``_listen`` after the first frames have been drawn.
 
         The timer is deleted together with the window.
         """

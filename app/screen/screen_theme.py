@@ -101,14 +101,17 @@ class ScreenTheme:
         )
 
     def find_key_rows_height(self, row_count: int) -> int:
-        """Return the total height in pixels of this many rows of touch keys, each as high as a fingertip."""
+        """Return the total height in pixels of a number of rows of touch keys.
+
+        Each row is as high as a fingertip.
+        """
         return math.ceil(row_count * FINGERTIP_PX + (row_count - 1) * 0.6 * self.unit_px)
 
     def find_em_height(self, size: float, role: TextRole, row_height_px: float) -> float:
-        """Return the em height, in units, of a text in a row that is ``row_height_px`` pixels high.
+        """Return the em height in units for a text in a row that is ``row_height_px`` pixels high.
 
-        The height is at least ``size``. It is larger if the role of the text requires this on a screen of
-        this size and the row is high enough.
+        The height is at least ``size``. It is larger if the role of the text requires this on the screen
+        and the row is high enough.
         """
         least = self.screen.find_min_em_px(role) / self.unit_px
         room = row_height_px / self.unit_px * _ROW_SHARE.get(role, _ALONE)
@@ -402,7 +405,7 @@ TRANSLATION_CONTEXT = "turndesk"
 
 
 def set_language(language: str) -> None:
-    """Show texts in this language from now on.
+    """Show all texts in the given language from now on.
 
     Raise FileNotFoundError if the language has no catalog.
     """

@@ -61,7 +61,7 @@ class RowPanel(Panel):
         self.update()
 
     def find_scroll_rows(self, key: str) -> int:
-        """Return the number of rows by which one of the ``LIST_KEYS`` scrolls, negative for up."""
+        """Return the number of rows by which a key of ``LIST_KEYS`` scrolls. Negative is up."""
         pages = {"Page up": -self.rows, "Page down": self.rows}
         return pages.get(key, ROW_STEPS[key])
 
@@ -133,8 +133,8 @@ class RowPanel(Panel):
     def _with_keys(self, painter: ThemedPainter, area: QRectF) -> QRectF:
         """Draw the scroll keys and the scroll bar, and return the rectangle that remains for the rows.
 
-        The keys are on the right, or below the rows of a narrow list. If there is little height, they are
-        side by side.
+        The keys are to the right of the rows, or below the rows of a narrow list. If the list is too low
+        for keys above each other, they are side by side.
         """
         gap, (wide, high) = 0.6 * self.theme.unit_px, self.scroll_key_size
         foot = self.is_narrow(area.width())
@@ -213,7 +213,7 @@ class TablePanel(RowPanel):
         )
 
     def _find_list_height(self, notes: int) -> float:
-        """Return the height that remains for rows above this many note lines, in theme units."""
+        """Return the height in theme units that remains for rows if this many note lines are shown."""
         foot = notes * NOTE + (self._entry_height if self.table.entry_prompt else 0.0)
         return self.height() / self.theme.unit_px - 4.0 - HEAD - foot
 
@@ -254,9 +254,9 @@ class TablePanel(RowPanel):
 
     @property
     def _visible_notes(self) -> tuple[str, ...]:
-        """Return the notes that are shown.
+        """Return the notes that are shown below the table.
 
-        No notes are shown if notes and entry line would leave no space for the selected row.
+        The list is empty if notes and entry line together would leave no space for the selected row.
         """
         notes = self.table.notes
         return () if self.table.entry_prompt and self._fit(len(notes)) < 1 else notes
@@ -326,7 +326,7 @@ class TablePanel(RowPanel):
                 )
 
     def _draw_filled(self, painter: ThemedPainter, at: QRectF, row: TableRow) -> None:
-        """Draw a progress bar below the text of the last cell."""
+        """Draw a progress bar in the last cell of a row, below its text."""
         high = 0.5 * self.theme.unit_px
         track = QRectF(at.x(), at.bottom() - 2 * high, at.width(), high)
         painter.fill_rect(track, "key")
@@ -391,7 +391,8 @@ class ListPage(ModelPage):
     ) -> tuple[str, ...]:
         """Return the ten labels of the function keys.
 
-        They combine the common keys, the page's ``page_labels`` and the model's ``function_keys``.
+        They combine the keys that all pages have, the page's ``page_labels`` and the model's
+        ``function_keys``.
         """
         named = {"F1": "MENU", "F7": "ALARMS", **page_labels}
         named.update((name, key.label) for name, key in function_keys.items())

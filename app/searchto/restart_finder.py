@@ -27,7 +27,7 @@ RestartSearchResult = RestartPoint | RestartRejection | CutRecord | tuple[Job, P
 
 @dataclass(slots=True)
 class RestartFinder:
-    """Finder that rebuilds the machine state at a restart line and proves the restart, on a worker.
+    """Finder that calculates the machine state at a restart line and proves the restart, on a worker.
 
     A search for a later line continues from an earlier search. ``rebuild_state`` and ``prove_job`` are
     called on the worker. ``on_found`` and ``on_failed`` get the results when the worker is polled.
@@ -55,7 +55,7 @@ class RestartFinder:
         self._ask(job, lambda rebuild: rebuild.cut_record)
 
     def prove_restart(self, job: Job) -> None:
-        """Prove the job of a restart on the worker."""
+        """Prove the job that a restart would run, on the worker."""
         self.worker.request_work(
             lambda watch: (job, self.prove_job(job, watch)), self.on_found, self.on_failed
         )
@@ -66,7 +66,7 @@ class RestartFinder:
     def _with(
         self, job: Job, watch: ProgressCallback, ask: Callable[[RestartSearch], RestartSearchResult]
     ) -> RestartSearchResult:
-        """Run a query on the worker with the search that exists for this job.
+        """Run a query on the worker, with the search that already exists for this job.
 
         A canceled search is discarded, because it stopped in the middle of a line.
         """

@@ -105,9 +105,9 @@ def read_machine_state(snapshot: Snapshot, job: Job) -> CurrentMachineState:
 def make_approach_legs(
     steps: tuple[ApproachStep, ...], snapshot: Snapshot, offset: tuple[float, float]
 ) -> tuple[Drawn, ...]:
-    """Return the moves of an approach relative to the part, for the offset of one tool.
+    """Return the moves of an approach in part coordinates, for the offset of one tool.
 
-    The first move is the current tip position.
+    The first entry is the current tip position.
     """
     x, z = snapshot.demand[0], snapshot.demand[1]
     legs = [Drawn(z - offset[1], x - offset[0])]
@@ -153,7 +153,7 @@ ROTATION_TOLERANCE_DEG = 0.01  # Degrees.
 
 @dataclass(frozen=True, slots=True)
 class StateRow:
-    """One row of the state table, with the value that the line requires and the current value."""
+    """One row of the state table, with the value required at the restart line and the current value."""
 
     label: str
     required_value: str
@@ -263,9 +263,9 @@ def _place(axis: str, at: float) -> str:
 
 
 def _make_pass_rows(found: RestartPoint) -> tuple[StateRow, ...]:
-    """Return the rows of the loops and calls that contain the line.
+    """Return a table row for each loop and call that contains the restart line.
 
-    Each row compares the pass at the line with the interrupted pass.
+    Each row compares the loop pass at the line with the interrupted pass.
     """
     was = found.interrupted_visit.enclosing_levels if found.interrupted_visit is not None else ()
     return tuple(
@@ -322,7 +322,10 @@ def _now(snapshot: Snapshot) -> Checkpoint:
 
 
 def _make_position_rows(point: Checkpoint, x: float, z: float) -> tuple[ModalRow, ...]:
-    """Return the table rows of a machine position, with the tool, unit and X mode of the line."""
+    """Return the table rows of a machine position.
+
+    The position is displayed with the tool, unit and X mode that are active at the restart line.
+    """
     modal = point.modal
     mark, factor = ("Ø", 2.0) if modal.diameter else ("R", 1.0)
     return (

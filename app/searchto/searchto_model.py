@@ -130,7 +130,7 @@ class RestartModel:
         self.restart_finder.worker.close()
 
     def _discard_results(self) -> None:
-        """Cancel the plan and the prepared restart."""
+        """Discard the plan of the restart, and cancel a restart that is prepared for Cycle Start."""
         self._withdraw()
         if self.is_open and self.can_choose_line:
             # The end of the retract must not discard an entry that begins at the same time.
@@ -218,16 +218,13 @@ class RestartModel:
 
     @property
     def _needs_manual_retract(self) -> bool:
-        """Return whether the machine is a mill.
-
-        On a mill, every restart retracts the tool first.
-        """
+        """Return whether every restart retracts the tool first, which is the case on a mill."""
         job = self.program_loader.loaded_program.job
         return job is not None and job.setup.kinematics is not None
 
     @property
     def _is_decided(self) -> bool:
-        """Return whether a retract path or a valid line is shown."""
+        """Return whether the operator can confirm, because a retract path or a valid line is shown."""
         whole = self.program_loader.loaded_program.job is not None
         return (
             self.stage is RestartStage.PLAN_SHOWN
@@ -279,7 +276,7 @@ class RestartModel:
             self.restart_finder.calculate_cuts(job)
 
     def toggle_coolant(self) -> None:
-        """Select whether the restart turns on the coolant that is on at the line."""
+        """Select whether the restart turns on the coolant, if coolant is on at the restart line."""
         self._choose(replace(self.restart_choices, uses_coolant=not self.restart_choices.uses_coolant))
 
     def confirm_plan(self) -> None:

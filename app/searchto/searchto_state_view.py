@@ -31,7 +31,7 @@ _LABEL, _SIGN = 0.25, 0.61  # Fractions of a row: end of the label, position of 
 class NearestValidLine:
     """Valid line near a rejected line, which the operator can select instead.
 
-    It has the key that selects it, its line number (0 if there is no such line) and its text.
+    It contains the key that selects it, its line number (0 if there is no such line) and its text.
     """
 
     key_name: str
@@ -97,7 +97,7 @@ class RestartStatePanel(Panel):
     def _draw_table(self, painter: ThemedPainter, area: QRectF) -> None:
         """Draw the rows with differences in large letters, followed by the rows without differences.
 
-        The rows without differences are folded into one row, or drawn one by one.
+        The rows without differences are collapsed into one row, or drawn one by one.
         """
         u, shown = self.theme.unit_px, self.content
         other = tuple(row for row in shown.state_rows if row.must_change)
@@ -122,9 +122,9 @@ class RestartStatePanel(Panel):
             self._row(painter, foot.translated(0, number * high), row, min(1.9, high / u * 0.78), head=False)
 
     def _draw_fold_key(self, painter: ThemedPainter, box: QRectF, equal: tuple[StateRow, ...]) -> None:
-        """Draw the row that lists the rows without differences.
+        """Draw the row that summarizes the rows without differences.
 
-        A touch on this row folds or unfolds them.
+        A touch on this row expands or collapses them.
         """
         u = self.theme.unit_px
         painter.fill_rect(box.adjusted(0, 0.2 * u, 0, -0.2 * u), "key")

@@ -60,7 +60,7 @@ class SearchEntryPanel(Panel):
     def __init__(self, theme: ScreenTheme, press: Callable[[], None], parent: QWidget) -> None:
         """Create the panel.
 
-        ``press`` is called on a touch.
+        ``press`` is the function that is called when the panel is touched.
         """
         super().__init__(theme, parent)
         self._press = press
@@ -99,7 +99,7 @@ class FunctionsToStartPanel(Panel):
     def show_functions(
         self, functions: Sequence[str], options: Sequence[str], error_text: str, is_confirmed: bool
     ) -> None:
-        """Show these functions and options, and the warning or error."""
+        """Show the functions that the restart turns on, the options, and the warning or error."""
         self.functions_to_start, self.option_texts = tuple(functions), tuple(options)
         self.error_text, self.is_confirmed = error_text, is_confirmed
 
@@ -307,7 +307,7 @@ class RestartPage(ModelPage):
         self.path_view.show_picture(loaded.picture if scene is None else None)
 
     def _show_plane(self, scene: MillScene, picture: ProgramPicture) -> None:
-        """Show the axes and the working plane before the line, with earlier blocks as finished."""
+        """Show the axes and the working plane before the line, and earlier blocks as finished."""
         plan, line = self.model.restart_plan, self.model.line_cursor.selected_line
         here = make_instant_after_line(scene, line - 1)
         axes, done = here.axis_positions, picture.count_blocks_before_line(line)
@@ -323,7 +323,7 @@ class RestartPage(ModelPage):
         return self.path_view if self.plane_view.scene is None else self.plane_view
 
     def _find_tip(self, snapshot: Snapshot) -> TipPosition:
-        """Return the position of the tool tip to display.
+        """Return the position at which the tool tip is displayed.
 
         If there is a plan, this is the start of the planned path, for the tool that is active at the line.
         """

@@ -1,4 +1,4 @@
-"""Keys of the JSON file status.json, for the page of the reference manual and its tests."""
+"""Keys of the JSON file status.json, which the reference manual and the tests use."""
 
 from __future__ import annotations
 

@@ -50,8 +50,8 @@ def list_condition_keys(machine: Machine) -> frozenset[str]:
 def find_conditions(snapshot: Snapshot, keys: frozenset[str]) -> Mapping[str, tuple[ConditionEntry, ...]]:
     """Return the active entries of each MTConnect condition.
 
-    An empty tuple means normal. A feed hold that the operator did not request is a warning of the system
-    condition, with the reason shown on the screen.
+    An empty tuple means normal. If the control started a feed hold without a request, the system condition
+    has a warning with the reason that the screen shows.
     """
     active: dict[str, list[ConditionEntry]] = {key: [] for key in keys}
     for alarm in snapshot.alarms:
@@ -279,7 +279,7 @@ class MachineReader:
     def _read_wired(self, snapshot: Snapshot) -> dict[str, ReadingValue]:
         """Return the states of the machine's switches.
 
-        The state of a switch that is not wired is None.
+        The state of a switch is None if it is not wired or its input is unknown.
         """
 
         def read_signal(name: str, on: str, off: str) -> ReadingValue:

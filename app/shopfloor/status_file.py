@@ -51,7 +51,7 @@ def make_status(machine: str, reading: MachineReading) -> StatusDocument:
 
 
 def _round_load(load: ReadingValue) -> int | None:
-    """Return the spindle load in %, rounded to a multiple of 5 to reduce writes of the file."""
+    """Return the spindle load rounded to a multiple of 5 %, so that the file is written less often."""
     return round(load / _LOAD_STEP_PERCENT) * _LOAD_STEP_PERCENT if isinstance(load, float) else None
 
 
@@ -111,7 +111,7 @@ class StatusFileWriter:
 class StatusFileUpdater(RepeatingThread):
     """Thread that updates the status file once per second.
 
-    The separate thread prevents a slow disk from delaying other threads.
+    A separate thread is used so that a slow disk does not delay other work.
     """
 
     def __init__(
@@ -122,7 +122,7 @@ class StatusFileUpdater(RepeatingThread):
     ) -> None:
         """Create the thread.
 
-        ``final_status`` is the status that is written last.
+        ``final_status`` is the status that is written when the thread ends.
         """
         super().__init__("status", self._show, _UPDATE_INTERVAL_S)
         self._file, self._status, self._gone = status_file, read_status, final_status

@@ -105,7 +105,7 @@ class BackupFunction(SpecialFunction):
                 self.worker.enqueue_work(partial(self._check_place, place), self._judge, self._not_judged)
 
     def _check_place(self, place: BackupLocation) -> tuple[BackupLocation, BackupCheckResult]:
-        """Check a backup on the worker.
+        """Check a backup on the worker, and return it with the result of the check.
 
         Raise StoreError on failure.
         """
@@ -172,7 +172,7 @@ class BackupFunction(SpecialFunction):
         return (tr(differs if what else "The backup and the current data are the same."), kept)
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function key F4, which searches for media again."""
+        """Return the function key F4, which searches for removable media again."""
         return {"F4": FunctionKey("REFRESH", self.reload_locations)}
 
     def activate_selected_row(self) -> bool:
@@ -280,10 +280,7 @@ def _describe_differences(verdict: BackupCheckResult) -> str:
 
 
 def _list_places(folder: Path, media: Sequence[UsbStick], daily: Path | None) -> tuple[BackupLocation, ...]:
-    """Return the control's folders and the removable media, each followed by its backups.
-
-    The newest backup is the first.
-    """
+    """Return the control's folders and the removable media, each with its backups, newest first."""
     found: list[BackupLocation] = []
     kept = [(tr("THIS CONTROL"), folder), *([(tr("DAILY BACKUPS"), daily)] if daily is not None else [])]
     for label, path in (*kept, *((stick.label, stick.path) for stick in media)):

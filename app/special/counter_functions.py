@@ -256,7 +256,7 @@ class PartsCounterFunction(NumericEntryFunction):
         }
 
     def correct_part_count(self, change: int) -> None:
-        """Correct the count for a part that was not counted or is scrap."""
+        """Correct the count for a part that was not counted, or for a scrapped part."""
         if not self.part_counter.program_name:
             self.desk.say(NO_PROGRAM_LOADED)
         elif self.desk.is_refused(ProtectedChange.COUNTS):

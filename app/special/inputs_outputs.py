@@ -235,7 +235,7 @@ def _state(on: bool) -> str:
 def _map_codes(machine: Machine) -> dict[str, str]:
     """Return the M codes that switch each output, in the notation of the machine's language.
 
-    Codes that switch an output on come before those that switch it off.
+    For each output, the codes that switch it on come first.
     """
     omniturn = machine.mdi_language == "omniturn"
     own = _OWN_CODES_OF_OMNITURN if omniturn else _OWN_CODES
@@ -328,7 +328,7 @@ class DriveStatusFunction(SpecialFunction):
 
 
 def _find_fault(alarms: tuple[Alarm, ...], codes: frozenset[str], axis: Axis | None) -> str:
-    """Return the number of an alarm for this axis or the spindle, or the text for no value.
+    """Return the number of an alarm for an axis or the spindle, or a placeholder if none is active.
 
     An alarm that names no axis applies to all axes.
     """

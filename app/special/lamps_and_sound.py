@@ -67,7 +67,7 @@ class EventSoundPlayer:
         return kind not in self.muted_event_kinds and bool(MACHINE_SIGNALS[kind].tones_hz)
 
     def _report(self) -> None:
-        """Report each error of sound output once."""
+        """Report errors of the sound output, each of them only once."""
         why = self.sound_player.error_text
         if why and why != self._told:
             self.desk.say(tr(Message("NO SOUND: {why}", why=why)))
@@ -199,7 +199,7 @@ class LampsAndSoundFunction(SpecialFunction):
             self.event_sounds.play_test_sound()
 
     def test_lamps(self) -> None:
-        """Turn all lamps on for 2 s while the machine is at rest."""
+        """Turn all lamps on for 2 s. This is possible only while the machine is at rest."""
         if not self.machine.lamp_outputs:
             self.desk.say("THIS MACHINE HAS NO LAMPS. DEFINE THEM UNDER [io.out] IN THE MACHINE FILE")
         else:

@@ -173,7 +173,7 @@ _OFF_STATES = frozenset({MachineState.DISABLED, MachineState.ESTOP, MachineState
 
 
 class MachineFileFunction(SpecialFunction):
-    """Special function that accepts a changed machine file.
+    """Special function with which the operator accepts a changed machine file.
 
     F2 accepts the changes after the operator confirms, and enables the drives.
     """

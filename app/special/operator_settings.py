@@ -114,7 +114,7 @@ class RParametersFunction(NumericEntryFunction):
         return self._save_value(self.marked, value)
 
     def _save_value(self, number: int, value: float | None) -> bool:
-        """Store and log a value, then prove the loaded program.
+        """Store and log an R parameter, then prove the loaded program again.
 
         Return False if a program is running.
         """
@@ -136,7 +136,7 @@ class RParametersFunction(NumericEntryFunction):
         return True
 
     def _handle_saved(self, message: str) -> None:
-        """Log the change, and prove the loaded program again."""
+        """Log the change of an R parameter, and prove the loaded program again."""
         self._persistence.log_change(message)
         now = self.desk.program_loader.loaded_program
         if now.path is None or now.job is None:

@@ -184,9 +184,9 @@ class SetupSheet:
 
     @property
     def clamping_texts(self) -> tuple[tuple[str, str], ...]:
-        """Return stick-out and clamping as pairs of a name and a text.
+        """Return the stick-out and the clamping as pairs of a name and a text.
 
-        On a mill, return the preset instead.
+        On a mill, return the preset instead of these.
         """
         if self.mill_setup is not None:
             return ((tr("PRESET"), self.mill_setup.format_preset(self.format_length)),)

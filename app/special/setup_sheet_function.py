@@ -308,7 +308,7 @@ class SetupSheetFunction(SpecialFunction):
         self._notes_of, self._paper = ("", []), None
 
     def _make_if_changed(self) -> None:
-        """Prepare the setup sheet again if the job has changed."""
+        """Prepare a new setup sheet if the loaded job has changed."""
         loaded = self.desk.program_loader.loaded_program
         job, picture = loaded.job, loaded.picture
         if job is None or picture is None or job is self._asked:
@@ -379,7 +379,7 @@ class SetupSheetFunction(SpecialFunction):
 
 
 def _parse_texts(stored: object) -> list[str]:
-    """Return the stored notes, and ignore values of other types."""
+    """Return the notes from a stored value. Entries that are not texts are ignored."""
     return [each for each in stored if isinstance(each, str)] if isinstance(stored, list) else []
 
 

@@ -41,9 +41,10 @@ from core.proving.program_tools import PartSettings
 def make_sheet_html(
     sheet: SetupSheet, fact_rows: Sequence[tuple[str, str]], remarks: Mapping[int, str], notes: Sequence[str]
 ) -> str:
-    """Return the body of the HTML page.
+    """Return the HTML body of the setup sheet.
 
-    ``fact_rows`` are the rows at the top. ``remarks`` contains the remarks about tools, by tool number.
+    ``fact_rows`` are the rows at the top of the sheet. ``remarks`` contains the remarks about tools, by
+    tool number.
     """
     rows = [
         *fact_rows,

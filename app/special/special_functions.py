@@ -32,7 +32,7 @@ class SpecialFunction(ABC):
 
     @abstractmethod
     def make_table(self, snapshot: Snapshot) -> TableContent:
-        """Return the table for a snapshot."""
+        """Return the table that this special function shows, filled with the values of a snapshot."""
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys of this special function, which can use F2 to F10 except F7."""
@@ -58,7 +58,7 @@ class SpecialFunction(ABC):
         return "ESC: BACK TO THE LIST"
 
     def handle_escape(self) -> bool:
-        """Close the innermost open entry or list. Return False if none was open."""
+        """Close the innermost open entry or list. Return False if neither was open."""
         return False
 
     def on_open(self) -> None:
@@ -104,17 +104,17 @@ class SpecialFunction(ABC):
 class SeparatePageFunction(SpecialFunction):
     """Special function that has its own screen page.
 
-    In the list, its table shows a few facts. Enter or a tap opens the page.
+    On page F10, it shows only a table with a short summary. Enter or a tap opens its own page.
     """
 
     key_hint: ClassVar[str]  # description of other keys that open the page
 
     @abstractmethod
     def make_information_rows(self) -> tuple[TableRow, ...]:
-        """Return the rows with the facts that the table shows."""
+        """Return the rows of the summary table on page F10."""
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table of facts."""
+        """Return the summary table that page F10 shows for this function."""
         return TableContent(
             tr(self.name), ("", ""), (0.4, 0.6), self.make_information_rows(), notes=(self.key_hint,)
         )

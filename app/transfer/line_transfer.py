@@ -1,6 +1,6 @@
-"""Interfaces of a serial transfer.
+"""Interfaces for the transfer of programs over a serial line.
 
-The implementation is provided by the caller.
+The caller supplies the implementation.
 """
 
 from __future__ import annotations

@@ -100,7 +100,7 @@ def convert_settings_to_json(model: SerialLineModel) -> dict[str, object]:
 
 
 def read_settings(stored: object, default: SerialLineModel) -> SerialLineModel:
-    """Return the stored settings if they are valid, or the settings of the machine file."""
+    """Return the stored serial line settings if they are valid, otherwise those of the machine file."""
     if not isinstance(stored, dict):
         return default
     good = {
@@ -191,7 +191,7 @@ def _describe_wait(what: str) -> str:
 
 
 def make_received_table(received: ReceivedProgram, name: str) -> TableContent:
-    """Return the table that shows completeness, proof result and name of a received program."""
+    """Return the table about a received program: completeness, proof result and name."""
     code = tr("7 BITS, EVEN PARITY (DETECTED)") if received.is_seven_bit else tr("SAME AS SETTINGS")
     errors = len(received.finding_texts)
     some = tr("1 ERROR") if errors == 1 else tr(Message("{count} ERRORS", count=errors))

@@ -298,10 +298,10 @@ class _ScenePicture:
         self._part = chain.make_transform(self._tables, chain.workpiece_rotation)
 
     def make_table_faces(self) -> list[tuple[float, DrawnFace]]:
-        """Return the disk of the table as a face with its painting depth.
+        """Return the disk of the rotary table as a face with its painting depth.
 
-        The disk is painted first if it is seen from above, and last if it is seen from below. Sorting by
-        center depth would be wrong for a small blank near the far rim.
+        The disk is painted first if its top is visible, and last if its underside is visible. The depth of
+        its center would give a wrong order for a small blank near the far rim.
         """
         machine_parallel = self._scene.kinematics.make_transform(self._tables)
         zero = self._scene.kinematics.make_transform({})
@@ -332,7 +332,10 @@ class _ScenePicture:
         return found
 
     def make_plane_faces(self) -> list[tuple[float, DrawnFace]]:
-        """Return a square in the tilted working plane around its datum, or nothing without a tilt."""
+        """Return a square in the tilted working plane around its datum.
+
+        Return no faces if the plane is not tilted.
+        """
         swivel = self._instant.plane_position
         if swivel is None or not swivel.system.is_tilted:
             return []
@@ -402,7 +405,7 @@ class _ScenePicture:
         return found
 
     def make_rotary_axis_strokes(self) -> list[DrawnStroke]:
-        """Return the rotation axes of the tables in their current position."""
+        """Return a line for the rotation axis of each rotary table, in its current position."""
         scene, found = self._scene, []
         reach = 0.75 * find_blank_diagonal_mm(scene)
         rotaries = scene.kinematics.rotary_axes
@@ -432,7 +435,7 @@ class _ScenePicture:
 def _make_strokes(
     seen: FloatArray, styles: npt.NDArray[np.int8], is_finished: npt.NDArray[np.bool_]
 ) -> list[DrawnStroke]:
-    """Return the strokes of the path, with a new stroke wherever the drawing style changes."""
+    """Return the strokes of the tool path. A new stroke begins where the drawing style changes."""
     role = np.where(
         styles == MoveStyle.CUT, np.where(is_finished, 3, 2), np.where(styles == MoveStyle.RAPID, 1, 0)
     )

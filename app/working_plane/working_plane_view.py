@@ -68,7 +68,7 @@ class WorkingPlaneView(Panel):
 
     @property
     def scene_instant(self) -> SceneInstant | None:
-        """Return the displayed axis positions, plane and active block, or None if there are none."""
+        """Return the displayed axis positions, plane and active block, or None if nothing is displayed."""
         return self._instant
 
     @property

@@ -1,8 +1,8 @@
 """Table of the changes that each access level may make.
 
-The screen, the commands and ``docs/access.md`` use this table. It covers stored data, raising the spindle
-speed limit, and switching an output manually. No level is needed to run a proved program, or to bring the
-machine to rest: E-stop, feed hold, Reset, ending a function, and drives off.
+The screen, the commands and ``docs/access.md`` use this table. It covers stored data, a higher spindle
+speed limit, and manual switching of outputs. Two kinds of action never need a level: running a proved
+program, and bringing the machine to rest (E-stop, feed hold, Reset, ending a function, drives off).
 """
 
 from __future__ import annotations

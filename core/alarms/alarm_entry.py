@@ -81,8 +81,8 @@ class AlarmEntry(NamedTuple):
     """An entry of the alarm catalog.
 
     ``causes`` are listed from most to least likely. If ``shows_detail`` is True, the operator sees the
-    details of the alarm (such as an axis, a line or the text of a drive) before the causes. Otherwise the
-    details are only logged.
+    details of the alarm before the causes. A detail is, for example, an axis, a line or a message of a
+    drive. Otherwise the details are only logged.
     """
 
     number: int

@@ -36,7 +36,7 @@ _KINDS = {
 
 
 def get_alarm_kind(reaction: AlarmReaction) -> str:
-    """Return the kind of alarm that causes a reaction."""
+    """Return the kind of alarm (such as hold or stop) that has the given reaction."""
     return _KINDS[reaction]
 
 

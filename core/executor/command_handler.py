@@ -88,9 +88,9 @@ class CommandHandler:
             self._control.handle_cycle_start()
 
     def _hold_cycle(self, command: commands.FeedHold) -> None:
-        """Hold the cycle, unless the same key press has already caused a feed hold.
+        """Start a feed hold, unless the same key press has already caused one.
 
-        The screen can deliver one key press twice. The second delivery must not hold a cycle that was
+        The screen can deliver one key press twice. The second delivery must not stop a cycle that was
         started in between.
         """
         if command.press not in self._presses:
@@ -177,7 +177,7 @@ class CommandHandler:
         self._control.status.proof = command.proof
 
     def _store_clearances(self, command: commands.ReplaceStartClearances) -> None:
-        """Store new clearances for the first move, and clear a start refusal caused by the old ones."""
+        """Store new clearances for the first move, and clear a start refusal that the old ones caused."""
         status = self._control.status
         if status.start_refusal_code:
             status.start_refusal_reason = status.start_refusal_code = ""

@@ -32,7 +32,7 @@ class StartClearance:
     """The result of checking the first move of a job from one position of the axes.
 
     - ``job``: digest of the job; ``at``: position in machine coordinates in mm
-    - ``begun``: number of runs started before the check, because a run may change the part
+    - ``begun``: number of runs started before the check, because each run may change the part
     - ``code``: ``TOOL_IN_PART`` or ``FIRST_MOVE_CROSSES`` if the start is refused, otherwise empty
     - ``why``: reason of the refusal for the operator, otherwise empty
     - ``warned``: warning to show before the start if the part's shape is unknown or assumed
@@ -65,7 +65,7 @@ def find_start_clearance(
     *,
     for_repeat: bool = False,
 ) -> StartClearance | None:
-    """Return the clearance for starting this job from ``position``, or None if not yet computed.
+    """Return the clearance to start this job from ``position``, or None if it is not computed yet.
 
     If ``for_repeat`` is True, only clearances for Cycle Repeat are searched.
     """
@@ -80,7 +80,7 @@ def find_start_clearance(
 class Command(ValueObject):
     """Base class of all commands that can be posted to the executor.
 
-    Commands that have to be copied with another job are dataclasses.
+    Some commands must be copied with a different job. These are dataclasses.
     """
 
     __slots__ = ()
@@ -123,7 +123,7 @@ class ChangeOffsets(Command):
 class ReportInterruptedJob(Command):
     """A command that reports the job that was interrupted when the previous control process ended.
 
-    ``logged`` is True if the log already contains the entry.
+    ``logged`` is True if the interruption is already in the event log.
     """
 
     __slots__ = __match_args__ = ("left", "logged")
@@ -145,9 +145,9 @@ class CycleStart(Command):
 class FeedHold(Command):
     """A command that stops the axes on the path.
 
-    The axes stop within the commit time plus the braking time v/a. ``by`` is the source of the request, for
-    the log. ``press`` is the number of the key press, or 0 if unknown. A press that arrives twice causes
-    only one feed hold.
+    The axes stop within the commit time, in which queued setpoints can no longer be changed, plus the
+    braking time v/a. ``by`` is the source of the request, for the log. ``press`` is the number of the key
+    press, or 0 if unknown. A press that arrives twice causes only one feed hold.
     """
 
     __slots__ = __match_args__ = ("by", "press")
@@ -157,7 +157,7 @@ class FeedHold(Command):
         self.press: Final = press
 
     def __eq__(self, other: object) -> bool:
-        """Return whether the other command is also a feed hold, from any source."""
+        """Return whether the other command is also a feed hold; its source does not matter."""
         return isinstance(other, FeedHold)
 
     def __hash__(self) -> int:
@@ -256,7 +256,7 @@ class JogByStep(Command):
 
 
 class StopJog(Command):
-    """A command that ends the jog immediately, before its lease expires. A step is also ended early."""
+    """A command that ends a jog or a step immediately, without waiting for the lease to expire."""
 
     __slots__ = ()
 
@@ -328,7 +328,7 @@ class HomeAxes(Command):
 
 
 class UseOffsetTables(Command):
-    """A command that applies changed offset tables to the position display and to MDI.
+    """A command that makes the position display and MDI use changed offset tables.
 
     The command is refused while a program runs, because the program uses the offsets with which it was
     proved.
@@ -361,11 +361,11 @@ class ForceOutput(Command):
 
 
 class ConfirmStart(Command):
-    """A command that confirms a start at the first line although a job was interrupted.
+    """A command that confirms a start at the first line after a job was interrupted.
 
     ``at`` is the time of the interruption that the operator has confirmed. The confirmation is valid for
-    one start, for 60 s at most, and only while the machine remains idle. An empty ``at`` withdraws the
-    confirmation.
+    one start, for 60 s at most, and only while the machine remains idle. If ``at`` is empty, the command
+    withdraws the confirmation.
     """
 
     __slots__ = __match_args__ = ("at",)

@@ -46,7 +46,8 @@ class Counters:
     def add_cutting_time(self, tool: int, seconds: float, load_percent: float | None = None) -> None:
         """Add cutting time at feed for a tool, and the spindle load in percent if it is known.
 
-        The mapping of cutting times is replaced, so that a mapping that was read earlier does not change.
+        The mapping of cutting times is replaced by a new one. Readers that hold the old mapping are not
+        affected.
         """
         self.cutting_times_s = {**self.cutting_times_s, tool: self.cutting_times_s.get(tool, 0.0) + seconds}
         if load_percent is not None:
@@ -185,7 +186,7 @@ class Workpiece:
         self._whole = begin is None or (not begin.skips_cuts and begin.checkpoint.blocks <= self._begun)
 
     def count_started_blocks(self, block: int) -> int:
-        """Return how many blocks have started, without any skipped, once the run has reached ``block``."""
+        """Return how many blocks have started, with none skipped, when the run has reached ``block``."""
         return max(self._begun, block) if self._whole else self._begun
 
     def finish_program(self) -> None:
@@ -205,7 +206,7 @@ class Workpiece:
 
 
 class PartCounter:
-    """Counter of parts and their cycle times. Other modules read ``counters``."""
+    """Counter of parts and their cycle times, whose results are in ``counters``."""
 
     def __init__(self, context: MachineContext) -> None:
         self._context = context

@@ -64,7 +64,7 @@ _POWERED_STATES = CYCLE_STATES | {MachineState.IDLE, MachineState.JOG, MachineSt
 
 
 class RestDetector:
-    """Detector of a machine at rest, with which the executor's thread reduces its tick rate."""
+    """Detector of a machine at rest, so that the executor can reduce its tick rate."""
 
     def __init__(self, context: MachineContext, control: MachineControl) -> None:
         self._context, self._control = context, control
@@ -82,7 +82,7 @@ class RestDetector:
     def detect_machine_change(self) -> bool:
         """Compare the machine with the previous tick; return whether a new snapshot is needed.
 
-        Most of the time of a tick is spent on making the snapshot, so that the comparison saves time.
+        Making a snapshot takes most of the time of a tick, so skipping it saves time.
         """
         context, status = self._context, self._control.status
         seen: tuple[object, ...] = ()
@@ -143,11 +143,11 @@ class RestDetector:
 
 
 def _ignore_interruption(_what: InterruptedJob | None) -> None:
-    """Do nothing with the interrupted job. An executor without a store for it uses this function."""
+    """Do nothing. An executor without a store for the interrupted job uses this function."""
 
 
 def _css_function(ports: MachinePorts) -> Callable[[float], None]:
-    """Return the function to call with the highest spindle speed before each speed command."""
+    """Return the function that announces the highest CSS spindle speed before each speed command."""
     return ports.blocks.announce_css_max_rpm if ports.blocks is not None else lambda _: None
 
 
@@ -157,7 +157,7 @@ class Executor:
     - ``post`` and ``snapshot`` can be used from any thread, but ``run_tick`` from only one thread.
     - ``start_pass`` starts a pass through a job; tests supply their own function.
     - ``store_interruption`` receives the job that a power loss would interrupt.
-    - ``interrupted_job`` is the job that the previous process left interrupted.
+    - ``interrupted_job`` is the job that was interrupted when the previous process ended.
     - If ``checks_starts`` is True, a cycle needs a clearance of its first move from a worker.
     - ``record_tick`` receives the scope data of each tick and must return immediately.
     """
@@ -232,7 +232,7 @@ class Executor:
         self.start_next_tick()
 
     def start_next_tick(self) -> None:
-        """Start the next tick at once; any thread may call this function.
+        """Start the next tick at once, without waiting for its time; any thread may call this.
 
         The call has no effect if the drivers cannot wake the executor.
         """
@@ -355,7 +355,7 @@ class Executor:
             _log.error("the scope misses what the machine does", exc_info=trial.error)
 
     def _handle_failed_read(self) -> None:
-        """Discard the start signal after a failed read, but obey the E-stop."""
+        """Discard the start signal after a failed read of the machine, but still react to the E-stop."""
         context = self._context
         context.station_signals = context.station_signals._replace(is_start_requested=False)
         with ErrorCatcher():
@@ -404,7 +404,7 @@ class Executor:
             self._context.log_text("disturbed", (lost or "the pendant is connected again").upper())
 
     def _log_override(self) -> None:
-        """Log the feed override if it has changed by 10 % or more, to zero, or from zero."""
+        """Log the feed override when it changes by 10 % or more, and when it reaches or leaves zero."""
         fraction = self._context.feed_override
         if abs(fraction - self._logged_override) >= _LOGGED_OVERRIDE_CHANGE or (fraction == 0.0) != (
             self._logged_override == 0.0
@@ -488,7 +488,7 @@ class Executor:
                 self._raise_alarm(AlarmError(error.code, str(error)))
 
     def _raise_alarm(self, error: AlarmError) -> None:
-        """Raise an alarm, or handle the E-stop if the E-stop has caused the loss of power."""
+        """Raise an alarm, or handle the E-stop if the alarm results from the power-off by the E-stop."""
         if error.code in _ESTOP_ALARM_CODES and self._ports.station.read_state().estop:
             self._control.handle_estop(True)
         else:

@@ -37,10 +37,10 @@ _CONFIRMATION_VALID_S = 60.0  # s for which a confirmation of the operator is va
 
 
 class InterruptionRecorder:
-    """Storage, in advance, of the job that a power loss would interrupt.
+    """Recorder that stores, in advance, the job that a power loss would interrupt.
 
-    A power loss leaves no time to write. The state is therefore stored before a cycle starts, at each part,
-    tool and stop, and otherwise at most once per second. Only the executor's thread uses this class.
+    After a power loss it is too late to write. The state is therefore stored before a cycle starts, at each
+    part, tool and stop, and otherwise at most once per second. Only the executor's thread uses this class.
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class InterruptionRecorder:
         store_interruption: StoreFunction,
         interrupted_job: InterruptedJob | None,
     ) -> None:
-        """Initialize the watch; ``interrupted_job`` is the job found when the control starts."""
+        """Create the recorder; ``interrupted_job`` is the interrupted job found when the control starts."""
         self._context, self._status, self._parts, self._keep = context, status, parts, store_interruption
         self._begun = False  # this control has started a program
         self._begin: PassStart | None = None
@@ -65,7 +65,7 @@ class InterruptionRecorder:
         status.interrupted_job = interrupted_job
 
     def set_previous_interruption(self, interrupted_job: InterruptedJob, *, is_logged: bool = False) -> None:
-        """Set the job that the previous control process left interrupted.
+        """Set the job that was interrupted when the previous control process ended.
 
         The call has no effect if a program has started since.
         """

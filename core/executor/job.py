@@ -45,10 +45,10 @@ class ProgramPass(NamedTuple):
 class ReadAheadQueue:
     """Reader that reads the blocks of a program pass ahead of the motion.
 
-    ``pending_blocks`` are the blocks of one path section. ``stop`` is the next block that needs a
-    standstill (``SectionEndDetector``). No later block is read before ``stop`` has been executed, so that
-    the program reads inputs at the correct time. Each block is checked against the machine again when it is
-    read.
+    - ``pending_blocks`` are the blocks of one path section.
+    - ``stop`` is the next block that needs a standstill (``SectionEndDetector``). Later blocks are read
+      only after it has been executed, so that the program reads inputs at the correct time.
+    - Each block is checked against the machine again when it is read.
     """
 
     def __init__(self, source: ProgramPass, machine: Machine) -> None:
@@ -65,7 +65,7 @@ class ReadAheadQueue:
 
     @property
     def next_block(self) -> Block | None:
-        """Return the next block that has not been removed, or None if no block has been read."""
+        """Return the next block that is still in the queue, or None if the queue is empty."""
         return self.pending_blocks[0] if self.pending_blocks else self.stop
 
     @property
@@ -116,7 +116,10 @@ class ReadAheadQueue:
         return None if self.read_error else block
 
     def _find_error(self) -> None:
-        """Store the first new error of the interpreter. Such errors occur only in an actual run."""
+        """Store the first new error of the interpreter.
+
+        Only a real run, not the proof, can cause such an error.
+        """
         problems = self._source.get_diagnostics()
         for problem in problems[self._reported :]:
             if problem.severity is Severity.ERROR and self.read_error is None:
@@ -232,7 +235,7 @@ class Proof:
     warnings: tuple[str, ...] = ()
 
     def unset(self, job: Job) -> list[int]:
-        """Return the numbers of the tools that have no offset set and that the program does not measure."""
+        """Return the numbers of the tools without an offset that the program does not measure either."""
         return sorted(set(self.tool_numbers) - job.entered_tool_numbers - set(self.measured_tools))
 
 

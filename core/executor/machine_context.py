@@ -32,7 +32,7 @@ _OVERRIDE_STEP = 0.005  # smallest step of the feed override
 
 @dataclass(slots=True)
 class OperatorSwitches:
-    """State of the operator's switches, such as single block, which the screen shows as lit labels."""
+    """State of the operator's switches, such as single block. The screen shows them as lit labels."""
 
     single_block: bool = False
     optional_stop: bool = False

@@ -172,7 +172,8 @@ class MachineControl:
     def handle_spindle_switch(self) -> None:
         """Handle a change of the spindle switch from OFF to AUTO.
 
-        If no cycle is active, this starts a waiting spindle. In a stopped cycle, only Cycle Start does.
+        If no cycle is active, a spindle that waits for permission to start is started. In a stopped cycle,
+        only Cycle Start turns it on.
         """
         spindle = self._context.spindle
         if self.state not in MANUAL_STATES or not spindle.waiting_reason:
@@ -186,9 +187,9 @@ class MachineControl:
             self.announcement.start_functions(SPINDLE_FUNCTION)
 
     def _find_confirmation_refusal(self) -> str:
-        """Return why a start within 0.8 s after a confirmation is refused, or an empty string.
+        """Return why a start too soon after a confirmation is refused, or an empty string.
 
-        The operator cannot read the prompt in such a short time.
+        Within 0.8 s, the operator cannot have read the prompt.
         """
         if self._context.now - self.confirmed_at >= CONFIRMATION_DELAY_S:
             return ""
@@ -410,7 +411,7 @@ class MachineControl:
             )
 
     def _finish_stopping(self) -> None:
-        """Retry an incomplete safe stop, and raise an alarm if a driver still does not execute it."""
+        """Retry a safe stop that is incomplete, and raise an alarm if a driver still does not execute it."""
         if self.state in _STOP_STATES:
             self.safe_stop.retry_failed_steps()
             if self.safe_stop.failed_steps_text and not any(

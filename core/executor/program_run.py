@@ -132,7 +132,7 @@ class ProgramRun:
         self._between = False  # a part is finished, and the next one waits for the proof of changed offsets
 
     def find_start_refusal_reason(self, state: MachineState) -> str:
-        """Return why Cycle Start may not start the selected job, or an empty string."""
+        """Return why Cycle Start may not start the selected job, or an empty string if it may."""
         why = start_conditions.find_start_refusal_reason(self._context, state, self.status)
         self.status.start_refusal_code = ""
         if why:
@@ -180,7 +180,7 @@ class ProgramRun:
         )
 
     def exclude_part_from_count(self, reason: str) -> None:
-        """Mark the part in progress as disturbed for the given reason, so that it is not counted."""
+        """Mark the part in progress as disturbed for the given reason, so that it does not count."""
         if not (self._line or self._between):
             self.part_count.workpiece.disturbance = self.part_count.workpiece.disturbance or reason
 
@@ -329,9 +329,9 @@ class ProgramRun:
         self._enter(MachineState.IDLE)
 
     def _end_mdi_line(self, end: ProgramEnd | None) -> None:
-        """Store the state that an MDI line passes to the next line.
+        """Store the state that an MDI line passes to the next MDI line.
 
-        After M30 in the line, this is the same state as after a program.
+        If the line contains M30, this is the same state as after a program.
         """
         source = self._source
         left = source.make_checkpoint() if source is not None and source.make_checkpoint is not None else None

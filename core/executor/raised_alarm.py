@@ -42,7 +42,7 @@ def make_alarm_and_reaction(error: AlarmError, line: int, now: float) -> tuple[A
 
 
 def make_alarm(code: AlarmCode, detail: str, line: int, now: float) -> Alarm:
-    """Return an alarm, a hold or a stop with the texts of the catalog entry and the given detail."""
+    """Return an alarm, a hold or a stop with the texts of its catalog entry and the given detail."""
     entry = CATALOG[code]
     exactly = detail if entry.shows_detail else ""
     return Alarm(
@@ -84,7 +84,8 @@ def log_alarm(alarm: Alarm) -> None:
 class ErrorCatcher:
     """A context manager that catches an error of its ``with`` block and stores it in ``error``.
 
-    SystemExit is caught too. Only KeyboardInterrupt, which is meant for the main thread, is raised again.
+    SystemExit is caught too. Only KeyboardInterrupt is raised again, because it is meant for the main
+    thread.
     """
 
     def __init__(self) -> None:
@@ -101,10 +102,10 @@ class ErrorCatcher:
 
 
 class ErrorReporter(ErrorCatcher):
-    """A context manager that logs an error of its block and passes it to ``handle_failure``.
+    """A context manager that logs an error of its ``with`` block and passes it to ``handle_failure``.
 
-    An error in ``handle_failure`` is logged too. If an error repeats in every tick, only its first, tenth,
-    hundredth … occurrence is logged, so that it does not displace earlier log entries.
+    An error in ``handle_failure`` is logged too. If an error repeats in every tick, only occurrences 1, 10,
+    100 and so on are logged, so that it does not displace earlier log entries.
     """
 
     _written: ClassVar[Counter[str]] = Counter()

@@ -46,7 +46,7 @@ _TURNING_RPM = 1.0  # rpm
 
 
 class _OpenRecord(NamedTuple):
-    """An alarm whose record is still to be written, with the name of the program that was running."""
+    """An alarm whose record has not been written yet, with the name of the program that was running."""
 
     alarm_event: LogEvent
     program_name: str
@@ -117,9 +117,9 @@ class ScopeRecorder(ScopeRecordings):
             self._happens.set()
 
     def add_record_name(self, event: LogEvent) -> LogEvent:
-        """Return an alarm or E-stop event with the name of its future record; leave others unchanged.
+        """Return the event with the name of its future record if it is an alarm or an E-stop.
 
-        The function does not wait.
+        Other events are returned unchanged. The function does not wait.
         """
         if self.folder is None or event.kind not in _RECORDED_EVENT_KINDS or event.alarm is None:
             return event
@@ -190,7 +190,10 @@ class ScopeRecorder(ScopeRecordings):
                 self._file = None
 
     def _tick_rows(self, ticks: Iterable[TickData]) -> FloatArray:
-        """Return a row for each tick in which a value changed, but only ten rows per second at rest."""
+        """Return a row for each tick in which a value changed.
+
+        While the machine is at rest, there are at most ten rows per second.
+        """
         recorded, last = self.ring.layout, self.ring.ticks.last_time_s
         rows: list[list[float]] = []
         for tick in ticks:
@@ -318,7 +321,7 @@ class ScopeRecorder(ScopeRecordings):
 
 
 def _values_or_nan(values: list[float], is_known: bool) -> list[float]:
-    """Return ``values``, or NaN for each of them if the values are unknown."""
+    """Return ``values``, or the same number of NaN if the values are unknown."""
     return values if is_known else [_NAN] * len(values)
 
 

@@ -26,7 +26,7 @@ _REFUSAL_TIME_S = 5.0  # s after which a lamp that the driver refused is switche
 class SignalSelector:
     """Selector of the active signals of the signal tower.
 
-    It also stores whether a part is complete and the next one has not started.
+    It also stores whether a part is complete while the next part has not started yet.
     """
 
     _ends: int = -1

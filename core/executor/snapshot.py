@@ -39,7 +39,7 @@ class InterruptedJob:
 
     - ``where``: machine positions in the order of ``axes``, in mm (X as a radius) or in degrees
     - ``part``: number of the part in progress
-    - ``begun``: number of its elementary blocks that had started, with none skipped
+    - ``begun``: number of elementary blocks of this part that had started, with none skipped
     - ``at``: time of day in UTC, in ISO 8601 format
     """
 
@@ -182,9 +182,9 @@ class TouchPhase(StrEnum):
 class TouchResult:
     """The result of a touch-off.
 
-    ``touch_position_mm`` is the encoder position of the axis at the touch, in machine coordinates in mm, and
-    ``uncertainty_mm`` is its uncertainty. If the touch-off failed, ``touch_position_mm`` is None and ``why``
-    is the reason.
+    ``touch_position_mm`` is the encoder position of the axis at the touch, in machine coordinates. It is
+    None if the touch-off failed, and ``why`` is then the reason. ``uncertainty_mm`` is the uncertainty of
+    this position.
     """
 
     number: int  # number of touch-offs that have ended
@@ -401,7 +401,7 @@ MANUAL_STATES = frozenset({MachineState.IDLE, MachineState.JOG})
 
 
 class TransitionError(Exception):
-    """An error raised if the executor requests a state change that the table does not permit."""
+    """An error raised if the executor requests a state change that the transition table forbids."""
 
 
 def require_transition(old_state: MachineState, new_state: MachineState) -> None:

@@ -33,7 +33,10 @@ class _BlockValues(TypedDict):
 
 
 class SnapshotPublisher:
-    """Factory of snapshots. It also calculates the velocity from two consecutive samples."""
+    """Factory of the snapshots that the executor publishes.
+
+    It also calculates the velocity from two consecutive samples.
+    """
 
     def __init__(self) -> None:
         self._before: AxisSample | None = None
@@ -128,9 +131,9 @@ class SnapshotPublisher:
     def _is_x_diameter(self, block: Block | None, modal: ModalState, status: ControlStatus) -> bool:
         """Return whether X is displayed as a diameter.
 
-        The mode of the last program or MDI line remains after its end, a Reset or an E-stop, and during a
-        retract from the part. The tool may still be in the part, and a displayed value that suddenly halves
-        would mislead the operator. Loading another program, or opening MDI, selects the control's own mode.
+        The mode of the last program or MDI line remains after its end, a Reset or an E-stop, and while the
+        tool is retracted. The tool may still be in the part, and a displayed X that suddenly halves would
+        mislead the operator. If another program is loaded or MDI is opened, the control's own mode is used.
         """
         name = status.job.source.name if status.job is not None else ""
         if name != self._shown_for:
@@ -195,7 +198,7 @@ def _is_optional_stop(block: Block | None) -> bool:
 
 
 def _next_text(cycle: Cycle | None) -> str:
-    """Return the text of the block after the executing one, or an empty string if there is none."""
+    """Return the text of the block after the executing block, or an empty string if none follows."""
     following = cycle.next_block if cycle else None
     return following.text if following else ""
 
@@ -210,7 +213,7 @@ def _is_rotary_feed(block: Block | None, modal: ModalState) -> bool:
 
 
 def _feed_in_force(block: Block | None, modal: ModalState) -> float:
-    """Return the programmed feed of a block that moves, or the active feed for any other block."""
+    """Return the programmed feed of a block that moves, or the modal feed for any other block."""
     if block is not None and block.moves and block.kind is not BlockKind.ROTATE:
         # A tap moves by its lead even if the feed per minute is in force.
         by_minute = block.follows_spindle and block.per_rev and not block.modal.per_rev

@@ -114,7 +114,7 @@ class SpindleControl:
 
     @property
     def is_stopped(self) -> bool:
-        """Return whether the measured speed is zero; False if no speed data arrives."""
+        """Return whether the measured speed is zero. The result is False if no speed data arrives."""
         return self.is_speed_known and abs(self.measured_rpm) < self._model.stop_below
 
     @property
@@ -140,7 +140,10 @@ class SpindleControl:
 
     @property
     def spindle_stopped_reason(self) -> str:
-        """Return why the spindle is not requested, cannot start or is waiting, or an empty string."""
+        """Return why the spindle is not requested, cannot start or is waiting.
+
+        The result is an empty string if none of this applies.
+        """
         if self._ask is None:
             return "SPINDLE STOPPED"
         return self.start_inhibit_reason or self.waiting_reason
@@ -173,7 +176,10 @@ class SpindleControl:
             self._again, self._in_band_since = True, None
 
     def record_external_stop(self, reason: str) -> None:
-        """Record that a device between control and drive has stopped the spindle, which then waits."""
+        """Record that a device between control and drive has stopped the spindle.
+
+        The spindle then waits for permission to start again.
+        """
         if self._ask is not None:
             self.waiting_reason, self._withdrawn = reason, True
 
@@ -200,10 +206,10 @@ class SpindleControl:
         self._send(0.0, self._now)
 
     def prepare_safe_stop(self, *, should_coast: bool) -> list[tuple[str, Callable[[], None]]]:
-        """Discard the spindle request and return the steps of a safe stop of the spindle.
+        """Discard the spindle request, and return the steps of a safe stop of the spindle.
 
-        Each step must be run even if another step raises an error. The steps release C and command the
-        drive to stop, even if a stop was already commanded.
+        The steps release C and command the drive to stop, even if a stop was already commanded. The caller
+        must run each step, even if another step raises an error.
         """
         self._ask, self._in_band_since = None, None
         self._forget_waiting()
@@ -355,17 +361,20 @@ class SpindleControl:
         self._port.set_speed(rpm)
 
     def _max_css_rpm(self) -> float:
-        """Return the highest speed in rpm that the radius may require, or 0 without a surface speed."""
+        """Return the highest speed in rpm that constant surface speed may require at any radius.
+
+        The result is 0 if no surface speed is programmed.
+        """
         ask = self._ask
         if ask is None or ask.surface_speed_mm_s is None:
             return 0.0
         return min(min(ask.max_rpm or self.max_rpm, self.max_rpm) * self.override, self._model.max_rpm)
 
     def _record_fall(self, rpm: float, now: float) -> None:
-        """Record the time and speed at which a change of the commanded speed starts.
+        """Record the time and the speed at which the commanded speed begins to change.
 
-        The change is a fall, a reversal or a rise. The measured speed is included because the spindle may
-        still coast after an E-stop.
+        The change can be a fall, a reversal or a rise. The measured speed is recorded too, because the
+        spindle may still coast after an E-stop.
         """
         fastest = max(abs(self.measured_rpm), abs(self.commanded_rpm))
         if abs(rpm) < fastest or rpm * self.commanded_rpm < 0.0 or rpm * self.measured_rpm < 0.0:
@@ -419,7 +428,7 @@ class SpindleControl:
 
     @property
     def _grace_s(self) -> float:
-        """Return how long after a command the measured speed may differ from it, in seconds."""
+        """Return for how many seconds after a command the measured speed may differ from it."""
         return max(_GRACE_S, self._lag() + _REACTION_TIME_S)
 
     _now = 0.0

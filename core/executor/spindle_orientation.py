@@ -12,10 +12,10 @@ from core.ports import DriverError, OrientingSpindle
 
 
 def try_standstill_command(command: Callable[[], None]) -> bool:
-    """Run a command that requires a stopped spindle, and return whether the drive has accepted it.
+    """Run a command that requires a stopped spindle; return whether the drive has accepted it.
 
-    The drive may reject it at a speed below ``stop_below`` of the machine file. Raises DriverError for any
-    other reason.
+    The drive may reject the command because the spindle still turns, although slower than ``stop_below`` of
+    the machine file. Raises DriverError if the drive rejects it for any other reason.
     """
     try:
         command()
@@ -44,7 +44,7 @@ class OrientationControl:
 
     @property
     def angle_deg(self) -> float | None:
-        """Return the angle in degrees at which the drive holds the spindle, or None if it holds none."""
+        """Return the angle in degrees at which the drive holds the spindle, or None if it does not."""
         return self._asked[0] if self._asked is not None and self._reached else None
 
     @property

@@ -40,7 +40,7 @@ def is_guard_open(context: MachineContext) -> bool:
 
 
 def find_station_inhibit_reason(context: MachineContext) -> str:
-    """Return why the operator station prevents a cycle, or an empty string."""
+    """Return why the operator station prevents a cycle, or an empty string if it does not."""
     if context.station_signals.is_hold_requested:
         return "feed hold is pressed"
     if is_guard_open(context):
@@ -51,7 +51,7 @@ def find_station_inhibit_reason(context: MachineContext) -> str:
 
 
 def find_collet_inhibit_reason(context: MachineContext) -> str:
-    """Return why the collet prevents a spindle start, or an empty string."""
+    """Return why the collet prevents a spindle start, or an empty string if it does not."""
     if context.machine.interlocks.spindle_with_collet_open or context.inputs.get("collet_closed", True):
         return ""
     return "the spindle does not start with the collet open: close the collet first"
@@ -60,7 +60,8 @@ def find_collet_inhibit_reason(context: MachineContext) -> str:
 def find_collet_resume_inhibit(context: MachineContext) -> str:
     """Return why the collet prevents a spindle start within a stopped cycle, or an empty string.
 
-    If the program has opened the collet, the operator must press Reset before closing the collet.
+    The string is empty if the collet does not prevent it. If the program has opened the collet, the
+    operator must press Reset before closing the collet.
     """
     why = find_collet_inhibit_reason(context)
     if why and not context.commanded_outputs.get_outputs().get("collet", True):
@@ -72,7 +73,7 @@ def find_collet_resume_inhibit(context: MachineContext) -> str:
 
 
 def find_state_inhibit_reason(context: MachineContext, state: MachineState) -> str:
-    """Return a text that names the machine state that prevents a start, or an empty string."""
+    """Return why the current machine state prevents a start, or an empty string if it does not."""
     if state in _BUSY_STATES:
         return _BUSY_STATES[state]
     if find_station_inhibit_reason(context):
@@ -102,7 +103,10 @@ def find_job_refusal_reason(
 
 
 def describe_missing_function(context: MachineContext, proof: Proof | None) -> str:
-    """Return a message if the machine lacks a function that the program needs, or an empty string."""
+    """Return the message that the machine lacks a function that the program needs.
+
+    The result is an empty string if the machine has all these functions.
+    """
     blocks = context.ports.blocks
     absent = {Message("output {name}", name=name) for name in context.machine.missing_outputs}
     for need in proof.required_functions if proof is not None else ():
@@ -144,7 +148,7 @@ def describe_missing_function(context: MachineContext, proof: Proof | None) -> s
 
 
 def find_proof_refusal_reason(job: Job | None, proof: Proof | None) -> str:
-    """Return why the proof does not permit a start of this job, or an empty string."""
+    """Return why the proof does not permit a start of this job, or an empty string if it does."""
     if job is None:
         return "no program is loaded"
     if proof is None:
@@ -192,7 +196,10 @@ def find_start_refusal_reason(context: MachineContext, state: MachineState, stat
 def find_first_move_refusal(
     context: MachineContext, status: ControlStatus, run_count: int
 ) -> tuple[str, str]:
-    """Return the code and the text of the refusal of the first move, or two empty strings."""
+    """Return the code and the text of the reason why the first move is refused.
+
+    Both are empty strings if the first move is permitted.
+    """
     job = get_selected_job(status)
     if not status.requires_start_clearance or job is None:
         return "", ""
@@ -259,7 +266,7 @@ def _find_change(context: MachineContext, status: ControlStatus, job: Job | None
 
 
 def _proof_instruction(begin: PassStart) -> str:
-    """Return the text that instructs the operator how to have the job proved again."""
+    """Return the instruction that explains to the operator how to prove the job again."""
     if begin.is_mdi_line:
         return "request the retract path again" if begin.approach_steps else "enter or select the line again"
     return "search for the line again"
@@ -292,7 +299,7 @@ _VALUE_CHANGE_FRACTION = 0.1  # relative change of a value that makes a new anno
 
 
 class AnnouncedFunction(NamedTuple):
-    """A function that the next start would turn on.
+    """A function that the next start would turn on, and that must be announced first.
 
     ``function_name`` identifies the function, and ``text`` is shown to the operator. ``displayed_value`` is
     a value in the text, such as the rpm of a spindle. A large change of this value creates a new
@@ -322,9 +329,10 @@ class StartAnnouncement:
         return tuple(item.text for item in items)
 
     def find_refusal_reason(self, now: float, function_name: str = "") -> str:
-        """Return why a start is refused if an announcement was not shown long enough to be read.
+        """Return why a start is refused because an announcement was not shown long enough to be read.
 
-        The result is empty if the start is permitted. ``function_name`` limits the check to one function.
+        The result is an empty string if the start is permitted. ``function_name`` limits the check to one
+        function.
         """
         for item in self._items(function_name):
             since, figure = self._since.get(item.function_name, (math.inf, 0.0))

@@ -23,8 +23,8 @@ class StartWarnings:
     def iter_spindle_starts(self) -> Iterator[AnnouncedFunction]:
         """Yield the announcement of a waiting spindle that the next start will turn on.
 
-        In a cycle, only Cycle Start turns the spindle on. If no cycle is active, the spindle switch does so
-        too.
+        In a cycle, only Cycle Start turns the spindle on. If no cycle is active, turning the spindle switch
+        to AUTO also does.
         """
         spindle = self._context.spindle
         rpm, by_hand = spindle.waiting_start_rpm, self._status.state in MANUAL_STATES

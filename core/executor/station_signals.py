@@ -43,7 +43,7 @@ class StationSignals(NamedTuple):
 
 
 class OverridePotFilter:
-    """Filter of one override potentiometer.
+    """Filter for the readings of one override potentiometer.
 
     A decrease takes effect at once. A sudden increase takes effect only after the value has become stable.
     """
@@ -56,7 +56,7 @@ class OverridePotFilter:
 
     @property
     def is_noisy(self) -> bool:
-        """Return whether the value jumps so often that an operator cannot be the cause."""
+        """Return whether the reading jumps too often to be caused by an operator."""
         return len(self._jumps) >= _NOISY_JUMPS
 
     def filter_reading(self, raw_value: float, now: float) -> float:
@@ -129,7 +129,10 @@ class StationSignalConverter:
         )
 
     def accept_start_press(self, now: float) -> bool:
-        """Return whether a start signal is a new key press, not contact bounce; if so, record its time."""
+        """Return whether a start signal is a new key press, not contact bounce.
+
+        The time of a new key press is recorded.
+        """
         fresh = now - self._last_start >= _DEBOUNCE_S
         if fresh:
             self._last_start = now
@@ -201,7 +204,7 @@ class CommandedOutputs:
                 self._wanted[model.name], self._written[model.name] = model.safe_state, self._now
 
     def set_write_time(self, now: float) -> None:
-        """Set the time that is recorded for later writes.
+        """Set the time that is recorded for the outputs that are written from now on.
 
         The function is called at the beginning of each tick.
         """

@@ -1,8 +1,8 @@
 """Delay of the executor's ticks on a busy computer, and the resulting setpoint queue depth.
 
-While a tick is late, the axes continue along the queued setpoints. If a late tick has used more than half
-of the queue, the queue becomes one step deeper. After a period without late ticks, it becomes one step
-shallower.
+While a tick is late, the axes continue along the queued setpoints. If a late tick uses up more than half of
+the queue, more setpoints are queued from then on (one step more). After a period without late ticks, the
+queue is reduced by one step again.
 """
 
 from __future__ import annotations

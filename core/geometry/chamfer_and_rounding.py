@@ -1,7 +1,8 @@
 """Chamfers and roundings of the corner between two elements of a contour.
 
-Between two lines, the corner is a chamfer or a tangent fillet. The leg of a chamfer is straight; along an
-arc it is a chord (as in Beckhoff's G301). A rounding may be between lines and arcs.
+Between two lines, the corner is a chamfer or a tangent fillet. The leg of a chamfer is the straight
+distance from the corner; along an arc it is a chord (as in Beckhoff's G301). A rounding may be between
+lines and arcs.
 """
 
 from __future__ import annotations
@@ -70,7 +71,7 @@ def chamfer(first_element: Element, second_element: Element, leg: float) -> tupl
 
 
 def _turn_between(before: Element, after: Element) -> float:
-    """Return the angle in radians by which the direction changes between the elements."""
+    """Return the angle in radians by which the direction changes from one element to the next."""
     for element in (before, after):
         if element.length < SAME_POINT_TOLERANCE_MM:
             raise CornerTooLargeError(0.0, is_first_move=element is before)
@@ -117,9 +118,9 @@ def _way(element: Element, leg: float) -> float:
 
 
 def _required_length(element: Element) -> float:
-    """Return the length in mm that must remain of an element after a chamfer.
+    """Return the minimum length in mm that an element must have left after a chamfer.
 
-    A section of an arc must remain, because an arc with equal ends would be a full circle.
+    An arc must have a section left, because an arc with equal ends would be a full circle.
     """
     return SAME_POINT_TOLERANCE_MM if isinstance(element, Arc) else -SAME_POINT_TOLERANCE_MM
 
@@ -129,11 +130,13 @@ def make_rounding(
 ) -> tuple[Element, Arc, Element]:
     """Return both elements shortened to the tangent points of an arc, with the arc between them.
 
-    The radius of the arc is ``radius`` mm. Between two lines, each line is shortened by radius·tan(turn/2).
-    Otherwise the center of the arc is the intersection of both elements, each offset by ``radius``. Raises
-    SameDirectionError if the elements have the same direction. Between two lines, raises
-    CornerTooLargeError if a line is too short, and CornerError if the second line reverses the direction of
-    the first. With an arc, raises CornerError if no arc is tangent to both elements within their lengths.
+    The radius of the arc is ``radius`` mm.
+    - Between two lines, each line is shortened by radius·tan(turn/2). Raises CornerTooLargeError if a line
+      is too short, and CornerError if the second line reverses the direction of the first.
+    - With an arc, the center is the intersection of both elements, each offset by ``radius``. Raises
+      CornerError if no arc is tangent to both elements within their lengths.
+
+    Raises SameDirectionError if the elements have the same direction.
     """
     if isinstance(first_element, Line) and isinstance(second_element, Line):
         return _fillet(first_element, second_element, radius)
@@ -190,10 +193,11 @@ _HALVINGS = 60
 def find_chamfer_leg(first_element: Element, second_element: Element, length: float) -> float:
     """Return the leg of a chamfer that is ``length`` mm long.
 
-    Between two lines, no error is raised, because ``chamfer`` checks the leg. With an arc, raises
-    SameDirectionError if the elements have the same direction. Raises CornerTooLargeError if an element has
-    no length. Raises CornerError if the second element reverses the direction of the first, or if the
-    elements are too short for the chamfer.
+    Between two lines, no error is raised, because ``chamfer`` checks the leg. If an element is an arc, the
+    errors are:
+    - SameDirectionError if the elements have the same direction.
+    - CornerTooLargeError if an element has no length.
+    - CornerError if the second element reverses the direction, or an element is too short.
     """
     if isinstance(first_element, Line) and isinstance(second_element, Line):
         # The chamfer and its two legs are an isosceles triangle.

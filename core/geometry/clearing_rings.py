@@ -30,11 +30,11 @@ _RAMP_RADII = 4.0  # tool radii that a ramp should be long
 
 @dataclass(frozen=True, slots=True)
 class ClearingRing:
-    """One closed tool path of a pocket, which starts at the point where the tool reaches it.
+    """A closed tool path of a pocket. It starts at the point where the tool enters it.
 
     If ``moves_at_depth`` is True, the tool moves to the ring at cutting depth, otherwise from above.
-    ``ramp_loop`` is the ring along which the tool ramps down: usually this ring, or a wider one if this
-    ring is too short.
+    ``ramp_loop`` is the ring along which the tool ramps down: this ring or, if it is too short, a wider
+    ring.
     """
 
     loop: ElementLoop
@@ -135,7 +135,7 @@ def _order_rings(
     conventional: bool,
     position: Point,
 ) -> list[ClearingRing]:
-    """Return the rings in machining order, each starting at the point where the tool reaches it."""
+    """Return the rings in machining order, each starting at the point where the tool enters it."""
     made: list[ClearingRing] = []
     for index, (ring, around) in enumerate(_iter_inner_first(outmost, [])):
         loop = move_loop_start_near(_sense(ring, against=conventional), position)

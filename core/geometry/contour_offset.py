@@ -103,13 +103,13 @@ def offset_element(element: Element, distance_left: float) -> Element:
 
 
 class OffsetBuilder:
-    """The offset of a contour whose elements are added one by one.
+    """Builder of the offset path of a contour whose elements are added one by one.
 
     The path is ``distance_left`` mm to the left of the contour, or to the right if negative. It starts and
-    ends square to the contour. Each element must have a length and must start at the end of the previous
-    element. GougeError is raised if an inside arc is too small, if an element reverses the direction of the
-    previous element, if the offset of an element vanishes or would be reversed, or if the path is closer to
-    any element than the distance by more than 0.0015 mm. A second wall that is more than
+    ends perpendicular to the contour. Each element must have a length and must start at the end of the
+    previous element. GougeError is raised if an inside arc is too small, if an element reverses the
+    direction of the previous element, if the offset of an element vanishes or would be reversed, or if the
+    path is too close to an element by more than 0.0015 mm. A second wall that is more than
     GOUGE_CHECK_ELEMENT_COUNT elements away is not detected.
     """
 
@@ -307,7 +307,7 @@ def _offset_pieces(elements: Sequence[Element], distance: float) -> list[Element
 
 
 def _corner_arc(before: Element, after: Element, distance: float) -> list[Element]:
-    """Return the arc around a corner.
+    """Return the arc around a corner, or an empty list if its ends coincide.
 
     The arc is made even if the offset of an adjacent fillet has vanished.
     """
@@ -341,7 +341,7 @@ def _ring(centre: Point, radius: float) -> Arc:
 
 
 def split_at_edges(piece: Element, edges: ElementIndex) -> list[Element]:
-    """Return the sections of an offset piece between its intersections with the region edges."""
+    """Return the sections of an offset piece, split where it intersects the edges of the region."""
     length = piece.length
     at = {0.0: piece.start, length: piece.end}
     for edge in edges.find_elements_near(piece.bounding_box, SAME_POINT_TOLERANCE_MM):
@@ -448,7 +448,7 @@ class RoughingArea:
 
 
 def _split_by_depth(element: Element) -> list[Element]:
-    """Return the sections of an element, each with a depth that only increases or only decreases."""
+    """Split an element into sections along which the depth only increases or only decreases."""
     if isinstance(element, Line):
         return [element]
     (cx, cz), radius = element.center, element.radius
@@ -463,13 +463,13 @@ def _split_by_depth(element: Element) -> list[Element]:
 
 
 def _span_at_depth(wall: Sequence[Element], depth: float) -> ZSpan | None:
-    """Return the Z range of a wall's section down to ``depth``, or None if the section is empty."""
+    """Return the Z range of the part of a wall down to ``depth``, or None if the wall is deeper."""
     places = [place for edge in wall for place in _z_extremes(edge, depth)]
     return (min(places), max(places)) if places else None
 
 
 def _z_extremes(edge: Element, depth: float) -> list[float]:
-    """Return Z positions that include the minimum and maximum of an edge's section down to ``depth``."""
+    """Return Z positions that include the minimum and maximum Z of an edge's part down to ``depth``."""
     if isinstance(edge, Line):
         return _places_of_line(edge, depth)
     candidates = [edge.start, edge.end, *_inner_extremes(edge)]

@@ -82,7 +82,7 @@ def find_arc_center(start: Point, end: Point, radius: float, *, is_clockwise: bo
 
 
 def compute_arc_length(start: Point, end: Point, center: Point, *, is_clockwise: bool) -> float:
-    """Return the length of an arc, or of a spiral if the radii at its ends differ slightly."""
+    """Return the length of an arc. If its end radii differ slightly, it is calculated as a spiral."""
     first = hypot(start[0] - center[0], start[1] - center[1])
     last = hypot(end[0] - center[0], end[1] - center[1])
     _, sweep = compute_arc_sweep(*start, *end, *center, is_clockwise)
@@ -120,7 +120,7 @@ class Line:
         return min(x0, x1), max(x0, x1), min(z0, z1), max(z0, z1)
 
     def get_point(self, distance: float) -> Point:
-        """Return the point at ``distance`` mm from the start, also if it is past an end of the line."""
+        """Return the point at ``distance`` mm from the start; it may be past an end of the line."""
         dx, dz = self.start_direction
         return self.start[0] + dx * distance, self.start[1] + dz * distance
 
@@ -184,7 +184,7 @@ class Arc:
         return compute_arc_extent(*self.start, *self.end, *self.center, self.clockwise)
 
     def get_point(self, distance: float) -> Point:
-        """Return the point at ``distance`` mm from the start, also if it is past an end of the arc."""
+        """Return the point at ``distance`` mm from the start; it may be past an end of the arc."""
         radius = self.radius
         angle = atan2(self.start[0] - self.center[0], self.start[1] - self.center[1])
         angle += distance / radius if self.clockwise else -distance / radius
@@ -294,7 +294,7 @@ def find_intersections(first: Element, second: Element) -> list[Point]:
 
 
 def contains_point(element: Element, point: Point) -> bool:
-    """Return whether a point is within the ends of an element.
+    """Return whether a point is between the ends of an element.
 
     The point must be on the infinite line or the full circle of the element.
     """

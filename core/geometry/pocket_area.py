@@ -163,9 +163,9 @@ def _cut(part: Element, at: Point) -> list[Element]:
 
 
 def _orient_boundary(part: Element, contains_point: ContainsPoint) -> Element | None:
-    """Return the section directed so that the area is on its left, or None if it is no boundary.
+    """Return a section directed with the area on its left, or None if it is not on the boundary.
 
-    A section is not a boundary if the area is on both sides of it or on neither side.
+    A section is not on the boundary if the area is on both sides of it or on neither side.
     """
     x, y = part.get_point(part.length / 2.0)
     dx, dy = get_left_normal(_direction_halfway(part))
@@ -238,9 +238,10 @@ def _remove_duplicates(parts: Sequence[Element]) -> list[Element]:
 
 
 def _chain_loops(parts: Sequence[Element]) -> list[ElementLoop]:
-    """Return the sections connected to closed loops, sorted by their longest section, longest first.
+    """Connect the sections to closed loops, and return the loops.
 
-    Raises PocketAreaError if a loop is not closed.
+    The loops are sorted by their longest section, longest first. Raises PocketAreaError if a loop is not
+    closed.
     """
     parts = _remove_tails(parts)
     starts = np.array([part.start for part in parts]).reshape(-1, 2)
@@ -301,7 +302,7 @@ def _turn_between(before: Element, after: Element) -> float:
 
 
 def _close_gaps(loop: ElementLoop) -> ElementLoop:
-    """Return the loop with each element starting exactly at the end of the previous element."""
+    """Return the loop without small gaps: each element starts exactly where the previous one ends."""
     made: ElementLoop = []
     here = loop[-1].end
     for element in loop:

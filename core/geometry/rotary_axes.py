@@ -1,9 +1,10 @@
 """Rotary axes of a mill from workpiece to tool, and machine positions of programmed points.
 
-The same rule applies to heads and tables: a frame as seen from the workpiece is the product of Rot(axis,
-+angle) over the chain from the workpiece to the tool. A head at +t rotates the tool by +t. A table at +t
-rotates the workpiece by -t in the machine, so the tool, as seen from the workpiece, also rotates by +t. In
-a ``PivotMove``, the linear axes follow the rotation, so that a point remains fixed on the workpiece (MOVE).
+The same rule applies to heads and tables. The frame of the tool as seen from the workpiece is the product
+of Rot(axis, +angle) over the chain from the workpiece to the tool. A head at +t rotates the tool by +t. A
+table at +t rotates the workpiece by -t in the machine, so the tool, as seen from the workpiece, also
+rotates by +t. In a ``PivotMove``, the linear axes follow the rotation, so that a point remains fixed on the
+workpiece (MOVE).
 """
 
 from __future__ import annotations
@@ -80,7 +81,8 @@ class RotaryAxis:
     def find_travel(self, start: float, target: float) -> float:
         """Return the signed travel from ``start`` to ``target`` in degrees.
 
-        A modulo axis moves in the shorter direction. A travel of 180 degrees is positive.
+        A modulo axis takes the shorter direction. If both directions are 180 degrees, the travel is
+        positive.
         """
         travel_deg = target - start
         if not self.is_modulo:
@@ -190,7 +192,7 @@ class Kinematics:
         return next((axis for axis in self.rotary_axes if axis.name == name), None)
 
     def compute_tool_frame(self, angles: Mapping[str, float]) -> Matrix:
-        """Return the tool's frame as seen from the workpiece at the given angles.
+        """Return the frame (orientation) of the tool as seen from the workpiece at the given angles.
 
         ``angles`` contains angles by axis name; an axis that is not listed has the angle 0.
         """
@@ -335,7 +337,7 @@ class PivotMove:
         return spots
 
     def get_fastest_rotation_fraction(self) -> float:
-        """Return 0.5, because the axis rotation per path length has no particular maximum."""
+        """Return 0.5, the middle of the move, because the rotation has no particular maximum."""
         return 0.5
 
 
@@ -363,9 +365,9 @@ def _noses_to_tips(machine: Kinematics, angles: Mapping[str, FloatArray], tool_l
 
 
 def _rotate_about_axis(axis: RotaryAxis, degrees: FloatArray, points: FloatArray) -> FloatArray:
-    """Return points (k, 3), or one point, rotated about an axis by angles (k,) in degrees.
+    """Return one or several points (k, 3), rotated about an axis by the angles (k,) in degrees.
 
-    The formula is that of Rodrigues.
+    The function uses Rodrigues' formula.
     """
     line, along, aside = _rotation_terms(axis)
     angle = np.radians(degrees)[:, np.newaxis]

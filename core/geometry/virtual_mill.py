@@ -22,10 +22,11 @@ FloatArray = npt.NDArray[np.float64]
 class FacePlane:
     """The XC plane on the face of the part.
 
-    ``c_start_deg`` is C at the start of plane switching, in degrees. ``tool_height_mm`` is the height h of
-    the tool above the axis, in mm. For a point at the distance rho from the axis, the tool is at X =
-    -sqrt(rho² - h²), or at the positive value on the far side, after C has rotated the point under the
-    tool.
+    - ``c_start_deg`` is the C angle in degrees at which the coordinate transformation starts.
+    - ``tool_height_mm`` is the height h of the tool above the axis, in mm.
+
+    For a point at the distance rho from the axis, the tool is at X = -sqrt(rho² - h²), or at the positive
+    value on the far side, after C has rotated the point under the tool.
     """
 
     c_start_deg: float
@@ -182,9 +183,9 @@ class PlaneMove:
         return wound
 
     def split_at_axis(self) -> list[PlaneMove]:
-        """Return the move as a list, divided into two moves if it passes through the axis.
+        """Return the move as a list of one move, or of two moves if it passes through the axis.
 
-        C must rotate between these two moves.
+        C must rotate between the two moves.
         """
         if isinstance(self.frame, SidePlane) or self.length <= AXIS_TOLERANCE_MM:
             return [self]
@@ -197,9 +198,9 @@ class PlaneMove:
         return [replace(self, end=(0.0, 0.0, z)), replace(self, start=(0.0, 0.0, z))]
 
     def find_start_rotation(self) -> float:
-        """Return by how much the polar angle changes before a move that starts on the axis, in radians.
+        """Return the change of the polar angle, in radians, before a move that starts on the axis.
 
-        The change is in the shorter direction.
+        The change is in the shorter direction. It is 0 for a move that starts away from the axis.
         """
         if (
             isinstance(self.frame, SidePlane)
@@ -218,7 +219,7 @@ class PlaneMove:
         return turn
 
     def get_fastest_rotation_fraction(self) -> float:
-        """Return the fraction of the path that is closest to the axis."""
+        """Return the fraction of the path, from 0 to 1, at which it is closest to the axis."""
         if self.center is None:
             dx, dy = self.end[0] - self.start[0], self.end[1] - self.start[1]
             square = dx * dx + dy * dy
@@ -240,10 +241,9 @@ class PlaneMove:
         return table.min(axis=0), table.max(axis=0)
 
     def _fraction_at_angle(self, angle: float) -> float:
-        """Return the fraction of the path at which the arc has this angle around its center.
+        """Return the fraction of the path at which the arc is at this angle around its center.
 
-        If the arc does not contain the angle, the fraction of the end that is closer to the axis is
-        returned.
+        If the angle is outside the arc, return the fraction of the end that is closer to the axis: 0 or 1.
         """
         first, sweep = self._start_and_sweep()
         turn = 2.0 * math.pi
@@ -280,9 +280,9 @@ class PlaneMove:
     def _continuous_angles(self, points: FloatArray, fractions: FloatArray) -> FloatArray:
         """Return continuous polar angles (n,) of points on the arc, up to a constant offset.
 
-        If the axis is inside the circle, each result differs by less than 90 degrees from the angle around
-        the center of the arc. Otherwise it differs by less than 90 degrees from the direction of the
-        center.
+        Each result differs by less than 90 degrees from a reference direction. If the axis is inside the
+        circle, this is the direction from the center of the arc to the point. Otherwise, it is the
+        direction of the center from the axis.
         """
         cx, cy = self._adjusted_center()
         first, sweep = self._start_and_sweep()

@@ -106,13 +106,13 @@ _IDENTITY_TRANSFORM = ProgramTransform()
 
 @dataclass(frozen=True, slots=True)
 class HelixMove:
-    """A helix in the coordinate system of a working plane.
+    """A helix in the coordinate system of a working plane. Units are mm and degrees.
 
-    ``arc`` is in X and Y of the system of ``transform``, while Z moves from ``z_start`` to ``z_end``.
-    ``base_position`` contains the machine positions of all axes in the machine's order; X, Y and Z, at
-    ``xyz_columns``, are replaced. Units are mm and degrees. For an upright arc (in YZ or ZX), the rows of
-    ``frame`` are the directions of the two axes of its plane and of the third axis. X, Y and Z of the arc
-    then refer to these directions.
+    - ``arc`` is in X and Y of the system of ``transform``, while Z moves from ``z_start`` to ``z_end``.
+    - ``base_position`` contains the machine positions of all axes in the machine's order. The helix
+      replaces the positions of X, Y and Z, which are at the indexes ``xyz_columns``.
+    - ``frame`` is used for an upright arc (in YZ or ZX). Its rows are the directions of the two axes of the
+      arc's plane and of the third axis. X, Y and Z of the arc then refer to these directions.
     """
 
     transform: FrameTransform
@@ -194,7 +194,7 @@ class AxisMove:
     def reach(self) -> tuple[FloatArray, FloatArray]:
         """Return the minimum and the maximum position of each axis during the move, shape (axes,).
 
-        For a straight move, only the end is considered.
+        For a straight move, both are the end position.
         """
         if self.curved_move is None:
             return np.array(self.end), np.array(self.end)

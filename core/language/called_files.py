@@ -1,6 +1,6 @@
-"""Loading of called programs together with the main program.
+"""Loading of all called programs together with the main program.
 
-Thus, the program that is executed is exactly the program that was proved.
+This ensures that the program that is executed is exactly the program that was proved.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def _candidate_paths(name: str, folders: Sequence[Path], dialect: Dialect) -> It
 
 
 def _alternative_names(name: str, dialect: Dialect) -> tuple[str, ...]:
-    """Return other file names that a call can also mean, because SINUMERIK can call main programs."""
+    """Return the other file names to which a call may refer, such as NAME.MPF in SINUMERIK."""
     return (str(Path(name).with_suffix(".MPF")),) if dialect is Dialect.SINUMERIK else ()
 
 

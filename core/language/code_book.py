@@ -142,8 +142,8 @@ class CodeBook:
     def find_completions(self, line: str, column: int) -> tuple[int, tuple[CodeBookEntry, ...]]:
         """Return the column where the incomplete code starts, and the entries that can complete the code.
 
-        The entries are in book order. The longest matching text before the cursor is used. The result has
-        no entries in a comment or after a blank.
+        The entries are in book order. The incomplete code is the longest text before the cursor that
+        matches the start of a code. In a comment or after a blank, the result has no entries.
         """
         typed = line[: column - 1].upper()
         if self.comment_sign in typed or not typed or typed[-1].isspace():

@@ -101,7 +101,7 @@ def _entry(row: dict[str, Any], parts: dict[str, str]) -> CodeBookEntry:
 
 
 def _fill_placeholders(text: str, known: Mapping[str, Any]) -> str:
-    """Return a text with its placeholders replaced and without line breaks at its start and end."""
+    """Return a text with its placeholders replaced, and without leading and trailing line breaks."""
     if "{" not in text:
         return text.strip("\n")
 

@@ -83,7 +83,7 @@ An operator can jog the axes during the stop.
 
 
 def add_assumptions(finding: Diagnostic, *assumed: str) -> Diagnostic:
-    """Return the finding with further assumptions added, on which it depends."""
+    """Return the finding with additional assumptions on which it depends."""
     return replace(finding, assumptions=(*finding.assumptions, *assumed))
 
 

@@ -119,7 +119,7 @@ class FormulaGrammar:
 
 
 def _any_of(words: Mapping[str, object]) -> re.Pattern[str]:
-    """Return a pattern for the longest of these words that is not followed by a letter."""
+    """Return a pattern that matches the longest of these words and requires that no letter follows."""
     if not words:
         return re.compile(r"(?!)")
     ordered = sorted(words, key=len, reverse=True)
@@ -154,7 +154,7 @@ class FormulaReader(LineReader):
         return self._expression(0)
 
     def _expression(self, weakest: int) -> Formula:
-        """Read operands and operators, from left to right; ``weakest`` is the lowest operator precedence."""
+        """Read an expression from left to right; operators below the precedence ``weakest`` end it."""
         self._depth += 1
         if self._depth > _MAX_DEPTH:
             raise FormulaError(

@@ -15,7 +15,7 @@ _NEW_LINE = ord("\n")
 
 
 class LazyLines(Sequence[str]):
-    """The lines of an ASCII text without line ends, which are split only when they are accessed.
+    """The lines of an ASCII text, without line ends. Lines are split only when they are accessed.
 
     An empty line after the final line end does not count.
     """

@@ -182,7 +182,10 @@ def _check_line_lengths(name: str, text: str) -> None:
 
 
 def _may_contain_long_line(text: str) -> bool:
-    """Return whether a line may be too long, by a search for line ends at the maximum distance."""
+    """Return whether a line may be too long.
+
+    The function checks only whether every section of the maximum length contains a line end.
+    """
     at = 0
     while len(text) - at > _MAX_LINE_LENGTH:
         end = text.rfind("\n", at, at + _MAX_LINE_LENGTH + 1)

@@ -81,7 +81,7 @@ class DriverTableReader:
 def list_existing_tables(
     file_data: Mapping[str, object], drivers: Sequence[DriverDeclaration]
 ) -> tuple[str, ...]:
-    """Return the paths of the driver tables that apply: those in the file and those always read."""
+    """Return the paths of the driver tables that are in the file or are always read."""
     return tuple(
         table.path
         for table in list_driver_tables(drivers)
@@ -169,7 +169,10 @@ def _spindle(file: MachineFileReading, drivers: Sequence[DriverDeclaration]) -> 
 def _check_orientation(
     file: MachineFileReading, drivers: Sequence[DriverDeclaration]
 ) -> Iterator[FileFinding]:
-    """Check that a spindle with orientation has a driver that supports it and is not the C axis."""
+    """Yield findings if spindle orientation is enabled but not possible.
+
+    The spindle's driver must support orientation, and the spindle must not be the C axis.
+    """
     values, path = file.file_values, "spindle.oriented"
     if not values.has_values(path, "spindle.driver") or not values.read_flag(path):
         return
@@ -193,7 +196,7 @@ def _check_orientation(
 
 
 def _check_count_rates(values: FileValues, drivers: Sequence[DriverDeclaration]) -> Iterator[FileFinding]:
-    """Check that the counts per second of each axis do not exceed the limit of the backend."""
+    """Yield a finding for each axis whose counts per second exceed the limit of the backend."""
     rates = {driver.backend_name: driver.max_count_rate for driver in drivers}
     for axis in _AXES:
         path, count = f"axis.{axis}.vmax", f"axis.{axis}.count"
@@ -249,7 +252,7 @@ def _guard(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _check_serial_ports(values: FileValues, drivers: Sequence[DriverDeclaration]) -> Iterator[FileFinding]:
-    """Check that each serial port is used only once."""
+    """Yield a finding for each serial port that is used more than once."""
     taken: dict[str, str] = {}
     for path in (table.serial_port_key for table in list_driver_tables(drivers) if table.serial_port_key):
         if values.has_values(path):

@@ -61,7 +61,7 @@ class AnalogInputModel:
 
 @dataclass(frozen=True, slots=True)
 class HomingModel:
-    """The homing parameters of a real drive.
+    """The homing parameters of a drive that is not simulated.
 
     ``method`` is the CiA 402 homing method, ``latch`` is the slow speed, and ``offset`` is the position of
     home relative to the reference mark.
@@ -97,9 +97,9 @@ class Hardware:
 class MachineSignal(NamedTuple):
     """A machine signal with its lamp, buzzer and sounds.
 
-    ``buzzer_time_s`` is the time in seconds for which the buzzer sounds at the start; with a blinking lamp,
-    the buzzer is synchronized with the lamp. ``tones_hz`` are the frequencies in Hz of the tones that the
-    computer plays for 0.2 s each.
+    ``buzzer_time_s`` is how long the buzzer sounds when the signal starts, in seconds. With a blinking
+    lamp, the buzzer is synchronized with the lamp. ``tones_hz`` are the frequencies in Hz of the tones that
+    the computer plays for 0.2 s each.
     """
 
     lamp: str

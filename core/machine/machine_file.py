@@ -1,4 +1,4 @@
-"""Parsing of a machine file, which reports all errors in one pass, and comparison of two machine files."""
+"""Parsing of a machine file with all errors in one report, and comparison of machine files."""
 
 from __future__ import annotations
 

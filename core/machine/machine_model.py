@@ -189,7 +189,7 @@ class InputModel:
 
 @make_key_table
 class Timing:
-    """The times of the control in seconds."""
+    """Times of the control in seconds, such as its look-ahead time and the duration of a setpoint."""
 
     commit_time_s: float = declare_key(
         KeyRange(0.001, 0.2, FileUnit.MILLISECONDS),
@@ -251,8 +251,8 @@ class Interlocks:
 class ClampingModel:
     """The chuck or collet and the tailstock, in mm and rpm; a value of 0 means not specified.
 
-    ``stick_out`` is the distance from the front of the chuck or collet to part zero. The tip of the
-    tailstock center is at Z ``centre_at``, and ``centre_point`` is its included angle in degrees.
+    ``stick_out`` is the distance from the front of the chuck or collet to part zero. ``centre_at`` is the Z
+    position of the tip of the tailstock center, and ``centre_point`` is its included angle in degrees.
     """
 
     diameter: float = declare_key(
@@ -400,7 +400,7 @@ class Machine:
 
     @property
     def live_tool_output(self) -> str:
-        """Return the name of the output that turns on the live tool, or an empty string."""
+        """Return the output that turns on the live tool, or an empty string if no output does."""
         return min((name for name in self.outputs if name.startswith("live")), default="")
 
     @property

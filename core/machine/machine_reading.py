@@ -1,4 +1,4 @@
-"""Evaluation of a parsed machine file according to the declared tables, with defaults for missing values.
+"""Evaluation of a parsed machine file by the declared tables, with defaults for missing values.
 
 The reason for each default is given at its rule. A file is rejected if it lacks a value that has no safe
 default. All values are in the units of the model.
@@ -69,7 +69,7 @@ class MachineReading:
         self._check_language()
 
     def _check_language(self) -> None:
-        """Check the MDI language. The permitted languages depend on the kind of machine."""
+        """Check the MDI language; each kind of machine permits certain languages."""
         spoken = machine_tables.LANGUAGES[self.kind]
         said = self.values.values_by_path.get("machine.language") or spoken[0]
         self.values.values_by_path["machine.language"] = said
@@ -271,17 +271,17 @@ def _spindle_acceleration(reading: MachineReading, _place: str) -> DerivedValue:
 
 
 def _collet_close_time(reading: MachineReading, _place: str) -> DerivedValue:
-    """Return the closing time of the collet, which is 0.5 s if a switch confirms a closed collet.
+    """Return the default closing time of the collet: 0.5 s if a switch confirms that it is closed.
 
-    Otherwise, the file must specify the time.
+    Without such a switch, the file must specify the time.
     """
     return _COLLET_CLOSE_S if "collet_closed" in reading.inputs or reading.kind != "lathe" else None
 
 
 def _similar_axis_value(values: FileValues, place: str) -> DerivedValue:
-    """Return the same key of the first linear axis that has this key.
+    """Return the value of the same key of another linear axis, as the default.
 
-    Axes usually have equal drives.
+    The first linear axis that specifies the key is used, because axes usually have equal drives.
     """
     _, name, key = place.split(".")
     said = [f"axis.{other}.{key}" for other in _LINEAR_AXIS_NAMES if name in _LINEAR_AXIS_NAMES]
@@ -291,14 +291,17 @@ def _similar_axis_value(values: FileValues, place: str) -> DerivedValue:
 
 
 def _following_error_window(reading: MachineReading, place: str) -> DerivedValue:
-    """Return the value of another axis, or twice the following error of a slow drive at full speed."""
+    """Return the default following error window, which is that of another axis if specified.
+
+    Otherwise, it is twice the following error of a slow drive at full speed.
+    """
     values = reading.values
     vmax = _number(values, place.replace("fe_window", "vmax"))
     return _similar_axis_value(values, place) or (2.0 * _DRIVE_LAG_S * vmax if vmax else None)
 
 
 def _in_position_window(reading: MachineReading, place: str) -> DerivedValue:
-    """Return the value of another axis or, by default, four counts (five for a rotary axis).
+    """Return the default in-position window: that of another axis, or four counts (rotary: five).
 
     A drive at rest moves by one or two counts. The counts of a rotary axis such as C are coarser.
     """
@@ -309,7 +312,7 @@ def _in_position_window(reading: MachineReading, place: str) -> DerivedValue:
 
 
 def _standstill_tolerance(reading: MachineReading, place: str) -> DerivedValue:
-    """Return the standstill tolerance of another axis, or 0.2 mm (1 degree).
+    """Return the default standstill tolerance: that of another axis, or 0.2 mm (1 degree).
 
     Cutting forces do not move an axis by this distance. The result is at least four in-position windows and
     at most the following error window.

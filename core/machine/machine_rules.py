@@ -15,8 +15,8 @@ from core.table_schema import FileFinding, FileValues
 class ValueRule(NamedTuple):
     """A rule for the value at ``key_path``.
 
-    The rule is checked if all ``required_keys`` are present. ``find_error`` then returns the error, or an
-    empty string.
+    The rule is checked only if all ``required_keys`` are present. ``find_error`` then returns the error, or
+    an empty string if the value obeys the rule.
     """
 
     key_path: str
@@ -89,7 +89,7 @@ def _fixed_points(axis: str) -> ValueRule:
 
 
 def _jog_overrun_rule(axis: str) -> ValueRule:
-    """Return the rule for the distance that an axis travels after the jog connection is lost.
+    """Return the rule that limits how far an axis travels after the connection for jogging is lost.
 
     The distance is lease · vmax + vmax² / 2a.
     """
@@ -115,7 +115,7 @@ def _jog_overrun_rule(axis: str) -> ValueRule:
 
 
 def _corner_tolerance_rule(axis: str) -> ValueRule:
-    """Return the rule that the corner tolerance must not be below the rounding error of one count."""
+    """Return the rule that the corner tolerance must be at least the rounding error of one count."""
     path, count = "limits.corner_tolerance", f"axis.{axis}.count"
 
     def find_error(values: FileValues) -> str:

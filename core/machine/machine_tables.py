@@ -148,7 +148,7 @@ class _SpindleDriver:
 
 
 def _add_driver_choices(keys: tuple[KeyField, ...], key: str, words: Iterable[str]) -> tuple[KeyField, ...]:
-    """Return the keys after the choices that the drivers provide are added to the key ``key``."""
+    """Return the keys with the choices of the key ``key`` set to the words that the drivers provide."""
     choices = tuple(word for word in words if word)
     return tuple(replace(each, choices=choices) if each.key == key else each for each in keys)
 
@@ -203,7 +203,7 @@ def list_top_level_tables(drivers: Sequence[DriverDeclaration]) -> tuple[str, ..
 
 
 class _NoColletKeys:
-    """Substitute for the keys of [collet] on a mill, which has no collet."""
+    """Substitute for the model of table [collet] on a mill, which has no collet."""
 
     open_s: float = declare_key(
         KeyRange(0.0, 10.0, FileUnit.SECONDS), default=0.0, meaning="A mill has no collet."

@@ -27,7 +27,7 @@ _AXIS_DIRECTIONS = {"A": "X", "B": "Y", "C": "Z"}
 
 @make_key_table
 class RotaryModel:
-    """One rotary axis, described in the position in which all rotary axes are at 0."""
+    """One rotary axis of a mill, as it is when all rotary axes are at 0."""
 
     name: str
     side: str = declare_key(
@@ -142,10 +142,7 @@ class KinematicsTableReader:
         self.findings += [*self._check_rules()]
 
     def _check_rules(self) -> Iterator[FileFinding]:
-        """Yield findings about related values of the axes.
-
-        The rules are checked only if these values are valid.
-        """
+        """Yield findings about axis values that do not match. Only valid values are compared."""
         values = self._values
         if len(self._names) > MAX_ROTARY_AXIS_COUNT:
             yield FileFinding(

@@ -1,4 +1,4 @@
-"""Tables [backup] and [dnc] of the machine file, for daily backups and for the serial line for programs."""
+"""Tables [backup] for daily backups and [dnc] for transferring programs over a serial line."""
 
 from __future__ import annotations
 

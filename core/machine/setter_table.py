@@ -103,7 +103,7 @@ def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def compute_stopping_distance(speed: float, acceleration: float, commit_time_s: float) -> float:
-    """Return the maximum distance from the touch to standstill, in mm.
+    """Return the maximum distance from the touch of the stylus to standstill, in mm.
 
     The distance consists of the travel during the detection delay and the commit time, and the braking
     distance.

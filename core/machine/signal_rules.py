@@ -152,7 +152,7 @@ def _check_outputs_turn_off(reading: MachineReading) -> Iterator[FileFinding]:
 
 
 def _check_lamps(reading: MachineReading) -> Iterator[FileFinding]:
-    """Yield findings about lamps, which the control switches automatically.
+    """Yield findings about invalid lamps. The control switches the lamps automatically.
 
     A lamp must not indicate normal operation when the control has failed.
     """
@@ -237,9 +237,9 @@ def check_potentiometers(
 
 
 def check_missing_devices(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield a finding for each signal of a device that this TurnDesk cannot read.
+    """Yield a finding for each terminal on a device that this installation does not support.
 
-    Without this rule, a stop button on the pendant would be an input that never turns on.
+    Without this rule, a stop button on such a device would be an input that never turns on.
     """
     analog = {f"io.analog.{name}": f"io.analog.{name}.at" for name in file.list_table_keys("io.analog")}
     pots = {path: file.file_values.text(at) for path, at in analog.items() if file.file_values.has_values(at)}
@@ -264,19 +264,16 @@ def _backend(values: FileValues, drivers: Sequence[DriverDeclaration]) -> Driver
 def _is_screen_button(
     switch: str, values: FileValues, drivers: Sequence[DriverDeclaration], inputs: Collection[str]
 ) -> bool:
-    """Return whether the switch is a button on the screen.
-
-    This is the case if no operator station is wired.
-    """
+    """Return whether a switch is a button on the screen, because no operator station is wired."""
     backend = _backend(values, drivers)
     wired = backend is not None and backend.inputs is not None
     return switch == SPINDLE_SWITCH_INPUT and not (wired and any(name in inputs for name in _BUTTONS))
 
 
 def _suggest_line(file: MachineFileReading, drivers: Sequence[DriverDeclaration], switch: str) -> str:
-    """Return a message that suggests the line of [io.in] that defines the input of this switch.
+    """Return a message that suggests a line for [io.in] that defines an input for this switch.
 
-    Without this input, the switch would always be at AUTO.
+    Without an input, the switch would always be at AUTO.
     """
     backend = _backend(file.file_values, drivers)
     terminal = _free_input(file, drivers, backend) if backend is not None else "IN-…"

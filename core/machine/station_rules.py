@@ -1,4 +1,4 @@
-"""Rules for a handwheel with its switches, for jog buttons, and against wired palm buttons."""
+"""Rules for a handwheel with its switches, for jog buttons, and against inputs for palm buttons."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def check_jog_buttons(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def check_handwheel(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield a finding for every invalid handwheel count and every switch that is not a handwheel switch."""
+    """Yield a finding for every invalid handwheel count and every unknown handwheel switch."""
     values, analog = file.file_values, file.list_table_keys("io.analog")
     for name in analog:
         path = f"io.analog.{name}.counts_per_click"

@@ -29,7 +29,7 @@ CENTRIPETAL_SHARE = 0.8  # fraction of the acceleration; the rest of the vector 
 
 
 class AxisLike(Protocol):
-    """The axis properties that the motion planner reads from the machine file."""
+    """The properties of an axis that the motion planner needs."""
 
     @property
     def max_speed(self) -> float:
@@ -52,11 +52,10 @@ class MotionLimits:
     """The speed and acceleration limits of the axes, with the linear axes first.
 
     Units are mm/s and mm/s², or degrees/s and degrees/s². A lathe has the order X, Z, C.
-
     - ``interval`` (s) is the time between two setpoints. Within an interval, an axis changes its velocity
       by at most ``amax * interval``. This also limits the velocity step at a corner.
-    - ``grain`` (mm) is the resolution of the programmed words. The junction between two short chords may
-      be moved by this distance on each axis. With 0, every junction remains at its programmed position.
+    - ``grain`` (mm) is the resolution of programmed coordinates. Where two short chords meet, the common
+      point may be moved by this distance on each axis. If ``grain`` is 0, no point is moved.
 
     Raises MotionError if a speed, an acceleration or the interval is not positive and finite, or if
     ``grain`` is negative or not finite.
@@ -87,8 +86,8 @@ class MotionLimits:
     ) -> MotionLimits:
         """Return the limits of a machine's axes.
 
-        ``corner_tolerance`` (mm) is the distance by which the junction between two chords may be moved, in
-        X and Z together. Each axis may always move the junction by one encoder count.
+        ``corner_tolerance`` (mm) is the distance, in X and Z together, by which the common point of two
+        chords may be moved. On each axis, the point may always be moved by one encoder count.
         """
         return cls(
             vmax=tuple(axis.max_speed for axis in axes),

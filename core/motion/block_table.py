@@ -139,11 +139,12 @@ class BlockTable:
 
 
 def build_block_table(blocks: Sequence[MotionBlock], rpm_max: float) -> BlockTable:
-    """Return the table of blocks that move.
+    """Return the table of blocks that move an axis.
 
-    ``rpm_max`` is the maximum spindle speed in rpm. Raises MotionError with the block number if the kind of
-    a block cannot be planned, a value is not a finite number, a surface speed is negative or not finite, or
-    only some of the blocks specify all axes.
+    ``rpm_max`` is the maximum spindle speed in rpm. Raises MotionError with the block number in these cases:
+    - The kind of a block cannot be planned.
+    - A value is not a finite number, or a surface speed is negative or not finite.
+    - Only some of the blocks specify all axes.
     """
     width = len(_COLUMNS) + 4
     table = np.fromiter(chain.from_iterable(map(_read_columns, blocks)), np.float64).reshape(-1, width)
@@ -263,7 +264,7 @@ _FIELDS = tuple(f.name for f in fields(BlockTable))
 class MoveSeries(Protocol):
     """A series of m straight moves of X and Z as columns (m,).
 
-    All other values are those of ``pattern``. ``feed`` (m,) is None if the feed is also that of
+    All other values are those of ``pattern``. ``feed`` (m,) is None if all moves have the feed of
     ``pattern``.
     """
 
@@ -364,7 +365,7 @@ def build_batch_table(batch: Sequence[BlockGroup], rpm_max: float) -> BlockTable
 
 
 def _repeat_entries(column: Any, counts: Sequence[int]) -> Any:
-    """Return a column with each entry repeated ``counts`` times.
+    """Return a column of a block table with each entry repeated as often as ``counts`` specifies.
 
     The column is an array (k,) or (k, axes), or a tuple of curved moves.
     """

@@ -1,4 +1,4 @@
-"""Smoothing of the joints between short chords; a joint is the junction of two path elements.
+"""Smoothing of the joints of short chords. A joint is the point at which two path elements meet.
 
 The points are complex numbers, X + iZ, so that a running sum or a selection processes both axes at once.
 Factors for single axes are arrays with two values for each joint, in the memory order of the points.
@@ -23,10 +23,10 @@ Points = npt.NDArray[np.complex128]
 
 
 class _Window(NamedTuple):
-    """The range of neighbors around each of m joints, over which a mean is calculated.
+    """The range of neighbors around each of m joints over which a mean is calculated.
 
-    The sum over ``joint_count`` joints is the running sum at ``last_index`` minus the running sum at
-    ``first_index``. ``joint_count`` (2m,) has two equal values for each joint.
+    The sum over ``joint_count`` joints is the difference of two running sums, at ``last_index`` and at
+    ``first_index``. ``joint_count`` (2m,) has two equal values for each joint, one per axis.
     """
 
     first_index: IntArray
@@ -66,11 +66,11 @@ def _twice(values: npt.NDArray[np.generic]) -> FloatArray:
 def smooth_joint_points(
     joints: Points, distances: FloatArray, is_free: BoolArray, max_shifts: FloatArray
 ) -> Points:
-    """Return the joints (m,) between path elements, moved toward the mean of their neighbors.
+    """Return the joints (m,) of the path, each moved toward the mean of its neighbors.
 
     ``distances`` contains the distances of the joints along the path. Each joint moves by at most
-    ``allowed`` along each axis. Each run of consecutive joints where ``is_free`` (m,) is True is smoothed
-    separately, so that smoothing never crosses a corner.
+    ``max_shifts`` along each axis. Each run of consecutive joints where ``is_free`` (m,) is True is
+    smoothed separately, so that smoothing never crosses a corner.
     """
     window = _Window.create(np.minimum(_clear(is_free), MAX_NEIGHBOR_COUNT))
     last = window.last_index - 1
@@ -78,7 +78,7 @@ def smooth_joint_points(
     off = _twice(distances - window.mean(distances.astype(np.complex128)).real)
 
     def compute_neighbor_means(of: Points) -> Points:
-        """Return the mean of the neighbors, shifted along their line to the joint's distance.
+        """Return the mean of each joint's neighbors, corrected for uneven distances between the joints.
 
         The joints of a straight line therefore remain on the line.
         """
@@ -103,7 +103,7 @@ def _within(
 ) -> FloatArray:
     """Return the smoothed coordinates (2m,), limited to the allowed moves.
 
-    The part of a move that exceeds its limit is first spread over the neighboring joints.
+    If a move exceeds its limit, the excess is first distributed over the neighboring joints.
     """
     low, high = joints - allowed, joints + allowed
     near, movable = _Near.find_neighbors(free), _twice(free)
@@ -129,11 +129,11 @@ def _clear(free: BoolArray) -> IntArray:
 
 
 class _Near(NamedTuple):
-    """For each joint, its neighbors in the same run up to ``MAX_NEIGHBOR_COUNT``, in doubling steps.
+    """Neighbors of each joint in its run of free joints, at most ``MAX_NEIGHBOR_COUNT`` away.
 
     Each item of ``doubling_steps`` is a distance in coordinates (2 for one joint) and an array. For each
-    coordinate, the array contains 1.0 if the coordinate at that distance after it belongs to the same run,
-    and 0.0 otherwise. The array is None if only one run exists.
+    coordinate, the array is 1.0 if the coordinate at this distance after it belongs to the same run, and
+    0.0 otherwise. The array is None if there is only one run.
     """
 
     doubling_steps: tuple[tuple[int, FloatArray | None], ...]
@@ -165,7 +165,7 @@ class _Near(NamedTuple):
 
 
 def _doublings() -> Iterator[int]:
-    """Yield the shifts by which windows grow from one joint to ``MAX_NEIGHBOR_COUNT`` + 1 joints."""
+    """Yield the steps by which a window grows, doubling, to ``MAX_NEIGHBOR_COUNT`` + 1 joints."""
     reach = 1
     while reach <= MAX_NEIGHBOR_COUNT:
         step = min(reach, MAX_NEIGHBOR_COUNT + 1 - reach)

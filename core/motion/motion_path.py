@@ -1,10 +1,10 @@
 """The path of a motion as pieces with limits, including blocks in which C also rotates.
 
 C moves together with X and Z in moves of a virtual mill, and if a feed per revolution refers to the
-revolutions of C. The length of such a piece is measured along the path of the mill or of X and Z, as its
-feed is. The ``direction`` of the piece is the motion of X, Z and C per unit of length. Limits, corners,
-look-ahead and feed hold therefore work as for any other line. A curved move is divided into chords in X, Z
-and C. The reasons are in docs/decisions/0005-c-axis-and-virtual-mill.md.
+revolutions of C. The length of such a piece is measured along the path of the mill or of X and Z, to which
+the feed applies. The ``direction`` of the piece is the motion of X, Z and C per unit of length. Limits,
+corners, look-ahead and feed hold therefore work as for any other line. A curved move is divided into chords
+in X, Z and C. The reasons are in docs/decisions/0005-c-axis-and-virtual-mill.md.
 """
 
 from __future__ import annotations
@@ -92,9 +92,9 @@ def divide_piece(pieces: PathPieces, table: BlockTable, limits: MotionLimits, in
 def divide_into_chords(move: CurvedMove, feed_mm_s: float, limits: MotionLimits) -> FloatArray:
     """Return the fractions (k+1,) of a curved move at which it is divided into chords.
 
-    Along a chord, the axes move proportionally. The chords deviate from the move by at most
-    MAX_CHORD_ERROR_MM, measured on the part. Their directions differ so little that the feed ``feed_mm_s``
-    is possible where two chords meet, unless the move itself has a corner there.
+    Along a chord, the axes move proportionally. Measured on the part, the chords deviate from the move by
+    at most MAX_CHORD_ERROR_MM. Where two chords meet, their directions differ so little that the feed
+    ``feed_mm_s`` is possible, unless the move itself has a corner there.
     """
     share, nearest = np.linspace(0.0, 1.0, _FIRST_CHORDS + 1), move.get_fastest_rotation_fraction()
     if np.abs(share - nearest).min() > _ROUNDING:
@@ -112,7 +112,7 @@ def divide_into_chords(move: CurvedMove, feed_mm_s: float, limits: MotionLimits)
 
 
 def _deviates(move: CurvedMove, fractions: FloatArray, ends: FloatArray) -> BoolArray:
-    """Return a mask (k,) of the chords that deviate too much on the part.
+    """Return a mask (k,) of the chords whose deviation from the move, on the part, is too large.
 
     The chords are between the positions ``ends`` at ``fractions`` of the move.
     """
@@ -128,7 +128,7 @@ def _deviates(move: CurvedMove, fractions: FloatArray, ends: FloatArray) -> Bool
 def _exceeds_velocity_step(
     move: CurvedMove, fractions: FloatArray, ends: FloatArray, speed: float, limits: MotionLimits
 ) -> BoolArray:
-    """Return a mask (k,) of the chords at whose ends the velocity step of an axis would be too large."""
+    """Return a mask (k,) of the chords at whose ends the velocity of an axis would change too much."""
     length = np.diff(fractions) * move.length
     direction = np.diff(ends, axis=0) / length[:, None]
     turn = np.abs(np.diff(direction, axis=0))
@@ -163,7 +163,7 @@ def _make_straight_pieces(piece: PathPieces, points: FloatArray, length: FloatAr
 
 
 def _find_c_fed_moves(table: BlockTable) -> BoolArray:
-    """Return a mask (m,) of the straight moves whose feed per revolution counts the revolutions of C.
+    """Return a mask (m,) of the straight moves whose feed is per revolution of C.
 
     In these moves, the spindle turns as the C axis.
     """
@@ -178,7 +178,10 @@ def _find_c_fed_moves(table: BlockTable) -> BoolArray:
 
 
 def _divide_c_fed_move(piece: PathPieces, table: BlockTable, index: int) -> PathPieces:
-    """Return the move of X, Z and C, followed by the remaining rotation of C alone."""
+    """Return the move of X, Z and C, and then the remaining rotation of C alone, if any remains.
+
+    Raises MotionError if C rotates less than the move needs at its feed.
+    """
     start, end, feed = table.start[index], table.end[index], float(table.feed[index])
     path_length_mm = float(np.hypot(*(end - start)[:2]))
     needed, turn = path_length_mm / feed * 360.0, float(end[2] - start[2])
@@ -206,8 +209,7 @@ def _divide_c_fed_move(piece: PathPieces, table: BlockTable, index: int) -> Path
 class MotionPath:
     """A path in machine coordinates that can be planned, with n pieces of m blocks.
 
-    A joint is the junction of two pieces.
-
+    A joint is the point at which two pieces meet.
     - ``joint_distances`` (n+1,) are the distances of the joints along the path in mm. They include the
       length of earlier pieces that a builder has dropped.
     - ``speed_caps`` (n,) in mm/s and ``accelerations`` (n,) in mm/s² are the limits along the pieces.
@@ -215,8 +217,8 @@ class MotionPath:
     - The block ``block_numbers[i]`` has the pieces ``first_pieces[i]:first_pieces[i+1]``; a block without
       length has no pieces.
     - ``start_position`` (axes,) is the first point of the path.
-    - The last ``movable_joint_count`` joints may still move, by the resolution of the words, when blocks
-      are added.
+    - When blocks are added, the last ``movable_joint_count`` joints may still move by the resolution of
+      programmed coordinates.
     """
 
     pieces: PathPieces
@@ -281,11 +283,11 @@ class MotionPath:
 
 
 class PathBuilder:
-    """A builder of a path from blocks that are added step by step.
+    """Builder of a path from blocks that are added step by step.
 
     ``rpm_max`` is the current limit of the spindle speed, set by the machine or by the operator. A change
-    applies to blocks that are added afterwards. The path remains valid while it grows. A plan on the longer
-    path is possible from any state of a plan on the shorter path.
+    applies only to blocks that are added later. The path remains valid while it grows: a motion that was
+    planned on a shorter path can be planned again, from any of its states, on the longer path.
     """
 
     def __init__(self, limits: MotionLimits, *, rpm_max: float = np.inf) -> None:
@@ -307,11 +309,11 @@ class PathBuilder:
         return self._start is not None
 
     def add_blocks(self, blocks: Iterable[MotionBlock], reached_distance: float = -np.inf) -> None:
-        """Append blocks that move.
+        """Append blocks that move an axis.
 
         ``reached_distance`` is the distance before which the current motion can still stop. If this
-        distance is near the end of the path, existing joints are no longer moved. Raises MotionError, and
-        adds no block, if one of the blocks cannot be planned.
+        distance is near the end of the path, existing joints are no longer moved. If MotionError is raised,
+        because a block cannot be planned, no block has been added.
         """
         batch = list(blocks)
         if batch:
@@ -339,7 +341,7 @@ class PathBuilder:
         self._path = None
 
     def _append_pieces(self, pieces: PathPieces, reached: float) -> None:
-        """Append pieces to the path, and smooth the short chords before its previous end again.
+        """Append pieces to the path, and repeat the smoothing of the short chords at its previous end.
 
         The new pieces affect the positions at which these chords meet.
         """
@@ -376,10 +378,9 @@ class PathBuilder:
         self._closed, self._path = True, None
 
     def drop_blocks_before(self, block_number: int) -> None:
-        """Drop the blocks before block ``block_number``, except those that affect its corner limit.
+        """Drop the blocks before a block, except those that affect the speed limit at its start.
 
-        The last block with a length and, for short chords, the blocks within one interval affect this
-        limit.
+        These are the last block with a length and, for short chords, the blocks within one interval.
         """
         path = self.build_path()
         keep = int(np.searchsorted(path.block_numbers, block_number))
@@ -443,7 +444,7 @@ def _make_block_pieces(table: BlockTable, limits: MotionLimits) -> tuple[PathPie
 def demand_unbroken(table: BlockTable, end: FloatArray | None) -> None:
     """Raise MotionError if a block does not start where the previous block ends.
 
-    ``end`` (axes,) is the end of the block before the first row, or None if there is no such block.
+    ``end`` (axes,) is the end of the block before the first row, or None if the first row starts the path.
     """
     before = table.end[:-1] if end is None else np.vstack([end, table.end[:-1]])
     gap = np.abs(table.start[len(table.n) - len(before) :] - before)

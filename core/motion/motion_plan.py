@@ -65,7 +65,7 @@ def _one_by_one(limits: list[float], gains: list[float]) -> FloatArray:
 
 
 def _carry_limits(lows: list[float], totals: list[float]) -> FloatArray:
-    """Return the limit at the start of each row of values that results from all rows before it."""
+    """Return the limit that each row of values inherits from all rows before it."""
     carry, carries = np.inf, []
     for low, total in zip(lows, totals, strict=True):
         carries.append(carry)
@@ -74,7 +74,7 @@ def _carry_limits(lows: list[float], totals: list[float]) -> FloatArray:
 
 
 def _remove_rounding(rough: FloatArray, limit: FloatArray, steps: FloatArray) -> FloatArray:
-    """Return the minima with the rounding error of the running sums removed where a limit applies."""
+    """Return the minima without the rounding errors of the running sums where a limit applies."""
     sharp = rough.copy()
     np.minimum(limit[1:], rough[:-1] + steps, out=sharp[1:])
     sharp[0] = limit[0]
@@ -135,9 +135,9 @@ def build_profile(
 
 
 class Ramps(NamedTuple):
-    """The acceleration, the cruise and the deceleration of n pieces, one row (n, 3) for each piece.
+    """The acceleration, cruise and deceleration phases of n pieces, one row (n, 3) for each piece.
 
-    A phase that a piece does not have has the duration 0.
+    If a piece lacks a phase, the duration of this phase is 0.
     """
 
     durations_s: FloatArray
@@ -146,7 +146,10 @@ class Ramps(NamedTuple):
     speed_changes: FloatArray
 
     def make_phases(self, start_times_s: FloatArray, piece_indices: IntArray) -> MotionPhases:
-        """Return the phases that take time; the arguments have one entry for each of the 3·n phases."""
+        """Return the phases without those of duration 0.
+
+        The arguments have one entry for each of the 3·n phases.
+        """
         kept = np.flatnonzero(self.durations_s)
         dt = self.durations_s.take(kept)
         return MotionPhases(
@@ -192,7 +195,7 @@ def find_ramps(
 
 
 def _in_turn(*columns: FloatArray) -> FloatArray:
-    """Return the three values of each piece as rows (n, 3), from three columns (n,)."""
+    """Return the three columns (n,) combined into rows (n, 3), one row for each piece."""
     rows = np.empty((len(columns[0]), len(columns)))
     for k, column in enumerate(columns):
         rows[:, k] = column
@@ -267,11 +270,11 @@ def plan_motion(
 
 
 def find_last_settled_joint(path: MotionPath, start_distance: float | None = None) -> int:
-    """Return the last joint (junction of pieces) whose planned speed is final, or -1 without one.
+    """Return the last joint (junction of pieces) whose planned speed is final, or -1 if none is.
 
-    Further pieces cannot change this speed. The next piece may form a sharp corner with the last piece, or
-    no corner. The speed at the start of the last piece may therefore have any value up to its limit. A
-    joint is settled if its speed is the same for 0 and for this limit.
+    Pieces that are added later cannot change this speed. They may form a sharp corner with the last piece,
+    or none. The speed at the start of the last piece may therefore have any value up to its limit. A joint
+    is settled if its speed is the same for 0 and for this limit.
     """
     first = int(path.find_piece_indices(np.array([_start(path, start_distance)]))[0])
     # Later pieces may raise the limits of joints of short chords near the end.
@@ -292,7 +295,7 @@ def find_last_settled_joint(path: MotionPath, start_distance: float | None = Non
 
 
 def _find_settled_joint(path: MotionPath, first: int, known: int) -> int:
-    """Return the last settled joint from ``first`` on and before ``known``, or -1."""
+    """Return the last settled joint from ``first`` on and before ``known``, or -1 if none is settled."""
     run = _PieceRun.from_path(path, float(path.joint_distances[first]), first, known)
     limit = run.max_squared_speeds[:-1].copy()
     soft = np.minimum(path.speed_caps[first:known], path.pieces.rate[first:known]) ** 2
@@ -308,7 +311,7 @@ def _find_settled_joint(path: MotionPath, first: int, known: int) -> int:
 
 @dataclass(frozen=True, slots=True)
 class _PieceRun:
-    """The n pieces that a plan covers, of which the first may be partial."""
+    """The n pieces that a plan covers. The plan may start within the first piece."""
 
     length: FloatArray
     accelerations: FloatArray
@@ -336,7 +339,7 @@ class _PieceRun:
         return v * v <= float(self.squared_speed_gains.sum()) + self.calculate_rounding_error(v)
 
     def calculate_rounding_error(self, v: float) -> float:
-        """Return the error of a squared speed that results from rounded distances."""
+        """Return the error of the squared speed ``v``² that rounded distances can cause."""
         return float(
             ROUNDING_TOLERANCE * v * v + 2.0 * ROUNDING_TOLERANCE * self.accelerations.max(initial=0.0)
         )
@@ -356,7 +359,10 @@ def _squared_speeds(run: _PieceRun, soft: FloatArray, v: float) -> FloatArray:
 
 
 def _brake_to_limits(run: _PieceRun, allowed: FloatArray, square: float, slack: float) -> FloatArray:
-    """Return the squared speeds of full braking to the new feeds, followed by the normal plan."""
+    """Return the squared speeds of a motion that brakes fully until it is within the new feed limits.
+
+    From there on, the speeds are those of a normal plan.
+    """
     braked = square - np.concatenate([[0.0], np.cumsum(run.squared_speed_gains)])
     fits = np.flatnonzero(braked <= allowed + slack)
     fits = fits[fits > 0]

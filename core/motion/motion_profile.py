@@ -49,12 +49,14 @@ class MotionPhases(NamedTuple):
 def make_axis_segments(path: MotionPath, phases: MotionPhases, time_origin_s: float) -> SegmentArrays:
     """Return the setpoint pieces (t, dt, p, v, a) of k phases; ``time_origin_s`` is added to times.
 
-    A phase on a line gives one exact piece. A phase on an arc is divided into parts of equal time, each at
-    most 2 ms. The ends of the parts are on the arc and are joined by a = 2·(P1 - P0 - V0·h)/h², so
-    positions are continuous. With the jerk j = v/R·hypot(v²/R, 3a) of the true motion, the position between
-    the ends has an error of at most j·h³·2/81, and the velocity steps by at most j·h²/6 at a joint. The
-    time h is chosen so that the position error is below 0.25 µm. The velocity step is then far below amax ·
-    interval. A part that ends at rest has velocity 0 at its end and has its velocity step at its start.
+    - A phase on a line gives one exact piece.
+    - A phase on an arc is divided into parts of equal time h, each at most 2 ms. The ends of the parts are
+      on the arc and are joined by a = 2·(P1 - P0 - V0·h)/h², so positions are continuous.
+    - The true motion has the jerk j = v/R·hypot(v²/R, 3a). Between the ends of a part, the position error
+      is at most j·h³·2/81. Between two parts, the velocity steps by at most j·h²/6.
+    - The time h is chosen so that the position error is below 0.25 µm. The velocity step is then far below
+      amax · interval.
+    - A part that ends at rest has velocity 0 at its end and its velocity step at its start.
     """
     parts = _part_counts(path, phases)
     owner = np.repeat(np.arange(len(parts)), parts)
@@ -140,10 +142,11 @@ ROUNDING_TOLERANCE_S = 1e-12  # s that are a rounding error
 
 @dataclass(frozen=True, slots=True)
 class MotionProfile:
-    """The motion along ``path`` from ``start_distance`` at time 0 to ``end_distance`` at ``duration_s``.
+    """A motion along ``path`` from ``start_distance`` to ``end_distance`` in ``duration_s`` seconds.
 
-    A plan ends at rest. Only a part that ``cut_at_distance`` returns may end in motion. A profile without
-    phases is at rest at ``end_distance``. Times are in seconds from the start of the profile.
+    Times start at 0 at the start of the profile and are in seconds. A complete plan ends at rest. Only a
+    section that ``cut_at_distance`` returns may end in motion. A profile without phases is at rest at
+    ``end_distance``.
     """
 
     path: MotionPath
@@ -158,7 +161,8 @@ class MotionProfile:
     def compute_distances_and_speeds(self, times_s: FloatArray | float) -> tuple[FloatArray, FloatArray]:
         """Return the distances and speeds at the times ``times_s`` (m,).
 
-        Times before the start give the state at the start. Times after the end give rest at the end.
+        Before the start of the profile, the values are those at the start. After the end, the motion is at
+        rest at the end.
         """
         times = np.atleast_1d(np.asarray(times_s, dtype=np.float64))
         if not len(self):
@@ -175,7 +179,7 @@ class MotionProfile:
     def end_speed(self) -> float:
         """Return the speed at the end of the profile in mm/s.
 
-        It is 0 for a plan. For a part of a plan, it is the speed at which the next part continues.
+        It is 0 for a complete plan. For a section of a plan, it is the start speed of the next section.
         """
         if not len(self):
             return 0.0
@@ -216,10 +220,10 @@ class MotionProfile:
         return int(self.path.pieces.block[piece])
 
     def find_block_times(self) -> tuple[IntArray, FloatArray, FloatArray]:
-        """Return the numbers of all blocks of the path, with their start times and end times.
+        """Return the numbers of all blocks of the path, with their start and end times in seconds.
 
-        Times are in seconds, and inf for a block that is not reached. Both times are 0 for blocks before
-        the start of the profile. A block without length ends at its start time.
+        The times are inf for a block that the motion does not reach, and 0 for a block before the start of
+        the profile. A block without length ends at its start time.
         """
         joints, first = self._joint_times(), self.path.first_pieces
         return self.path.block_numbers, joints[first[:-1]], joints[first[1:]]
@@ -227,7 +231,7 @@ class MotionProfile:
     def compute_times_at_distances(self, distances: FloatArray) -> FloatArray:
         """Return the times at which the motion reaches the distances (m,).
 
-        The time is 0 before the start, and inf after the end.
+        The time is 0 for a distance before the start of the profile, and inf for one after its end.
         """
         beyond = distances > self.end_distance + ROUNDING_TOLERANCE_MM
         if not len(self):
@@ -255,9 +259,9 @@ class MotionProfile:
         return make_axis_segments(self.path, self._window(start_time_s, end_time_s), time_origin_s)
 
     def cut_at_distance(self, distance: float) -> MotionProfile:
-        """Return the part of the profile up to ``distance``, which must be at the junction of two pieces.
+        """Return the section of the profile up to ``distance``, at which two pieces must meet.
 
-        The part may end in motion.
+        The section may end in motion.
         """
         count = int(np.searchsorted(self.phases.start_distances, distance, side="left"))
         phases = self.phases.select_phases(slice(0, count))
@@ -271,7 +275,7 @@ class MotionProfile:
         )
 
     def _joint_times(self) -> FloatArray:
-        """Return the times at which the motion passes the junctions of the pieces.
+        """Return the times at which the motion passes the joints (points between two pieces).
 
         They are calculated from the phases, because near a stop, exact times cannot be calculated from
         distances.

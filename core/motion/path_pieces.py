@@ -1,9 +1,9 @@
 """Lines and arcs as arrays for the motion planner, and smoothing between short chords.
 
 Programmed points are rounded to the resolution. With chords of 0.01 mm, this rounding changes the direction
-at every joint (junction of two pieces) far more than the original curve does. Each joint is therefore
-moved, by at most one resolution step per axis, to the curve that its neighbors indicate. Ends of runs of
-chords, corners, arcs, long lines and moves of other axes remain as programmed.
+at every joint (junction of two pieces) far more than the original curve does. The planner therefore moves
+each joint, by at most one resolution step per axis, to the curve through its neighbors. It does not move
+the ends of a chain of chords, corners, arcs, long lines and moves of other axes.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ class PathPieces:
     Lengths are in mm, or degrees for C, angles are in radians, and speeds are in mm/s.
 
     - A line has ``start`` (n, axes) and ``direction`` (n, axes), the change of the axes per unit of path.
-    - The path of a lathe is measured in X and Z, or in degrees if only C rotates. Blocks of other
-      machines specify their length.
-    - An arc has ``curvatures`` of ±1/radius, positive for clockwise; they are 0 for lines.
+    - The path length of a lathe is measured in X and Z, or in degrees if only C rotates. On other
+      machines, the blocks specify the path length.
+    - An arc has ``curvatures`` of ±1/radius, positive for clockwise. The value of a line is 0.
     - ``angle`` is the angle at the start of the arc: x = center x + radius·sin, z = center z +
       radius·cos.
     - The ``direction`` of an arc contains only the motion of C.
@@ -94,7 +94,7 @@ def concatenate_pieces(parts: Sequence[PathPieces]) -> PathPieces:
 
 
 def make_pieces(table: BlockTable, speeds: FloatArray) -> PathPieces:
-    """Return one piece for each of m blocks, including blocks without length.
+    """Return one path piece for each of m blocks, including blocks of zero length.
 
     ``speeds`` (m,) are in mm/s. Raises MotionError if the radii at the start and the end of an arc differ
     by more than RADIUS_TOLERANCE_MM.
@@ -156,10 +156,10 @@ def _circles(table: BlockTable) -> tuple[FloatArray, FloatArray, FloatArray, Flo
 
 
 def _adjust_centers(table: BlockTable, arc: IntArray) -> FloatArray:
-    """Return arc centers on the perpendicular bisectors of the chords, so that arcs meet their ends.
+    """Return arc centers moved to the perpendicular bisectors of the chords.
 
-    Programmed centers are rounded to the resolution. Without this correction, the path would have a gap of
-    that size.
+    Programmed centers are rounded to the resolution. Without this correction, an arc would miss its end
+    point by up to one resolution step.
     """
     start, end, centre = table.start[arc, :2], table.end[arc, :2], table.centre[arc]
     radii = np.hypot(*(start - centre).T), np.hypot(*(end - centre).T)
@@ -185,9 +185,10 @@ def _adjust_centers(table: BlockTable, arc: IntArray) -> FloatArray:
 
 
 def smooth_joints(pieces: PathPieces, limits: MotionLimits) -> PathPieces:
-    """Return the pieces with each junction moved by at most ``limits.grain`` per axis.
+    """Return the path pieces with each joint moved by at most ``limits.grain`` per axis.
 
-    The first and the last point of the path remain unchanged.
+    ``limits.grain`` is the resolution of programmed positions. The first and the last point of the path
+    remain unchanged.
     """
     inner = _is_free_joint(pieces, limits)
     if not inner.any():
@@ -256,7 +257,7 @@ def extend_smoothed_pieces(
 
 
 def ends_with_chord(pieces: PathPieces, limits: MotionLimits) -> bool:
-    """Return whether the last joint may still be moved when pieces are added."""
+    """Return whether the path ends with a short chord, so that its last joint may still be moved."""
     return len(pieces) > 0 and bool(find_short_chords(pieces[-1:], limits)[0])
 
 

@@ -1,9 +1,9 @@
 """Plans of many short path sections at once, such as the passes of a thread.
 
-Each section starts and ends at rest, so its plan does not depend on the other sections. The plan of a section
-of two moves takes little calculation but many calls of array functions. The functions here therefore process
-the sections as rows of a table. They apply the operations of ``plan_motion`` in the same order, so both
-results are equal to the last bit.
+Each section starts and ends at rest, so its plan does not depend on the other sections. Planning a short
+section alone would require many calls of array functions for little calculation. This module therefore
+processes the sections as rows of a table. It applies the operations of ``plan_motion`` in the same order,
+so both results are bitwise identical.
 """
 
 from __future__ import annotations
@@ -43,9 +43,9 @@ def plan_sections(
 ) -> list[SectionPlan | None]:
     """Return the plans of path sections, in the given order.
 
-    A section is a non-empty list of blocks. The entry is None for a section that must be planned alone,
-    because it is long, its blocks are divided or smoothed, or a block is too short. All entries are None if
-    a block cannot be planned. The caller detects this error when it plans the section of that block.
+    A section is a non-empty list of blocks. Its plan is None if it must be planned separately, because the
+    section is long, its blocks are divided or smoothed, or a block is too short. All plans are None if any
+    block cannot be planned. The caller finds the error when it plans the section of that block.
     """
     plans: list[SectionPlan | None] = [None] * len(sections)
     try:

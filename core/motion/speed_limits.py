@@ -188,12 +188,12 @@ def find_direction_changes(pieces: PathPieces) -> FloatArray:
 def limit_velocity_steps(
     direction_changes: FloatArray, accelerations: FloatArray, limits: MotionLimits
 ) -> FloatArray:
-    """Return the squared speeds (n-1,) in mm²/s² at which no velocity step exceeds the interval limit.
+    """Return the squared speeds (n-1,) in mm²/s² at which all velocity steps are within the limit.
 
     A corner changes the velocity by v·|Δu|. The motion may brake before the corner and accelerate after it
     at ``accelerations`` (n-1,) mm/s². The condition is therefore (v + a·interval/2)·|Δu| ≤ amax·interval. A
-    full reversal requires a stop. A setpoint half an interval from the corner may exceed the limit by at
-    most an eighth. Without a change of direction, the result is infinite.
+    full reversal requires a stop. At a setpoint half an interval from the corner, the acceleration may
+    exceed amax by at most an eighth. Without a change of direction, the result is infinite.
     """
     sharp = find_min_ratio(limits.max_acceleration_array * limits.interval, direction_changes)
     caps: FloatArray = np.maximum(sharp - 0.5 * limits.interval * accelerations, 0.0) ** 2
@@ -226,9 +226,9 @@ def _chord_demand(
     *,
     more: bool,
 ) -> PathJointLimits:
-    """Return the limits of short chords over one setpoint interval.
+    """Return the limits of short chords, calculated over one setpoint interval.
 
-    They apply at joints where the limits of the single corners would force a low speed.
+    These limits apply at joints where the limits of the single corners would force a low speed.
     """
     fastest = np.minimum(speeds[:-1], speeds[1:])
     mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
@@ -312,7 +312,7 @@ def find_block_speeds(table: BlockTable) -> FloatArray:
 
 
 def _per_lead(table: BlockTable) -> FloatArray:
-    """Return the ratio of path length to travel along Z (m,) for thread blocks, and 1 for other blocks.
+    """Return the path length per mm of travel along Z (m,) for thread blocks, and 1 for other blocks.
 
     The lead of a screw thread is measured along the axis of the thread.
     """
@@ -335,8 +335,8 @@ def depends_on_radius(table: BlockTable) -> BoolArray:
 def find_surface_rpms(table: BlockTable, radius: FloatArray) -> FloatArray:
     """Return the spindle speeds in rpm that constant surface speed requires at the given radii.
 
-    This is ``find_surface_rpm`` of ``core.geometry`` for arrays. The result is NaN without a surface speed,
-    and for a surface speed of 0 at the centerline.
+    This is the array version of ``find_surface_rpm`` of ``core.geometry``. The result is NaN for a block
+    without constant surface speed, and for a surface speed of 0 at the centerline.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         rpm = 60.0 * table.surface / (2.0 * np.pi * np.abs(radius))
@@ -353,9 +353,9 @@ def _refuse(table: BlockTable, wrong: BoolArray, why: str, code: str) -> None:
 def split_piece_by_radius(pieces: PathPieces, table: BlockTable, index: int) -> PathPieces:
     """Return path piece ``index`` divided into parts within which the rpm changes by at most 2 %.
 
-    Each part has the speed of its middle. On a line across the spindle axis, the time of a part is exact,
-    because 1/v is linear in the radius. The piece is not divided where the rpm is at its limit. The number
-    of parts is at most ln(max/min rpm)/ln 1.02 per pass.
+    Each part has the speed at its middle. On a line across the spindle axis, the time of a part is exact,
+    because 1/v is linear in the radius. The piece is not divided where the rpm is at its limit. While the
+    radius increases or decreases, there are at most ln(max/min rpm)/ln 1.02 parts.
     """
     piece, owner = pieces[index : index + 1], _table_row(table, index)
     length = float(piece.length[0])
@@ -390,9 +390,9 @@ def _radii(piece: PathPieces, owner: BlockTable, at: FloatArray) -> FloatArray:
 
 
 def _find_radius_cuts(piece: PathPieces, owner: BlockTable, length: float) -> FloatArray:
-    """Return the distances along the piece at which the spindle speed reaches a limit between two levels.
+    """Return the distances along the piece at which it is divided into steps of spindle speed.
 
-    The spindle speed depends on the radius. The levels form a geometric series.
+    The spindle speed depends on the radius. The speeds at the divisions form a geometric series.
     """
     if piece.curvatures[0] == 0.0:
         x0, x1 = owner.start[0, 0] - owner.axis[0], owner.end[0, 0] - owner.axis[0]

@@ -1,4 +1,7 @@
-"""Planner of whole programs in limited memory, one window at a time, with sampling for a trace."""
+"""Planner that plans a whole program in limited memory, one window of blocks at a time.
+
+The module also samples the planned positions for a trace.
+"""
 
 from __future__ import annotations
 
@@ -34,11 +37,11 @@ class PlannedChunk(NamedTuple):
 
 
 class WindowPlanner:
-    """A planner of motion for blocks as they arrive, with about ``window`` blocks in memory.
+    """Motion planner for blocks as they arrive, with about ``window`` blocks in memory.
 
     The result equals a single plan of the whole program. Each window yields only the motion that is final.
-    Motion is final if later blocks cannot change its speeds, because its braking ends at a corner or a feed
-    inside the window. If no motion is final, the window grows.
+    Motion is final if later blocks cannot change its speeds, because a corner or a feed inside the window
+    limits them. If no motion is final, the window grows.
     """
 
     def __init__(self, limits: MotionLimits, *, rpm_max: float = math.inf, window: int = 20_000) -> None:
@@ -78,11 +81,11 @@ class WindowPlanner:
                 yield from self._settled()
 
     def plan_sections_ahead(self, sections: Sequence[Sequence[MotionBlock]]) -> list[SectionPlan | None]:
-        """Return the plans of sections that follow the present one; see ``plan_sections``."""
+        """Return the plans of path sections that will follow; see ``plan_sections``."""
         return plan_sections(sections, self._limits, self._rpm_max)
 
     def accept_section(self, plan: SectionPlan) -> PlannedChunk:
-        """Return the motion of a whole section that was planned ahead, after the motion yielded so far."""
+        """Append the plan of a whole section to the motion yielded so far, and return its chunk."""
         begin, joints, numbers = self._t, plan.joint_times_s, plan.profile.path.block_numbers
         self._t = begin + plan.profile.duration_s
         self._last = int(numbers[-1])

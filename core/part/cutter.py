@@ -1,7 +1,7 @@
-"""Tool that machines a turned part: material removal, and collisions of its body.
+"""Simulation of a tool that cuts a turned part: material removal, and collisions of the tool.
 
-An outside tool removes all material further out than its edge, because such material becomes a chip or
-would hit the holder. A boring tool removes all material closer to the axis. A face tool removes only the
+An outside tool removes all material at a greater radius than its edge, because such material becomes a chip
+or would hit the holder. A boring tool removes all material closer to the axis. A face tool removes only the
 material that its outline covers.
 """
 
@@ -51,7 +51,7 @@ class _OutlineSides:
 
 
 class _OutlineSet(NamedTuple):
-    """Convex outlines with their common limits: the least Z and r, and the greatest Z.
+    """Convex outlines with their common limits: the smallest Z and r, and the largest Z.
 
     If the set is empty, the limits are infinite.
     """
@@ -69,7 +69,7 @@ class _OutlineSet(NamedTuple):
 
 
 class Cutter:
-    """A tool given by its outlines (k, 2) in Z and r about the control point, prepared for sweeping.
+    """Tool prepared for sweeping, given by convex outlines (k, 2) of Z and r about the control point.
 
     ``is_drill`` means that the tool is rotationally symmetrical about the spindle axis. ``is_rear`` means
     that the tool works at negative X, where its outlines are given. ``edge_height_mm`` is the extent of its
@@ -131,7 +131,7 @@ class Cutter:
     def touches_material(self, part: TurnedPart, start: Point, end: Point) -> bool:
         """Return whether the edges would cut material on a straight move.
 
-        A move along r is first checked only in the column at the nose, which usually decides.
+        For a move along r, the column at the tool nose is checked first, because it usually decides.
         """
         if self.side is CutSide.OUTSIDE and start[0] == end[0]:
             one, other = self._ends_on_working_side(start, end)
@@ -162,7 +162,7 @@ class Cutter:
     def find_collision(self, part: TurnedPart, start: Point, end: Point) -> Cut:
         """Return the material that the edges and the body would hit, without removing it.
 
-        The material may also be an obstacle, such as the outline of a chuck.
+        ``part`` may also be the outline of an obstacle, such as a chuck.
         """
         start, end = self._ends_on_working_side(start, end)
         met = NO_CUT
@@ -179,8 +179,9 @@ class Cutter:
     ) -> Cut:
         """Cut a screw thread in the section plane, where the edge passes once per revolution.
 
-        ``revolutions`` is the number of revolutions since the synchronized pass started. A lead shorter
-        than a column of the part is cut like a cylinder, because the columns cannot show the thread.
+        ``revolutions`` is the number of revolutions since the synchronized pass started. If the lead is
+        shorter than a column of the part, the columns cannot show the thread. The thread is then cut like a
+        cylinder.
         """
         if lead_mm <= part.columns.step_mm:
             return self.cut_material(part, start, end)
@@ -194,7 +195,7 @@ class Cutter:
         return met
 
     def _is_clear(self, part: TurnedPart, outlines: _OutlineSet, start: Point, end: Point) -> bool:
-        """Return whether the outlines remain in front of the part's face or outside its diameter."""
+        """Return whether the outlines stay in front of the part's face or outside its diameter."""
         columns, low = part.columns, outlines.min_point
         if min(start[0], end[0]) + low[0] > columns.first_z_mm + columns.step_mm * columns.column_count:
             return True
@@ -211,7 +212,7 @@ class Cutter:
         return place[0], place[1] * self.x_sign
 
     def _ends_on_working_side(self, start: Point, end: Point) -> tuple[Point, Point]:
-        """Return the start and end of a move, converted to the side of the axis with the outlines.
+        """Return the ends of a move, mirrored to the side of the axis with the outlines.
 
         A round tool works on both sides.
         """
@@ -243,7 +244,7 @@ class Cutter:
 
 
 def _find_opposite_wall(part: TurnedPart, outline: _OutlineSides, start: Point, end: Point) -> Cut:
-    """Return the cut that a boring bar that is too large for the bore makes at the opposite wall."""
+    """Return the cut that an oversize boring bar makes at the opposite wall of the bore."""
     first, near = sweep_edge(outline.near_edge, start, end, part.columns)
     return part.cut_inside(first, -near)
 
@@ -295,11 +296,11 @@ class _NeighborTool(NamedTuple):
 
 
 class NeighborTools:
-    """The tools on the plate that have a shape and an offset.
+    """The tools on the tool plate that have a shape and an offset, for collision checks.
 
     ``offsets`` are the machine Z and X in mm at which each tip is at part zero. Two tools with the same
-    offset cannot both be mounted. Such pairs are in ``coincident_tools``, and neither tool counts as a
-    neighbor of the other. Holders without a specified size are left out.
+    offset cannot both be mounted. Such pairs are in ``coincident_tools``, and are not checked against each
+    other. Holders without a specified size are left out.
     """
 
     def __init__(self, shapes: Mapping[int, ToolShape], offsets: Mapping[int, Point]) -> None:
@@ -312,9 +313,9 @@ class NeighborTools:
         )
 
     def find_struck_tool(self, part: TurnedPart, tool: int, path: Iterable[tuple[Point, Point]]) -> int:
-        """Return the number of the first other tool that hits material while ``tool`` moves.
+        """Return the first other tool number that hits material while ``tool`` moves along ``path``.
 
-        The result is 0 if no other tool hits material on ``path``.
+        The result is 0 if no other tool hits material.
         """
         if tool not in self._offsets:
             return 0

@@ -140,8 +140,8 @@ class CuttingInsert:
     """The geometry of an indexable insert, in degrees and mm.
 
     ``corner_angles`` and ``edge_lengths`` are the interior angles and the edge lengths, counterclockwise
-    from the cutting corner. ``inscribed_circle`` is a diameter. A round insert has no corners and no edges,
-    and its nose is the whole circle.
+    from the cutting corner. ``inscribed_circle`` is a diameter. A round insert has no corners or edges, and
+    its nose radius is the radius of the whole insert.
     """
 
     shape: str
@@ -273,8 +273,8 @@ class _CodeDigits:
     def remove_digits(self, found: str, what: str, known: Mapping[str, float]) -> float:
         """Remove the digits ``found`` from the remaining digits, and return their value in ``known``.
 
-        ``what`` is the quantity that the digits specify, for messages. Raises InsertCodeError if the digits
-        are missing or unknown.
+        ``what`` is the name of the value, for messages. Raises InsertCodeError if the digits are missing or
+        not in ``known``.
         """
         if not found or len(found) < len(min(known, key=len)):
             place, known_codes = self.last_read_position + len(found) + 1, " ".join(sorted(known))
@@ -367,7 +367,7 @@ def _read_inch_sizes(size: _CodeDigits) -> tuple[float, float, float]:
 
 
 def _next_number(size: _CodeDigits, pattern: re.Pattern[str]) -> str:
-    """Return the next number of an inch code, or the invalid character found instead."""
+    """Return the next number of an inch code, or the invalid character at that position."""
     found = pattern.match(size.remaining_digits)
     return (found[0] if found else "") or size.remaining_digits[:1]
 
@@ -413,9 +413,10 @@ def parse_outline(text: str) -> tuple[tuple[float, float], ...] | None:
 
 
 def _parse_shank_size(words: str) -> ToolHolder | None:
-    """Return the shank of a size such as ``20x20``, ``3/4"``, ``.75 in`` or ``16mm``.
+    """Return the shank of a size such as ``20x20``, ``3/4``, ``.75 in`` or ``16mm``.
 
-    Fractions are inches. The result is None for a number without a unit.
+    Fractions are inches. The result is None if the text is not a valid size, or if it is a single number
+    without a unit.
     """
     found = re.fullmatch(_SIZES, words)
     if not found:

@@ -43,11 +43,11 @@ class RayCut(NamedTuple):
 
 
 class RadialMillMove(NamedTuple):
-    """A position or a straight move of a mill that is parallel to a radius of the part.
+    """A position or a straight move of a mill whose axis is parallel to a radius of the part.
 
     The end of the mill is at the radius ``end_radius_mm``. The mill moves from Z ``back_z_mm`` to
-    ``front_z_mm``, or around the axis by ``rotation_rad``. ``angle_rad`` and ``rotation_rad`` are in
-    radians in the part's frame, and the other values are in mm.
+    ``front_z_mm``, or around the part's axis by ``rotation_rad``. ``angle_rad`` and ``rotation_rad`` are in
+    radians in the part's frame.
     """
 
     end_radius_mm: float
@@ -58,7 +58,7 @@ class RadialMillMove(NamedTuple):
 
 
 class MilledPart:
-    """The material of a part as a polar field, from which mills and turning tools cut, in mm."""
+    """The material of a part as a polar field in mm, which mills and turning tools can cut."""
 
     def __init__(self, field: PolarField) -> None:
         self.field = field
@@ -155,8 +155,8 @@ class MilledPart:
         offset of the tool's axis from the part's axis, positive toward increasing angles. See
         ``mill_axial_path`` for ``cutting_length`` and ``cone_height``.
 
-        A move only in r, only in Z or, with the tool axis through the part axis, only in the angle is
-        exact. Any other move is divided into steps with an error of at most 0.001 mm.
+        A move in only r or only Z is exact. A move in only the angle is exact if ``axis_offset`` is 0. Any
+        other move is divided into steps with an error of at most 0.001 mm.
         """
         met = NO_MATERIAL
         runs = list(self._group_strokes(path, radius, axis_offset))
@@ -236,7 +236,7 @@ class MilledPart:
     def _group_strokes(
         self, path: FloatArray, radius: float, height: float
     ) -> Iterator[list[RadialMillMove]]:
-        """Yield groups of consecutive mill moves that extend over at most the mill's radius."""
+        """Yield consecutive mill moves in groups that extend over at most the radius of the mill."""
         outside = float(self.field.outer_radii.max(initial=radius))
         run: list[RadialMillMove] = []
         for stroke in self._strokes(path, radius, height, outside):
@@ -297,7 +297,7 @@ class _DiscSweep:
         self._whole, self._covered = np.zeros(len(self._start), dtype=np.bool_), self._layers([], 0.0, 0.0)
 
     def find_covered_area(self, begin: FloatArray, stop: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the area that is covered between two fractions of each line (m,), as layers (k, rays)."""
+        """Return the area covered between two fractions of each line (m,), as r intervals (k, rays)."""
         whole = (begin == 0.0) & (stop == 1.0)
         if np.any(whole != self._whole):
             self._whole, self._covered = whole, self._layers(np.flatnonzero(whole), 0.0, 1.0)
@@ -346,7 +346,7 @@ def _path_lines(path: FloatArray) -> FloatArray:
 
 
 def _floor_levels(path: FloatArray, length: float) -> FloatArray:
-    """Return the Z values of the floors that a path leaves and of the flute ends.
+    """Return the Z values of the floors that the end of the mill cuts, and of the ends of its flutes.
 
     The lowest floor is always included.
     """
@@ -357,9 +357,9 @@ def _floor_levels(path: FloatArray, length: float) -> FloatArray:
 
 
 def _iter_cone_steps(radius: float, point: float) -> Iterator[tuple[float, float]]:
-    """Yield flat-ended mills that together approximate a mill with a cone of height ``point``.
+    """Yield the flat-ended mills that together approximate a mill with a cone of height ``point``.
 
-    Each flat mill is given by the offset of its end and by its radius.
+    Each flat-ended mill is given by the offset of its end and by its radius.
     """
     count = min(max(math.ceil(point / 0.05), 8), 24) if point else 0
     for k in range(count):
@@ -386,7 +386,7 @@ def _lifted(run: list[RadialMillMove], rise: float) -> list[RadialMillMove]:
 
 
 def _is_overlapped(run: list[RadialMillMove], stroke: RadialMillMove, radius: float, outside: float) -> bool:
-    """Return whether a mill move is entirely within the mill's radius of the first move of a group."""
+    """Return whether a mill move and the first of its group together span at most the mill's radius."""
     first = run[0]
     along = max(stroke.front_z_mm, first.front_z_mm) - min(stroke.back_z_mm, first.back_z_mm)
     turned = outside * (

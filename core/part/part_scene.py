@@ -1,4 +1,4 @@
-"""The scene of a part's picture, with its colors and the table of their shades."""
+"""The scene around a part in its picture (chuck and tool), with its colors and their shades."""
 
 from __future__ import annotations
 

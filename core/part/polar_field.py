@@ -184,8 +184,8 @@ class PolarField:
     ) -> RemovedMaterial:
         """Return the material between ``inner_radii`` and ``outer_radii`` (columns, rays).
 
-        The material is removed if ``remove`` is True. A ray contributes no material if its outer radius is
-        not greater than its inner radius.
+        The material is removed if ``remove`` is True. If the outer radius on a ray is not greater than the
+        inner radius, that ray is not cut.
         """
         low, high = self.inner_radii[:, columns][:, :, rays], self.outer_radii[:, columns][:, :, rays]
         there = outer_radii > inner_radii
@@ -243,9 +243,9 @@ class PolarField:
         top: FloatArray,
         both: npt.NDArray[np.bool_],
     ) -> tuple[FloatArray, FloatArray]:
-        """Return the layers with an added layer for the material outside the cut on rays that it divides.
+        """Return the layers with one layer added, for rays on which the cut divides the material.
 
-        This material extends from ``cut_outer`` to ``top``.
+        The added layer contains the material outside the cut, from ``cut_outer`` to ``top``.
         """
         column, ray = np.nonzero(both.any(axis=0))
         split = both[:, column, ray]

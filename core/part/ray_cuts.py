@@ -92,10 +92,10 @@ def _cleaned(
 
 
 def unite_intervals(starts: FloatArray, ends: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the union of intervals (m, n) along the first axis, as ascending disjoint layers (k, n).
+    """Return the union of intervals (m, n) along the first axis, as ascending intervals (k, n).
 
-    The number of layers k is as small as possible. An interval is empty if its end is not greater than its
-    start. Empty intervals of the result are at infinity.
+    The resulting intervals do not overlap, and k is as small as possible. An interval is empty if its end
+    is not greater than its start. Empty intervals of the result are at infinity.
     """
     there = ends > starts
     starts, ends = np.where(there, starts, np.inf), np.where(there, ends, -np.inf)
@@ -189,9 +189,9 @@ def make_radial_path(positions: FloatArray, *, is_far_side: bool = False) -> Flo
 def make_c_axis_path(
     start: FloatArray, end: FloatArray, max_chord_error: float = MAX_CHORD_ERROR_MM
 ) -> FloatArray:
-    """Return points X, Z, C (n, 3) of the lathe along a straight move.
+    """Return lathe positions X, Z, C (n, 3) along a straight move of a tool parallel to Z.
 
-    The points are dense enough for a tool parallel to Z.
+    The points are so close together that the chord error is at most ``max_chord_error`` mm.
     """
     turn = math.radians(abs(float(end[2] - start[2])))
     far = max(abs(float(start[0])), abs(float(end[0])), _AXIS_TOLERANCE_MM)
@@ -209,7 +209,7 @@ def _count_chords(move: PlaneMove, chord: float) -> int:
 
 
 def _is_too_close_to_axis(move: PlaneMove) -> bool:
-    """Return whether a face mill passes closer to the axis than its height offset permits."""
+    """Return whether a face mill must pass closer to the axis than its height above the axis allows."""
     return (
         not isinstance(move.frame, SidePlane)
         and move.compute_distance_from_axis(move.get_fastest_rotation_fraction())

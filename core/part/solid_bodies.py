@@ -1,8 +1,8 @@
 """Tool, holder and chuck in the solid picture, as image layers merged with the part by depth.
 
-The outlines of a tool become prisms below its rake face, which is in the plane of turning. A rotating tool
-becomes a solid of revolution. The points of these bodies are one pixel apart. They are not cached, because
-there are few of them.
+The outlines of a tool become prisms below its rake face, which is in the XZ plane through the spindle axis.
+A rotating tool becomes a solid of revolution. The points of these bodies are one pixel apart. They are not
+cached, because there are few of them.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ class _Viewer(NamedTuple):
 
 
 def make_chuck_solid(clamping: Clamping, stock: Stock) -> Solid:
-    """Return the front of a chuck with jaws or of a collet, together with the tailstock center."""
+    """Return the solid of the front of a chuck or collet, and of the tailstock center."""
     edges: list[float] = []
     columns: list[tuple[float, float]] = []  # inner and outer radius
     if clamping.chuck_diameter:
@@ -151,7 +151,7 @@ def make_tool_layers(
 
 
 def _make_viewer(view: SolidView, width: int, height: int) -> _Viewer:
-    """Return the viewer of a view. A tilted view has larger visible ranges."""
+    """Return the viewer of a view; a tilted view has larger visible ranges."""
     cos, _ = view.azimuth_cos_sin
     across = (0.5 * height / view.pixels_per_mm + _HOLDER) / max(
         abs(math.sin(math.radians(view.tilt_deg))), 0.25
@@ -234,7 +234,7 @@ def _revolved_surface(polygon: FloatArray, round_: SymmetryAxis, eye: _Viewer) -
 
 
 def _crossing_range(polygon: FloatArray, axis: int, at: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the range that a convex outline covers across an axis at each given position.
+    """Return the range across an axis that a convex outline covers at each position on the axis.
 
     The range is NaN where the outline does not reach the position.
     """

@@ -164,7 +164,7 @@ class _PictureDrawing:
     def _wall(self, wall: LayerWall) -> None:
         """Draw the visible points of a wall.
 
-        Columns that slope along Z may be visible even if a cylinder at this angle would face away.
+        Columns that slope along Z may be visible even where a cylinder would face away from the viewer.
         """
         if wall.faces_axis and not self._seen_inside():
             return
@@ -313,10 +313,7 @@ class _PictureDrawing:
         return np.append(table.ravel(), np.uint32(ground))[np.maximum(codes, -1)], depth
 
     def _smooth(self, pixel: IntArray, shade: Float32Array, rough: BoolArray) -> None:
-        """Set the brightness of each rough point to the mean of the rough points around it.
-
-        The mean covers the 5 × 5 pixels around the point.
-        """
+        """Set the brightness of each rough point to the mean of the rough points within 5 × 5 pixels."""
         at, wide = pixel[rough], self.width
         light, count = (np.zeros(self.height * wide, np.float32) for _ in range(2))
         light[at], count[at] = np.maximum(shade[rough], 0.0), 1.0
@@ -464,7 +461,7 @@ def _remove_specks(codes: CodeArray) -> CodeArray:
 def _draw_edges(codes: CodeArray, depth: npt.NDArray[np.int32]) -> None:
     """Darken the deeper side of each step in depth, to separate two faces of equal brightness.
 
-    A point is on the deeper side if it is deeper than the mean of its two neighbors by more than ``_EDGE``.
+    A point is on the deeper side if its depth exceeds the mean of its two neighbors by more than ``_EDGE``.
     """
     for picture, deep in ((codes, depth), (codes.T, depth.T)):
         sunk = deep[:-2] + deep[2:]

@@ -72,9 +72,9 @@ class SolidView:
 def fit_view(
     back_z_mm: float, front_z_mm: float, radius: float, width: int, height: int, azimuth_deg: float
 ) -> tuple[float, float]:
-    """Return the scale and the center Z at which a part fills the picture at any roll.
+    """Return the scale in pixels/mm and the center Z at which a part fills the picture at any roll.
 
-    The part extends from Z ``back_z_mm`` to ``front_z_mm``.
+    The part extends from Z ``back_z_mm`` to ``front_z_mm``, and its radius is ``radius`` mm.
     """
     cos, sin = abs(math.cos(math.radians(azimuth_deg))), abs(math.sin(math.radians(azimuth_deg)))
     wide, high = (front_z_mm - back_z_mm) * cos + 2.0 * radius * sin, 2.0 * radius

@@ -78,7 +78,7 @@ def make_tube_stock(
 
 
 def calculate_critical_rpm(stock: Stock, stick_out: float) -> float:
-    """Return the first critical speed of the bar that extends from the chuck, in rpm.
+    """Return the first critical speed in rpm of the part of the bar that extends from the chuck.
 
     ``stick_out`` is the distance from the chuck to Z0 in mm; the bar extends to the front of the stock. The
     result is 0 if the bar does not extend from the chuck. The formula is that of a beam clamped at one end,

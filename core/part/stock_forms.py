@@ -1,6 +1,6 @@
 """The permitted forms of a stock specification, for messages and the command-line help.
 
-This module imports nothing, because the command line shows the forms before it loads other modules.
+This module has no imports, because the command line shows the forms before it loads other modules.
 """
 
 SPECIFICATION_FORMS = (

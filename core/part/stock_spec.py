@@ -1,7 +1,7 @@
 """Stock specifications that a user enters, such as ``bar:1.0+.02`` or ``tube:25mm:10mm``.
 
-A specification may also be the file of a profile, such as ``profile:FILE.csv``. Lengths are in inches, or
-in millimeters if followed by ``mm``. The face of the stock is at Z0 plus the allowance after ``+``.
+A specification can also refer to a profile file, such as ``profile:FILE.csv``. Lengths are in inches, or in
+millimeters if followed by ``mm``. The face of the stock is at Z0 plus the allowance after ``+``.
 """
 
 from __future__ import annotations
@@ -32,8 +32,9 @@ class StockError(CodedError, ValueError):
 class StockSpec:
     """A stock specification, in mm.
 
-    A ``length`` of 0 means that the stock is as long as the program needs. ``profile`` is the file of a
-    profile, and ``after`` is the program that made the stock. Both are empty strings for a bar or a tube.
+    If ``length`` is 0, the stock is as long as the program needs. ``profile`` is the path of a profile
+    file, and ``after`` is the program that machined the stock before. Both are empty strings for a bar or a
+    tube.
     """
 
     given: str

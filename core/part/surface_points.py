@@ -1,9 +1,9 @@
 """The surfaces of a part as points one pixel apart, ready for rotation: walls, faces and flanks.
 
-Walls are on the rays, with one point per column. If the next column has less material, the exposed face is
-filled with points. If the next ray has less material, the exposed flank of a slot or a flat is filled with
-points. The points are cached until the part or the scale changes, because a rotation only multiplies them
-by sines and cosines.
+Walls have one point per ray and column. If the next column has less material, the exposed face is filled
+with points. If the next ray has less material, the exposed flank of a slot or a flat is filled with points.
+The points are cached until the part or the scale changes. Rotating them only requires multiplication by
+sines and cosines.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _MAX_SUBDIVISION = 4  # largest number of interpolated rays per ray
 
 
 class Solid(NamedTuple):
-    """A solid in columns and rays; a turned part has one ray.
+    """A solid as intervals of r in columns along Z and on rays; a turned part has only one ray.
 
     ``column_edges`` (columns + 1,) are the Z positions of the column edges. ``inner_radii`` and
     ``outer_radii`` (layers, columns, rays) are the limits of the material along r.
@@ -64,10 +64,10 @@ def make_turned_solid(column_edges: FloatArray, inner_radii: FloatArray, outer_r
 class SurfacePatch(NamedTuple):
     """Surface points of faces and flanks, which are not on the walls along rays, with their normals.
 
-    ``z_px`` and ``radius_px`` are Z and r in pixels. The normals are given along r, the angle and Z.
-    ``half_ray_numbers`` (n,) are the angular positions in half steps between rays, or None if the points
-    are rings with a point at every ray. ``is_rough`` means that the wall crosses columns and rays, so that
-    its normals vary from point to point.
+    ``z_px`` and ``radius_px`` are Z and r in pixels. The normals are given along r, the polar angle and Z.
+    ``half_ray_numbers`` (n,) are the angular positions in half steps between rays. They are None if the
+    points are rings with a point at every ray. ``is_rough`` means that the wall crosses columns and rays,
+    so that its normals vary from point to point.
     """
 
     z_px: Float32Array
@@ -84,8 +84,7 @@ class LayerWall(NamedTuple):
 
     - ``columns`` are the columns of the surface to which the wall belongs.
     - ``faces_axis`` means that the wall faces the axis.
-    - ``bore_radius_px`` (columns,) is the usual radius of the innermost wall, and only specified for this
-      wall.
+    - ``bore_radius_px`` (columns,) is the usual bore radius. It is specified only for the innermost wall.
     - ``is_complete`` means that no point is missing.
     - ``is_sloped`` is a mask of the columns whose radius changes along Z.
     - ``max_slope_rad`` is the greatest angle in radians between a normal and the radius.
@@ -101,9 +100,9 @@ class LayerWall(NamedTuple):
 
 
 class SolidSurface:
-    """The surface points of a solid at a scale, with Z measured from ``center_z``.
+    """The surface points of a solid at a given scale, with Z measured from ``center_z``.
 
-    ``face_direction`` is the sign of the Z direction of the visible faces, or 0.
+    ``face_direction`` is 1 or -1 if the visible faces point toward Z+ or Z-, or 0 if no faces are visible.
     """
 
     def __init__(
@@ -200,7 +199,7 @@ class SolidSurface:
     def _is_straight(self, column: IntArray, ray: IntArray, *, round_: bool) -> npt.NDArray[np.bool_]:
         """Return a mask of the cells at which a step in thickness continues unchanged on both sides.
 
-        The step is followed along the column of the cell or along its ray.
+        The step is followed across columns if ``round_`` is True, or across rays otherwise.
         """
         own = self._thickness_step(column, ray, round_=round_)
         limit, thick = 0.5 * np.abs(own), self.thickness_px[column, ray]
@@ -263,9 +262,10 @@ def _count_rays(solid: Solid, scale: float) -> int:
 def _sample_layer(
     solid: Solid, layer: int, at: FloatArray, scale: float, times: int
 ) -> tuple[Float32Array, Float32Array]:
-    """Return the inner and outer radii of a layer at the given Z in pixels, with ``times`` as many rays.
+    """Return the inner and outer radii of a layer at given Z, with ``times`` times as many rays.
 
-    Missing material is 0, and only shoulders become steps.
+    The radii are in pixels, and the Z positions ``at`` are in mm. The radii are 0 where material is
+    missing. They are interpolated along Z, except at shoulders.
     """
     own, neighbor, share, limit = _neighbor_columns(solid.column_edges, at, scale)
     shape = len(at), solid.inner_radii.shape[2] * times
@@ -302,9 +302,9 @@ def _sample_layer(
 def _neighbor_columns(
     edges: FloatArray, at: FloatArray, scale: float
 ) -> tuple[IntArray, IntArray, Float32Array, Float32Array]:
-    """Return, for each Z, the column, its nearest neighbor, the neighbor's weight, and the step limit.
+    """Return the column at each Z, its nearest neighbor, the neighbor's weight and the step limit.
 
-    The step limit is in pixels.
+    A difference in radius above the step limit, in pixels, is treated as a shoulder.
     """
     middles = 0.5 * (edges[1:] + edges[:-1])
     own = np.clip(np.searchsorted(edges, at, side="right") - 1, 0, len(middles) - 1)
@@ -354,7 +354,7 @@ def _interpolate_rays(r: Float32Array, there: npt.NDArray[np.bool_], times: int)
 def _differing_cells(
     low: list[Float32Array], high: list[Float32Array], min_difference: float, *, round_: bool
 ) -> tuple[CellIndices, CellIndices]:
-    """Return cells that differ from the next cell by over ``min_difference``, and these next cells.
+    """Return the cells that differ by over ``min_difference`` from the next cell, and the next cells.
 
     The next cell is along Z, or around the part if ``round_`` is True.
     """
@@ -431,7 +431,7 @@ def _subtract_intervals(
 def _column_material(
     low: list[Float32Array], high: list[Float32Array], at: int
 ) -> tuple[IntArray, Float32Array, Float32Array]:
-    """Return the material of one column as its rays, starts and ends."""
+    """Return the ray numbers, inner radii and outer radii of the material of one column."""
     found = [(np.flatnonzero(b[at] > a[at]), a[at], b[at]) for a, b in zip(low, high, strict=True)]
     parts = [np.concatenate(each) for each in zip(*((n, a[n], b[n]) for n, a, b in found), strict=True)]
     return parts[0], parts[1], parts[2]

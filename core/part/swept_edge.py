@@ -89,7 +89,7 @@ def _turn(a: Point, b: Point, c: Point) -> float:
 def sweep_edge(
     edge: AxisFacingEdge, start: Point, end: Point, columns: ColumnGrid, max_radius_mm: float = math.inf
 ) -> tuple[int, FloatArray]:
-    """Return the first column that the edge reaches, and the least r (m,) in each column on the move.
+    """Return the first column that the edge reaches, and the smallest r (m,) in each swept column.
 
     ``start`` and ``end`` are the positions of the outline's origin. Columns at both ends are omitted if the
     edge does not reach a radius less than ``max_radius_mm`` in them.
@@ -108,7 +108,7 @@ def sweep_edge(
 
 
 def _ends_below(z: FloatArray, r: FloatArray, below: float) -> Point:
-    """Return the two Z values between which a convex chain (k,) has an r less than ``below``."""
+    """Return the Z values between which a convex chain (k,) of points has an r less than ``below``."""
     inside = (r < below).nonzero()[0]
     if not len(inside):
         return float(z[0]), float(z[0])

@@ -1,10 +1,10 @@
-"""Outlines of tools in the plane of turning: cutting edges and bodies, by tool kind and dimensions.
+"""Outlines of tools in the XZ plane: cutting edges and bodies, by tool kind and dimensions.
 
 Every tool is drawn in one orientation, in which it points to the chuck and the axis (quadrant 3, 8 for a
-symmetrical tool, 7 for a drill). It is then mirrored to the quadrant of its tip. X retains its sign: the
-holder of a front tool is at X+ of its tip, and the holder of a rear tool is at X−. A boring bar may extend
-across the axis, where |X| applies. Standard holder dimensions replace dimensions that are not specified,
-and the names of these dimensions are listed.
+symmetrical tool, 7 for a drill). It is then mirrored to the quadrant of its tip. The sign of X is not
+changed: the holder of a front tool is at X+ of its tip, and the holder of a rear tool is at X−. A boring
+bar may extend across the axis, where |X| applies. Standard holder dimensions replace dimensions that are
+not specified, and the names of these dimensions are listed.
 """
 
 from __future__ import annotations
@@ -86,9 +86,9 @@ class _OutlineDrawing:
     assumed_fields: list[str] = field(default_factory=list)
 
     def get_dimension(self, name: str, usual: float) -> float:
-        """Return the value of a dimension field of the shape, or ``usual`` if the field is not specified.
+        """Return a dimension of the shape, or the standard size ``usual`` if it is not specified.
 
-        A field for which the usual value is used is recorded by name.
+        The names of the dimensions with standard sizes are recorded.
         """
         stated = float(getattr(self.shape, name))
         if stated > 0.0:
@@ -111,7 +111,7 @@ class _OutlineDrawing:
 
     @property
     def is_tip_in_quadrant(self) -> bool:
-        """Return whether the tip is in a quadrant between the axes."""
+        """Return whether the tip is in one of the quadrants 1 to 4, not on an axis direction."""
         return 0 not in self.shape.direction
 
     @property
@@ -152,7 +152,7 @@ def make_tool_outline(shape: ToolShape) -> ToolOutline:
 def make_nose_circle(radius: float, tip: int) -> ToolOutline:
     """Return the nose circle as the outline of a tool without a specified shape.
 
-    Without a specified nose radius, the circle is very small.
+    If ``radius`` is 0, a very small circle is used.
     """
     size = radius or MAX_NOSE_CHORD_ERROR_MM * 10.0
     z, r = TIP_DIRECTIONS[tip]
@@ -374,12 +374,12 @@ def _cylinder(start: float, end: float, radius: float) -> FloatArray:
 
 
 def _mirror_half(upper: list[tuple[float, float]]) -> FloatArray:
-    """Return the convex polygon whose upper half (r ≥ 0), ordered along z, is given."""
+    """Return the convex polygon whose upper half (r ≥ 0), ordered along z, is ``upper``."""
     return find_convex_hull(np.array([*upper, *((z, -r) for z, r in upper)], dtype=np.float64))
 
 
 def _add_round_shank(drawing: _OutlineDrawing, length: float, diameter: float) -> None:
-    """Add the shank of a round tool up to the clamping, and the clamping if its position is specified."""
+    """Add the shank of a round tool up to the tool clamp, and the clamp if its position is specified."""
     end = drawing.shape.stick_out or length + 2.0 * diameter
     if end > length:
         drawing.body_outlines.append(_cylinder(length, end, diameter / 2.0))

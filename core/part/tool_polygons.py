@@ -54,8 +54,8 @@ def make_arc_points(
 ) -> FloatArray:
     """Return points (k, 2) on an arc about the origin, including its extremes in z and r.
 
-    ``start_rad`` and ``sweep_rad`` are in radians. A chord with the half angle t deviates by radius·(1 -
-    cos t). Because the extremes are included, a diameter that is cut by an extreme of the nose is exact.
+    ``start_rad`` and ``sweep_rad`` are in radians. The error of a chord with the half angle t is radius·(1
+    - cos t). Because the extremes are included, a diameter that is cut by an extreme of the nose is exact.
     """
     most = (
         2.0 * math.acos(max(0.0, 1.0 - max_chord_error / radius))
@@ -81,10 +81,10 @@ def make_circle(radius: float) -> FloatArray:
 def make_polygon_from_edges(
     corner_angles: Sequence[float], edge_lengths: Sequence[float], heading_deg: float
 ) -> FloatArray:
-    """Return the polygon with these interior angles and edge lengths, starting at the origin.
+    """Return the polygon with the given interior angles and edge lengths, starting at the origin.
 
-    ``corner_angles`` are in degrees. ``heading_deg`` is the direction of the first edge from +z to +r, in
-    degrees.
+    ``corner_angles`` are in degrees. ``heading_deg`` is the direction of the first edge in degrees,
+    measured from +z toward +r.
     """
     points, at, angle = [], np.zeros(2), math.radians(heading_deg)
     for corner, edge in zip((*corner_angles[1:], corner_angles[0]), edge_lengths, strict=True):
@@ -111,7 +111,7 @@ def round_corners(
 ) -> FloatArray:
     """Return the convex polygon with rounded corners.
 
-    Each corner has its own radius and limit of the chord error.
+    ``radii`` and ``max_chord_errors`` contain one value for each corner.
     """
     parts = []
     for at, (radius, chord) in enumerate(zip(radii, max_chord_errors, strict=True)):

@@ -9,7 +9,7 @@ from core.tool_edges import TIP_DIRECTIONS
 
 
 class ToolKind(StrEnum):
-    """The purpose of a tool, which determines the dimensions that apply to it."""
+    """The kind of a tool, such as a turning tool or a drill, which determines its dimensions."""
 
     TURNING = "turning"
     BORING = "boring"
@@ -88,7 +88,7 @@ class ToolShape:
     def internal(self) -> bool:
         """Return whether the tool works in a bore.
 
-        Boring tools work in a bore, and so do grooving and threading tools on a bar.
+        This applies to boring tools, and to grooving and threading tools on a boring bar with a diameter.
         """
         on_a_bar = self.kind in {ToolKind.GROOVING, ToolKind.THREADING} and self.diameter > 0.0
         return self.kind is ToolKind.BORING or on_a_bar

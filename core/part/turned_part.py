@@ -1,8 +1,9 @@
 """Material of a turned part: intervals of r in columns along Z.
 
-A column usually has one interval of r, and more with a face groove or a ring. The intervals are stored in
-layers from the axis outward. Radii are exact in the middle of a column, so cylinders, cones and arcs are as
-exact as the outline of the tool. A shoulder is within half a column of its position.
+A column usually has one interval of r. It has more where a face groove or a ring divides the material. The
+intervals are stored in layers from the axis outward. Radii are exact in the middle of a column, so
+cylinders, cones and arcs are as exact as the outline of the tool. A shoulder is within half a column of its
+position.
 """
 
 from __future__ import annotations
@@ -32,9 +33,9 @@ ProfilePoints = list[tuple[float, float]]
 
 
 def simplify_polyline(points: FloatArray, tolerance: float) -> FloatArray:
-    """Return a subset (k, 2) of points (n, 2) whose polyline is within ``tolerance`` of all points.
+    """Return those of the points (n, 2) that are needed to stay within ``tolerance`` of all points.
 
-    The subset includes both ends.
+    The result (k, 2) includes both ends.
     """
     kept = np.zeros(len(points), dtype=bool)
     kept[[0, -1]] = True
@@ -307,9 +308,9 @@ class TurnedPart:
     def _measure_cut(
         self, first: int, low: FloatArray, high: FloatArray, start: FloatArray, end: FloatArray
     ) -> Cut:
-        """Return the cut between ``start`` and ``end``, which are both within the interval of a layer.
+        """Return the cut from ``start`` to ``end``, both within the intervals of one layer.
 
-        Pass ``high`` as ``end`` if everything outside ``start`` is cut.
+        Pass ``high`` as ``end`` if all material outside ``start`` is cut.
         """
         thick = end - start
         touched = (thick > _TOUCH).nonzero()[0]
@@ -338,7 +339,7 @@ class TurnedPart:
         return met
 
     def drop_parted_pieces(self) -> None:
-        """Drop the parted-off pieces that remained in place while the holder was checked for collisions."""
+        """Drop parted-off pieces that stayed in place for the collision check of the holder."""
         self.holds_parted_pieces = False
         if self._parted:
             self._parted = False

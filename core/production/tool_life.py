@@ -18,7 +18,7 @@ class ToolLifeError(CodedError, ValueError):
 
 
 class ToolLifeState(Enum):
-    """The state of a tool's life, from no limit to used up."""
+    """The state of a tool's life: no limit, OK, warning or used up."""
 
     NO_LIMIT = "no limit"
     OK = "good"
@@ -81,7 +81,7 @@ class ToolLife:
 
     @property
     def words(self) -> str:
-        """Return the used part of the tool life as text, such as ``50 of 50 parts`` or ``31 of 30 min``.
+        """Return the used tool life as text, such as ``50 of 50 parts`` or ``31 of 30 min``.
 
         With two limits, the text refers to the limit that will be reached first.
         """
@@ -101,10 +101,10 @@ class ToolLife:
 
 
 def check_tool_life(life: ToolLife) -> None:
-    """Raise ToolLifeError if a limit or the warning share of the tool life is not valid.
+    """Check the limits and the warning fraction of a tool life.
 
-    The limits are 0 to 1,000,000 parts and 0 to 100,000 min, where 0 means no limit. The warning share is
-    above 0 and at most 1.
+    The limits are 0 to 1,000,000 parts and 0 to 100,000 min, where 0 means no limit. The warning fraction
+    is above 0 and at most 1. Raises ToolLifeError for any other value.
     """
     if not 0 <= life.limit_parts <= MAX_LIMIT_PARTS:
         raise ToolLifeError(

@@ -111,7 +111,7 @@ class ToolUse:
         """Return the first position at the part, for a tool that makes only rapid moves.
 
         The position is the end of a rapid while the spindle or C is active. The result is None if the tool
-        makes a feed, or if its rapids have another purpose.
+        makes a feed move, or if its rapids have another purpose.
         """
         if self.is_bar_stop:
             return None
@@ -154,10 +154,10 @@ class AssumedTool:
     is_diameter_assumed: bool = False  # the diameter is assumed
 
     def add_assumed_diameter(self, tool_use: ToolUse, bore_moves: Sequence[TipMove]) -> AssumedTool:
-        """Return the tool with an assumed diameter if it is a round tool without a diameter.
+        """Return the tool; add an assumed diameter to a round tool without a diameter.
 
-        The diameter of a drill is slightly less than the smallest diameter that the later ``bore_moves``
-        cut.
+        The assumed diameter of a drill is slightly less than the smallest diameter that the later
+        ``bore_moves`` cut.
         """
         shape = self.tool_shape
         if shape is None or not shape.is_rotating or shape.diameter:
@@ -175,7 +175,7 @@ class AssumedTool:
         )
 
     def add_assumed_width(self, tool_use: ToolUse, thread_moves: Sequence[TipMove]) -> AssumedTool:
-        """Return the tool with an assumed width if it is a grooving or parting tool without a width.
+        """Return the tool; add an assumed width to a grooving or parting tool without a width.
 
         See ``find_groove_width``.
         """
@@ -192,9 +192,9 @@ class AssumedTool:
 def find_groove_width(shape: ToolShape, moves: Iterable[TipMove], thread_moves: Iterable[TipMove]) -> float:
     """Return the assumed width in mm of a cutting edge without a specified width.
 
-    The width is 2 mm, or the width that a screw thread needs to start in the groove. Only threads that lead
-    out of the part need this width. The edge of a threading tool is at most as wide as the lead, with half
-    of the width on either side of the control point.
+    The width is 2 mm, or more if a screw thread starts in the groove and leads out of the part. The groove
+    must then be wide enough for the threading tool. The edge of a threading tool is assumed to be at most
+    as wide as the lead, with half of the width on either side of the control point.
     """
     forward = shape.direction[0]  # direction of the corner that is set; the edge extends back from it
     plunged = {m.points[-1][0] for m in moves if not m.is_fast and _square(m)}
@@ -272,9 +272,10 @@ def _to_centre(cuts: Iterable[TipMove]) -> bool:
 
 
 def works_in_bore(moves: Sequence[TipMove]) -> bool:
-    """Return whether a tool works in a bore, according to its retracts or, if undecided, its contour.
+    """Return whether a tool works in a bore.
 
-    A tool in a bore retracts toward the axis more often than away from it.
+    The retract directions decide: a tool in a bore retracts toward the axis more often than away from it.
+    If they are not conclusive, the contour decides.
     """
     votes = 0
     for before, move in pairwise(moves):
@@ -289,7 +290,7 @@ def works_in_bore(moves: Sequence[TipMove]) -> bool:
 def _enters_before_cutting(feeds: Sequence[TipMove], moves: Sequence[TipMove]) -> bool:
     """Return whether the contour is that of a bore, with radii that decrease from face to chuck.
 
-    This rule is used if the directions of the retracts do not show whether the tool works in a bore.
+    This rule applies if the retract directions do not show whether the tool works in a bore.
     """
     feeds_toward_chuck = [m for m in feeds if m.points[-1][0] < m.points[0][0] - _SQUARE]
     falls = sum(abs(m.points[-1][1]) - abs(m.points[0][1]) for m in feeds if m.points[-1][0] < -_SQUARE)
@@ -322,7 +323,10 @@ def _groover(kind: ToolKind, use: ToolUse, *, rear: bool) -> ToolShape:
 
 
 def _normalize_comment(comment: str) -> str:
-    """Return the comment in capitals, with each P between two digits replaced by a decimal point (3P5)."""
+    """Return the comment in capital letters, with a decimal point for each P between digits.
+
+    For example, 3P5 becomes 3.5.
+    """
     return _POINT_SIGN.sub(".", comment.upper())
 
 

@@ -57,7 +57,7 @@ check that is turned off become notes with the reason, and are counted (`silence
 
 
 def render_checks_page() -> str:
-    """Return the text of the page about the checks."""
+    """Return the Markdown text of the documentation page about the checks."""
     head = _HEAD.format(contents=make_table_of_contents([_PART, _PROGRAM]))
     return f"{head}\n## {_PART}\n\n{_rows(PART_CHECKS)}\n## {_PROGRAM}\n\n{_rows(PROGRAM_CHECKS)}"
 

@@ -61,7 +61,7 @@ def make_finished_part(steps: ProgramSteps, report_progress: ReportProgress) -> 
 
 
 def _find_block_before_opening(history: PartHistory) -> list[int]:
-    """Return a list with the number of the block before the collet opens for the last time.
+    """Return the number of the block before the last opening of the collet, as a list.
 
     The list is empty if the collet does not open.
     """

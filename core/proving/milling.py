@@ -28,7 +28,10 @@ _SLOPE_TOLERANCE_MM = 0.002  # mm of tolerance for a slope in a wider column
 
 
 class MillMove(NamedTuple):
-    """One elementary block of a live tool, with its axial or radial path (n, 3) for ``MilledPart``."""
+    """The move of a live tool in one elementary block.
+
+    ``path`` (n, 3) is its axial or radial path, as for ``MilledPart``.
+    """
 
     block_number: int
     line: int
@@ -62,9 +65,9 @@ def make_mill_move(block: Block, part_zero: MachineXZ, shape: ToolShape) -> Mill
 
 
 def trim_path_to_fractions(path: FloatArray, start_fraction: float, end_fraction: float) -> FloatArray:
-    """Return the section of a path between two fractions of the path, each from 0 to 1.
+    """Return the section of a path between two fractions, each from 0 to 1.
 
-    The fractions count the points of the path as equally spaced.
+    The points of the path are treated as equally spaced.
     """
     at = np.linspace(0.0, 1.0, len(path))
     shares = np.concatenate(
@@ -83,7 +86,7 @@ def calculate_point_height_mm(shape: ToolShape) -> float:
 class MillingState:
     """A turned part, together with the polar field from which live tools remove material.
 
-    Material that is turned off later is also removed from the field.
+    Material that is turned off afterward is also removed from the field.
     """
 
     def __init__(self, part: TurnedPart) -> None:
@@ -135,7 +138,10 @@ class MillingState:
         return part.mill_radial_path(move.path, radius, length, cone_height=point)
 
     def follows_face(self, move: MillMove, shape: ToolShape) -> bool:
-        """Return whether a live tool moves along a face without cutting, but would cut if .001 in deeper."""
+        """Return whether a live tool moves along a face without cutting it.
+
+        The result is True if the move cuts nothing, but would cut if it were .001 in deeper.
+        """
         self._update_field()
         part, (radius, length, point) = self._part, _mill_sizes(shape)
         if move.is_axial:
@@ -181,7 +187,7 @@ class MillingState:
 
 
 def _section_profiles(edges: FloatArray, low: FloatArray, high: FloatArray) -> PartedPiece:
-    """Return one half of a section as the profiles of a piece without volume."""
+    """Return one half of a section as the profiles of a piece, without its volume."""
     there = high > low
     outer = np.max(np.where(there, high, 0.0), axis=0)
     inner = np.min(np.where(there, low, np.inf), axis=0)
@@ -199,7 +205,7 @@ def _mill_sizes(shape: ToolShape) -> tuple[float, float, float]:
 
 
 def _iter_gaps(low: FloatArray, high: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Yield the ranges without material in sorted layers (layers, columns), from the axis outward."""
+    """Yield the r ranges without material between sorted layers (layers, columns), inside first."""
     there = high > low
     begins = np.where(there, low - _SLOPE_TOLERANCE_MM, np.inf)
     ends = np.maximum.accumulate(np.where(there, high + _SLOPE_TOLERANCE_MM, 0.0), axis=0)

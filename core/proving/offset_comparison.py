@@ -1,4 +1,4 @@
-"""Comparison of the part that results from other offsets: its features and findings.
+"""Comparison of a proved part with the part that results from other offsets.
 
 The tools are at the positions that the offsets of the proof specify. With other offsets, the axes move to
 other positions, so the part becomes larger, smaller, longer or shorter.
@@ -54,14 +54,17 @@ class PartFeature(NamedTuple):
     def calculate_distance_to(self, other: PartFeature) -> float:
         """Return the distance to another feature in mm.
 
-        A difference of radii counts like a difference of lengths.
+        Diameters are compared as radii, so that their difference counts the same as a difference in Z.
         """
         half = 0.5 if self.kind in {FeatureKind.DIAMETER, FeatureKind.BORE} else 1.0
         return abs(self.at - other.at) * half + math.dist(self.extent_mm, other.extent_mm)
 
 
 class Pair(NamedTuple):
-    """The same feature on both parts; a feature is None if the part has no similar feature."""
+    """A feature of this part with its counterpart on the other part.
+
+    One of the two is None if the feature exists on only one part.
+    """
 
     this_feature: PartFeature | None
     other_feature: PartFeature | None
@@ -98,9 +101,10 @@ def _of(profile: ProfilePoints, along: FeatureKind, across: FeatureKind) -> Iter
 
 
 def _sharp_end(profile: ProfilePoints, k: int) -> tuple[float, float]:
-    """Return the end of profile line ``k`` next to its longer neighbor, where it has no fillet.
+    """Return the end of profile line ``k`` that adjoins its longer neighbor, without a fillet.
 
-    The nose radius at the other end counts as part of the line if it is within the profile tolerance.
+    If the corner at the other end is rounded by the tool nose within the profile tolerance, it counts as
+    part of the line.
     """
     before = math.dist(profile[k - 1], profile[k]) if k else math.inf
     next_length = math.dist(profile[k + 1], profile[k + 2]) if k + 2 < len(profile) else math.inf

@@ -1,4 +1,4 @@
-"""Part at any block of a program, calculated with the help of stored copies.
+"""The part at any block of a program, calculated forward from stored copies.
 
 All results are independent arrays, because another thread may display them.
 """
@@ -59,7 +59,7 @@ class ProgramSteps:
 
 @dataclass(slots=True)
 class StepCollector:
-    """A collector of the blocks of one program pass, up to the block limit of the operator screen."""
+    """Collector of the blocks of one program pass, up to the maximum for the operator screen."""
 
     part_settings: PartSettings
     _parts: list[BlockGroup] = field(default_factory=list)
@@ -97,7 +97,7 @@ class StepCollector:
 
 
 class PartHistory:
-    """The part at any block of a program, calculated forward or, from stored copies, backward.
+    """The part at any block of a program, calculated from the last state or from a stored copy.
 
     Only one thread may use it at a time.
     """
@@ -134,8 +134,8 @@ class PartHistory:
     def at(self, block: int, fraction: float = 0.0, check_canceled: CheckCanceled | None = None) -> PartState:
         """Return the part after ``block`` blocks and the given fraction (0 to 1) of the next block.
 
-        ``check_canceled`` is called regularly during long work and may raise. The work done until then is
-        stored.
+        ``check_canceled`` is called regularly during long calculations, and may raise an exception to
+        cancel. The intermediate results are stored even then.
         """
         self._last = None
         done = int(np.searchsorted(self._numbers, block, side="right"))
@@ -147,7 +147,10 @@ class PartHistory:
     def make_simulation_at(
         self, block: int, tip: Point | None = None, check_canceled: CheckCanceled | None = None
     ) -> PartSimulation:
-        """Return a copy of the part before a block, or with the block executed up to ``tip`` (Z, r in mm)."""
+        """Return a copy of the simulation before a block, or with the block executed up to ``tip``.
+
+        ``tip`` contains Z and r in mm.
+        """
         share = 0.0
         step = self._step(block)
         if tip is not None and isinstance(step, TipMove):
@@ -202,16 +205,16 @@ class PartHistory:
         return int(self._numbers[-1]) if len(self._numbers) else 0
 
     def make_current_part(self) -> PartState:
-        """Return the part as far as the work in progress has calculated it."""
+        """Return the part in the state that the running calculation has reached."""
         done = self._done
         return self._instant(int(self._numbers[done - 1]) if done else 0, 0.0, None)
 
     def is_current_instant(self, instant: PartState) -> bool:
-        """Return whether ``instant`` was returned last, which means that the part has not changed since."""
+        """Return whether ``instant`` is the last returned state; the part has then not changed."""
         return instant is self._last
 
     def make_solid(self, instant: PartState) -> Solid | None:
-        """Return the solid of the last instant, or None without material.
+        """Return the solid of the last returned part state, or None without material.
 
         Only the calling thread may use the solid.
         """
@@ -223,7 +226,7 @@ class PartHistory:
         return make_turned_solid(*instant.x_plus_half)
 
     def make_scene_at(self, instant: PartState) -> PartScene:
-        """Return the objects around the part at an instant: the chuck or collet, and the tool."""
+        """Return the objects around a part state for the picture: the chuck or collet, and the tool."""
         tool = instant.tool
         if tool is None or not (tool.cutting_outlines or tool.body_outlines):
             return PartScene(self._chuck)
@@ -325,7 +328,7 @@ class PartHistory:
         return None
 
     def _c_angle(self, current_step: ProgramStep | None, fraction: float) -> float:
-        """Return the C angle of the block in progress, or of the last block that engaged C, in degrees."""
+        """Return the C angle in degrees in the current block, or after the last block that engaged C."""
         if isinstance(current_step, LiveToolStep):
             return _c_at(current_step, fraction)
         for step in reversed(self.steps[max(0, self._done - 200) : self._done]):
@@ -389,7 +392,7 @@ def find_polyline_fraction(points: Sequence[Point], position: Point) -> float:
 
 
 def _first_part(move: TipMove, fraction: float) -> TipMove:
-    """Return the first part of a move, up to ``fraction`` of its length."""
+    """Return the move shortened to the given fraction of its length."""
     left, points = fraction * move.length_mm, [move.points[0]]
     for a, b in pairwise(move.points):
         size = math.dist(a, b)

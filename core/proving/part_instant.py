@@ -1,6 +1,7 @@
-"""The part at one time in a program: section, tool and collisions, and copies to continue from.
+"""The state of a part at one time in a program, and copies from which a simulation can continue.
 
-All arrays are independent, so another thread may store them.
+The state contains the section, the tool and the collisions. All arrays are independent, so another thread
+may store them.
 """
 
 from __future__ import annotations
@@ -110,7 +111,7 @@ def find_material_hit(
     simulation: PartSimulation,
     previous_material: MaterialRadii | None,
 ) -> MaterialHit | None:
-    """Return the material that the last block hit, or None if no finding of the block reports a hit."""
+    """Return the material that the last block hit, or None if ``finding`` does not report a hit."""
     if not is_serious_finding(finding):
         return None
     if finding.check_name in _CLAMPING_CHECKS:

@@ -1,4 +1,4 @@
-"""The proof of the part: program blocks remove material from the stock, and faults are reported.
+"""The proof of the part, which simulates material removal from the stock and reports faults.
 
 All moves are collected first, because stock and tools that are not specified are derived from the moves.
 """
@@ -91,9 +91,9 @@ _WEAKER_CHECKS = {
 
 
 def _remove_weaker_findings(report: Iterable[Diagnostic], findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Return the diagnostics without warnings that an error about the part makes redundant.
+    """Return the diagnostics without the warnings that an error about the part makes redundant.
 
-    The error must be on the line of the warning or on a later line.
+    For each error, only the last such warning on its line or before its block is removed.
     """
     left = list(report)
     for error in findings:
@@ -117,7 +117,7 @@ def _not_made(moves: int) -> PartReport:
 
 
 class PartProof:
-    """The proof of the part from the blocks that are collected during a pass."""
+    """The proof of the part, calculated from the blocks that are collected during a pass."""
 
     def __init__(self, part_settings: PartSettings, parts: Iterable[BlockGroup] = ()) -> None:
         self._setting = part_settings

@@ -1,4 +1,4 @@
-"""Simulation of the part while a program makes it, and the list of data that the checks lacked."""
+"""Simulation of the part while a program machines it, and the data that are missing for checks."""
 
 from __future__ import annotations
 
@@ -280,9 +280,10 @@ class PartSimulation:
             self.findings.check_parted_piece(move, piece)
 
     def _detect_stationary_cut(self, move: TipMove, cutter: Cutter, part: TurnedPart) -> bool:
-        """Return whether a cut with a stopped spindle removes nothing, or follows such a cut.
+        """Return whether a move must not remove material because the spindle is stopped.
 
-        A spindle that never turns in the program is assumed to be switched manually.
+        A rapid after such a cut does not remove material either. A spindle that never turns in the program
+        is assumed to be switched manually. A cut by a tool that must rotate is reported.
         """
         is_after_cut, self._in_cut = self._in_cut, False
         shape = self._tools.find_tool_shape(self._tool)
@@ -302,10 +303,10 @@ class PartSimulation:
         return self._in_cut
 
     def _is_stationary(self, modal: ModalState, shape: ToolShape) -> bool:
-        """Return whether neither the tool nor the part rotates although the tool requires it.
+        """Return whether neither the tool nor the part rotates, although the tool requires it.
 
-        Other tools may be broaches. On a machine without a code for the live tool, the live tool is
-        switched manually.
+        Tools of other kinds may be broaches. On a machine without a code for the live tool, the operator
+        switches the live tool manually.
         """
         live = any(name.startswith(LIVE_TOOL_PREFIX) for name in modal.outputs)
         return shape.kind in _TURN and self._live_codes and not live and not modal.spindle

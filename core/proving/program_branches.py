@@ -48,9 +48,9 @@ class BranchFork(NamedTuple):
 
 @dataclass(slots=True, eq=False)
 class ProgramBranch:
-    """One path through the program; times are in seconds from its start.
+    """One path through the program; times are in seconds from the start of the program.
 
-    ``block_end_times`` contains the end times of the blocks after the first ``preceding_block_count``
+    ``block_end_times`` contains the end times of the blocks that follow the first ``preceding_block_count``
     blocks.
     """
 
@@ -218,7 +218,7 @@ class _BranchPass:
 
 
 def _add_choices(choices: Sequence[InputChoice], message: str) -> str:
-    """Return the message with a preceding condition that names the last two input states of its path."""
+    """Return the message preceded by a condition that names the last two input states of its path."""
     if len(choices) == 1:
         return Message("If {input}: {message}", input=choices[0].description, message=message)
     return Message(
@@ -257,7 +257,7 @@ class BranchProof:
     # Called by the interpreter:
 
     def is_state_known(self, branch: BranchingPass) -> bool:
-        """Return whether an earlier path has reached this state."""
+        """Return whether an earlier path has already reached the state of ``branch``."""
         key = branch.state_key
         found = self._known.get(key)
         if found is not None and found[0] is not self._current.branch:
@@ -268,7 +268,7 @@ class BranchProof:
         return False
 
     def record_branch(self, branch: BranchingPass, statement: Statement, is_call_made: bool) -> None:
-        """Store a copy of the pass for the other state of the input at a conditional call."""
+        """Store a copy of the pass at a conditional call, for the other state of the input."""
         on = is_call_made == (statement.flow_code == "M95" or statement.get_value("C") == 1)
         self._covered.add((statement.line, on))
         if branch.is_stopped:

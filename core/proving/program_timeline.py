@@ -108,7 +108,7 @@ class MotionSpan(NamedTuple):
     def blocks(self) -> list[Block]:
         """Return the blocks that end in the span.
 
-        Blocks of series are created on each access.
+        The blocks of a move series are created again on each access.
         """
         return list(chain.from_iterable(self.block_groups))
 
@@ -176,10 +176,10 @@ _IDEAL_ACCELERATION = 1e12  # mm/s²; the ramps of an ideal machine are shorter 
 
 
 class RestState(NamedTuple):
-    """The state at rest between two blocks.
+    """The machine state at rest between two blocks.
 
-    It contains the time, the spindle, whether the spindle must still reach its speed, and the detector of
-    the ends of path sections.
+    It contains the time, the spindle forecast, whether the spindle must still reach its speed, and the
+    detector of the ends of path sections.
     """
 
     time_s: float
@@ -293,7 +293,8 @@ class Timeline:
     def _plan_section(self, each: Block | StraightMoveSeries) -> Iterator[PlannedChunk]:
         """Yield the motion of the path section that starts with ``each``.
 
-        The sections that a cycle creates from one line are planned together, from the second section on.
+        If a cycle creates several sections from one line, those from the second section on are planned
+        together.
         """
         line = each.line if isinstance(each, Block) else 0
         if not self._plans and isinstance(each, Block) and line == self._cycle_line:
@@ -314,7 +315,7 @@ class Timeline:
     def _plan_cycle(self, first: Block) -> None:
         """Plan the complete path sections that start with ``first`` and come from its line.
 
-        Dwells may separate them, such as the dwells of a drilling cycle that pecks.
+        Dwells between these sections are permitted, such as the dwells of a peck drilling cycle.
         """
         ends, sections = copy(self._ends), [[first]]
         for each in self._read_blocks_ahead(first.line):
@@ -329,7 +330,7 @@ class Timeline:
             self._plans.extend(zip(map(len, sections), plans, strict=True))
 
     def _read_blocks_ahead(self, line: int) -> Iterator[Block]:
-        """Yield the next moves and dwells that come from the line, without removing them from the items."""
+        """Yield the next moves and dwells of the program line ``line``, without consuming them."""
         for at in range(_MAX_BLOCKS_AHEAD):
             if at == len(self._read_items):
                 item = next(self._source, None)

@@ -218,8 +218,8 @@ class ProgramTools:
     def find_feeds_without_cut(self, stock: Stock | None) -> Iterator[tuple[int, int, str]]:
         """Yield the line, block number and message for each tool or feed that cuts nothing.
 
-        These are tools that make no feed. If ``stock`` is None, they also include
-        ``longest_feed_from_chuck`` and the first feed of each live tool.
+        The results include each cutting tool that makes only rapids. If ``stock`` is None, they also
+        include ``longest_feed_from_chuck`` and the first feed of each live tool.
         """
         cutting = [use for n, use in self.tool_uses.items() if self.find_tool_shape(n) is not None]
         for use in cutting:
@@ -261,9 +261,9 @@ class ProgramTools:
 
     @property
     def longest_feed_from_chuck(self) -> TipMove | None:
-        """Return the longest feed away from the chuck, if all feeds in total lead away from it.
+        """Return the longest feed away from the chuck, if the feeds together lead away from the chuck.
 
-        The result is None otherwise, and if part zero is at the chuck.
+        The result is None if they do not, or if part zero is at the chuck.
         """
         feeds = [
             m
@@ -308,11 +308,11 @@ def assume_stock(
     max_drill_diameter: float,
     live_steps: Sequence[LiveToolStep] = (),
 ) -> Stock | None:
-    """Return a bar for the moves of outside tools, or a tube if boring tools start without a drill.
+    """Return a bar for the moves of outside tools, or a tube if boring starts without a drilled hole.
 
     ``bar_stop_z`` is the Z in mm of the bar stop; None means Z0. ``max_drill_diameter`` is the diameter of
-    the largest drill, or 0. Returns None if no move cuts beyond the face, or if part zero is not at the
-    face.
+    the largest drill, or 0 without a drill. Returns None if no move cuts past the face, or if part zero is
+    not at the face.
     """
     cuts = [move for move in (*outside, *bore) if not move.is_fast]
     if bar_stop_z is None and has_zero_at_chuck(cuts):
@@ -341,9 +341,9 @@ def has_zero_at_chuck(cuts: Sequence[TipMove]) -> bool:
 
 
 def _find_face_z(moves: Sequence[TipMove]) -> float:
-    """Return the Z of the face of the stock.
+    """Return the Z of the face of the stock, or 0 if the face is not cut.
 
-    It is slightly in front of the first face cut and clear of rapids, or 0 without a face cut.
+    The assumed face is slightly in front of the first face cut, and clear of rapids.
     """
     faced = [m.points[-1][0] for m in moves if _cuts_face(m)]
     if not faced:
@@ -356,7 +356,7 @@ def _find_face_z(moves: Sequence[TipMove]) -> float:
 def _cuts_face(move: TipMove) -> bool:
     """Return whether a move goes from outside to the axis near Z0, as a face cut does.
 
-    The move may also be a rapid, because a G00 may have remained active by mistake.
+    The move may also be a rapid, in case G00 was left active by mistake.
     """
     (z0, r0), (z1, r1) = move.points[0], move.points[-1]
     across = abs(z1 - z0) <= _SAME and abs(r1) < _CENTRE < abs(r0) - _CENTRE
@@ -386,7 +386,7 @@ def _bar_radius(outside: Sequence[TipMove], bore: Sequence[TipMove], front: floa
 
 
 def _is_turning_move(move: TipMove, front: float) -> bool:
-    """Return whether a move goes along Z in the part.
+    """Return whether a move goes along Z inside the part.
 
     A move that ends in front of the face is a retract.
     """
@@ -442,6 +442,6 @@ def _bar_radius_for_move(move: TipMove) -> float:
 
 
 def _bore_radius(bore: Iterable[TipMove], front: float) -> float:
-    """Return slightly less than the smallest radius that is cut in the bore, or 0."""
+    """Return a radius slightly less than the smallest radius cut in the bore, or 0 without a cut."""
     cuts = [m for m in bore if not m.is_fast and min(z for z, _ in m.points) < front - _SAME]
     return max(min((max(abs(r) for _, r in m.points) for m in cuts), default=0.0) - _EXTRA_RADIUS_MM, 0.0)

@@ -44,7 +44,7 @@ _ROUNDING = 1e-9
 
 
 class RangeTracker:
-    """The range of the values that were added; (0, 0) without values."""
+    """Tracker of the smallest and largest of the added values; the range is (0, 0) without values."""
 
     def __init__(self) -> None:
         self.minimum, self.maximum = math.inf, -math.inf
@@ -125,7 +125,7 @@ class ProgramTotals:
         self._add_spindle_speeds(table[5, ~(turned | locked)])
 
     def _add_series(self, parts: Sequence[StraightMoveSeries]) -> None:
-        """Add series that are all rapids or all feeds.
+        """Add move series that are either all rapids or all feeds.
 
         Values that are equal in all moves are not expanded into a table.
         """
@@ -266,7 +266,7 @@ class ProofPass:
             self._evaluate_pending()
 
     def _evaluate_pending(self) -> None:
-        """Evaluate the collected blocks together, which is faster for short motions."""
+        """Evaluate all collected blocks at once, which is faster when motions are short."""
         parts, self._unseen, self._waiting = self._unseen, [], 0
         self._tally.add_blocks(parts)
         for part in parts:
@@ -373,9 +373,9 @@ class ProofPass:
 
 
 def _weaken_to_warning(finding: Diagnostic) -> Diagnostic:
-    """Return the finding as a warning if it is an error that depends on an assumed position.
+    """Return the finding, as a warning if it is an error that depends on an assumed position.
 
-    The hint states the assumption and that nothing after this point is proved.
+    The hint states the assumption, and that nothing after this point is proved.
     """
     if not finding.assumptions or finding.severity is not Severity.ERROR:
         return finding

@@ -72,7 +72,7 @@ class MillResults:
 class BranchSummary:
     """The paths through a program that result from its inputs and from block delete on and off.
 
-    ``cycle_time_range`` is the least and the greatest cycle time of the paths in seconds.
+    ``cycle_time_range`` is the shortest and the longest cycle time of the paths in seconds.
     ``unproved_count`` is the number of paths that were not proved.
     """
 

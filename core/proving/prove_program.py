@@ -1,7 +1,7 @@
-"""Proof of a program, with block delete both on and off.
+"""Proof of a program for both positions of the block delete switch.
 
-Cycle Start uses the current position of the switch. A fault that occurs only in the other position is a
-warning, because the program is proved again when the switch position changes.
+Cycle Start uses the current position. A fault that occurs only in the other position is a warning, because
+the program is proved again when the switch position changes.
 """
 
 from __future__ import annotations
@@ -42,7 +42,10 @@ def uses_block_delete(source: ProgramSource) -> bool:
 def add_block_delete_warnings(
     report: ProofReport, other_report: ProofReport, *, is_delete_on: bool
 ) -> ProofReport:
-    """Return the report with warnings for faults that occur only in the other position of block delete."""
+    """Return the report with a warning for each fault that occurs only in ``other_report``.
+
+    ``other_report`` is the report for the other position of block delete.
+    """
     known = {(found.line, found.code, found.severity) for found in report.diagnostics}
     switch = "on" if is_delete_on else "off"
     found = [
@@ -84,9 +87,10 @@ def prove(
     its parsed form.
 
     The values apply to the inputs and the block delete of ``setup``. Other inputs and the other position of
-    block delete are also proved; their faults are in the diagnostics of the report. If ``is_ideal`` is True,
-    times depend only on feeds and speed limits, without accelerations and waits. ``on_span`` receives each
-    span of the timeline, so that a caller that draws the program needs no second pass.
+    block delete are also proved; their faults are in the diagnostics of the report. If ``is_ideal`` is
+    True, times depend only on feeds and speed limits, without accelerations and waits. ``on_span`` receives
+    each span of the timeline, so that a caller that draws the path does not need to interpret the program
+    again.
     """
     reading = program if isinstance(program, SharedProgram) else SharedProgram(program, strict=setup.strict)
     report = _prove_branches(reading, setup, machine, report_progress, on_span, ideal=is_ideal)

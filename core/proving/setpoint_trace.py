@@ -17,11 +17,11 @@ REST_BATCH_ROWS = 10_000  # rows yielded together while the machine rests
 
 
 class SetpointRows(NamedTuple):
-    """k rows of setpoints.
+    """Table of k rows of setpoints.
 
-    ``times_s`` (k,) are in seconds. ``positions`` (k, axes) are machine positions in the machine's order,
-    in mm (X of a lathe as a radius) or degrees. ``spindle_angles_deg`` is the continuous spindle angle in
-    degrees from the start, and ``line_numbers`` are the source lines.
+    ``times_s`` (k,) are in seconds. ``positions`` (k, axes) are machine positions in the machine's axis
+    order, in mm (X of a lathe as a radius) or degrees. ``spindle_angles_deg`` is the continuous spindle
+    angle in degrees from the start, and ``line_numbers`` are the source lines.
     """
 
     times_s: FloatArray
@@ -102,8 +102,8 @@ class _SpanSampler:
     def _speeds(self, t: FloatArray, machine_x: FloatArray, by_radius: Mapping[int, Block]) -> FloatArray:
         """Return the signed spindle speeds in rpm at the times of the rows.
 
-        ``by_radius`` contains the blocks with constant surface speed. The timeline's own spindle forecast
-        is not changed, because its waits must not depend on the sampling.
+        ``by_radius`` contains the blocks with constant surface speed, by row. The spindle forecast of the
+        timeline is not changed, because the waits of the timeline must not depend on the sampling.
         """
         speeds = self._spindle.calculate_speeds_at(t)
         for row, block in by_radius.items():

@@ -1,4 +1,4 @@
-"""Forecast of spindle ramps, collet times, and the time to start and end a motion."""
+"""Forecast of spindle ramps and collet times, and of the times to start and end a motion."""
 
 from __future__ import annotations
 
@@ -136,9 +136,9 @@ class SpindleForecast:
         return self._since + over / self._model.deceleration_rpm_s if over > 0.0 else 0.0
 
     def calculate_at_speed_time_s(self) -> float:
-        """Return the time in seconds at which the spindle counts as at speed.
+        """Return the time in seconds from which the spindle is treated as at speed.
 
-        The spindle has then been within the at-speed band long enough.
+        At this time, the spindle has been within the at-speed band long enough.
         """
         rpm, t = self._from, self._since
         band = self._model.at_speed_tolerance * abs(self._to)

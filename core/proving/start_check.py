@@ -50,11 +50,12 @@ class CollisionBody(Enum):
 
 @dataclass(frozen=True, slots=True)
 class StartState:
-    """The machine at a start: the axis positions (machine mm, X as a radius, then Z) and the active tool.
+    """The machine state at a start, with the axis positions and the active tool.
 
-    ``interrupted_block`` is the number of the interrupted elementary block with its machine X and Z, or
-    None. ``starts_at_first_line`` means that the program starts at its first line, so that it only
-    positions the axes before its first known position.
+    ``axis_positions`` are in machine mm: X as a radius, then Z. ``interrupted_block`` is the number of the
+    interrupted elementary block with its machine X and Z, or None if no block was interrupted.
+    ``starts_at_first_line`` means that the program starts at its first line. Its moves before the first
+    known position then only position the axes.
     """
 
     axis_positions: tuple[float, ...]
@@ -235,9 +236,9 @@ class StartCheck:
         return None
 
     def _find_bore_hit(self, metal: TurnedPart, start_state: StartState) -> tuple[int, float, bool] | None:
-        """Return the hit of a tool that stopped in a bore, or None if no material is outside its tip.
+        """Return the hit of a tool that is inside a bore, or None if no material is outside its tip.
 
-        Although the first move may remain in the bore, later moves would move this tool through the wall.
+        Even if the first move stays in the bore, a later move would take the tool through the wall.
         """
         zero = self._part_zero_for_tool(start_state.active_tool_number)
         if zero is None:

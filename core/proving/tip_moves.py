@@ -28,9 +28,9 @@ _TURNED = frozenset({BlockKind.RAPID, BlockKind.FEED, BlockKind.ARC, BlockKind.T
 class TipMove(NamedTuple):
     """The move of one elementary block, with its points as Z and r in mm from part zero.
 
-    ``speed_mm_s`` is the speed along the path in mm/s. ``is_fast`` is True for a rapid, or for a feed per
-    minute of the same speed. ``feed_per_rev_mm`` is the feed per revolution in mm, or 0 for a feed per
-    minute. ``part_zero`` is the machine X and Z at which the tip is at part zero.
+    ``speed_mm_s`` is the speed along the path in mm/s. ``is_fast`` is True for a rapid, and for a feed per
+    minute that is as fast as a rapid. ``feed_per_rev_mm`` is the feed per revolution in mm, or 0 for a feed
+    per minute. ``part_zero`` is the machine X and Z at which the tip is at part zero.
     """
 
     n: int
@@ -76,7 +76,7 @@ motion.
 
 
 class StepConverter:
-    """A converter of program blocks to simulation steps, called in program order.
+    """Converter of program blocks to simulation steps; pass the blocks in program order.
 
     A G92 before the first move of a tool specifies the position of part zero. A later G92 shifts the part,
     like G10.
@@ -175,7 +175,7 @@ def make_live_tool_move(step: LiveToolStep) -> TipMove:
 def is_rigid_tap(block: Block) -> bool:
     """Return whether the block is a rigid tap.
 
-    In a rigid tap, the engaged spindle turns in proportion to a move along Z at the centerline.
+    In a rigid tap, the C axis turns the spindle in proportion to a move along Z at the centerline.
     """
     turned = block.kind is BlockKind.FEED and block.c != block.c0 and block.z != block.z0
     return turned and block.modal.c_locked and block.x == block.x0 and abs(block.x) < _ON_AXIS

@@ -1,4 +1,4 @@
-"""A scope record: samples of a period of time, derived quantities and errors.
+"""A scope record: samples of a period of time, derived quantities, and errors of record files.
 
 Channels have descriptive names, such as ``X demand``, ``X actual``, ``X following error`` (mm, or degrees
 for rotary axes), ``spindle command``, ``spindle speed`` (rpm) and ``feed override``.
@@ -90,7 +90,7 @@ class ScopeRecord:
     - ``start_time_utc_s`` is the time of the first sample in seconds since 1970.
     - ``sampling_rate_hz`` is the driver's sampling rate in samples per second.
 
-    Channels of the control, such as the feed override, have their value at the last tick in each sample.
+    A sample of a control channel, such as the feed override, has the value at the last tick of the control.
     """
 
     channels: tuple[Channel, ...]
@@ -117,7 +117,7 @@ class ScopeRecord:
 
 
 def _is_unicode(text: str) -> bool:
-    """Return whether a string can be displayed and exported.
+    """Return whether a string is valid Unicode, so that it can be displayed and exported.
 
     JSON can contain unpaired surrogates, which cannot be exported.
     """
@@ -178,7 +178,7 @@ def make_damage_error(path: Path, error: Exception) -> RecordError:
 
 
 def why(path: Path, error: OSError) -> RecordError:
-    """Return a RecordError that explains an OSError with the file ``path``."""
+    """Return a RecordError with the cause of an OSError of the file ``path``."""
     if isinstance(error, TooLargeError):
         return RecordError(
             Message(
@@ -235,7 +235,7 @@ def calculate_acceleration(
 def calculate_speed_ripple(times: FloatArray, speed: FloatArray, span_s: float = RIPPLE_SPAN_S) -> FloatArray:
     """Return the speed ripple: the speed minus its mean over ``span_s`` seconds.
 
-    If a whole number of ripple waves fits into the span, the mean contains no ripple. The values of the
+    If the span contains a whole number of ripple periods, the mean contains no ripple. The values in the
     first and the last half span are NaN.
     """
     k = _half(times, span_s)

@@ -74,7 +74,7 @@ def _packed(record: ScopeRecord, channel: Channel) -> np.ndarray[tuple[int, ...]
 
 
 def open_record(path: Path) -> ScopeRecord:
-    """Return the record in a record file, or the last minutes in a ring file.
+    """Return the record in a record file, or all samples in a ring file.
 
     Raises RecordError if the file cannot be read or is damaged.
     """
@@ -133,7 +133,7 @@ def _read(path: Path, data: io.BytesIO) -> ScopeRecord:
 
 
 def _check_size(data: io.BytesIO) -> None:
-    """Check, before an archive is unpacked, that it is not far larger than any record.
+    """Check that an archive is not far larger than any record, before it is unpacked.
 
     Raises InconsistentRecordError if the archive is too large.
     """

@@ -39,11 +39,11 @@ SAMPLE_CHANNELS = ("spindle speed", "spindle turns", "spindle load", "queue")
 
 @dataclass(frozen=True, slots=True)
 class RingLayout:
-    """The layout of a ring: the machine's channels, the sampling rate and the duration.
+    """The layout of a scope ring buffer: the machine's channels, the sampling rate and the duration.
 
     ``is_rotary_by_axis`` maps each axis letter to whether the axis is rotary. ``clock_zero_utc_s`` is the
-    time of the clock's zero, in seconds since 1970. ``state_names`` are the texts of the values of the
-    channel ``state``. ``duration_s`` is in seconds.
+    time at which the monotonic clock was 0, in seconds since 1970. ``state_names`` are the texts of the
+    values of the channel ``state``. ``duration_s`` is in seconds.
     """
 
     is_rotary_by_axis: Mapping[str, bool]
@@ -62,9 +62,9 @@ class RingLayout:
 
     @property
     def sample_width(self) -> int:
-        """Return the number of values in a driver's sample.
+        """Return the number of values in a driver sample.
 
-        The values are the time, the demand, actual and load of all axes, and SAMPLE_CHANNELS.
+        The values are the time, the demand, actual position and load of each axis, and SAMPLE_CHANNELS.
         """
         return 1 + 3 * len(self.is_rotary_by_axis) + len(SAMPLE_CHANNELS)
 
@@ -102,7 +102,7 @@ def _words(names: Collection[str]) -> int:
 
 
 def pack_bits(names: tuple[str, ...], active_names: Collection[str]) -> list[float]:
-    """Return logic channels as bits, 48 in each value.
+    """Return the states of logic channels as bits, 48 in each value.
 
     ``active_names`` contains the names of the channels that are on.
     """
@@ -152,9 +152,9 @@ class RowBuffer:
         self._counts[1] = count
 
     def append_rows(self, rows: FloatArray) -> list[tuple[int, FloatArray]]:
-        """Append rows, and return the changed slots with their contents.
+        """Append rows, and return the changed rows of the buffer with their indices.
 
-        The caller must write these slots to the file.
+        The caller must write these rows to the ring file.
         """
         rows = rows[-self.capacity :]
         first, end = self.completed_row_count, self.completed_row_count + len(rows)
@@ -217,9 +217,9 @@ def calculate_buffer_size(capacity: int, width: int) -> int:
 
 
 def select_valid_rows(rows: FloatArray, first_number: int) -> FloatArray:
-    """Return the valid rows without their numbers.
+    """Return the valid rows without their row numbers.
 
-    Valid rows are numbered from ``first_number`` on and have ascending times.
+    Valid rows are numbered consecutively from ``first_number`` and have ascending times.
     """
     if not len(rows):
         return rows[:, :-1]
@@ -234,7 +234,7 @@ def select_valid_rows(rows: FloatArray, first_number: int) -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class ScopeRing:
-    """The samples and ticks of the last minutes.
+    """The driver samples and control ticks of the last minutes.
 
     Any thread may call ``get_record_since`` and ``get_record_between``.
     """

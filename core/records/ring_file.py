@@ -124,9 +124,9 @@ def _lock(file: int, path: Path) -> None:
 
 
 def _allocate(file: int, size: int) -> None:
-    """Allocate the full size of the file now.
+    """Allocate the full size of the file in advance.
 
-    A disk that becomes full later then does not end the record.
+    Recording can then continue even if the disk becomes full later.
     """
     if hasattr(os, "posix_fallocate"):
         os.posix_fallocate(file, 0, size)
@@ -182,7 +182,7 @@ def _free(path: Path) -> bool:
 
 
 def is_ring_file(path: Path) -> bool:
-    """Return whether a file begins like a ring file.
+    """Return whether a file starts with the signature of a ring file.
 
     The result is False if the file cannot be read.
     """

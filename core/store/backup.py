@@ -52,8 +52,8 @@ def find_store_problems(path: Path) -> tuple[str, ...]:
     """Return the problems that are found in the store file ``path``, without writing to the file.
 
     The check includes database pages, references between tables, program texts and row checksums. Raises
-    StoreError if the file cannot be opened, is not a TurnDesk store or has a newer version, or if its log
-    has lost changes.
+    StoreError if the file cannot be opened, is not a TurnDesk store or has a newer version. Also raises
+    StoreError if changes in its write-ahead log are lost.
     """
     return _looked_through(path, _found)
 
@@ -206,7 +206,7 @@ def _is_same_file(one: Path, other: Path) -> bool:
 
 
 def _remove_log(path: Path) -> None:
-    """Remove the log of the old store, which SQLite would otherwise apply to the restored store."""
+    """Remove the write-ahead log of the old store, so that SQLite does not apply it to the new store."""
     for leftover in get_log_and_index_paths(path):
         try:
             leftover.unlink(missing_ok=True)
@@ -222,7 +222,10 @@ def _is_there(target: Path) -> bool:
 
 
 def _save_old_store(path: Path) -> Path:
-    """Copy the store that is about to be replaced, intact or damaged, with its log if one exists."""
+    """Copy the store that will be replaced, even if it is damaged, and return the path of the copy.
+
+    If the store has a write-ahead log, the log is copied too.
+    """
     _empty_log(path)
     stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%fZ")
     kept = path.with_name(f"{path.stem}-replaced-{stamp}.db")

@@ -49,9 +49,9 @@ _OTHERS = {
 def repair_damaged_rows(connection: sqlite3.Connection) -> tuple[str, ...]:
     """Repair damaged rows, and return one message for each of them.
 
-    A row is restored if its last history entry matches the saved checksum. It is also restored if this
-    entry equals the row, so that only the checksum is damaged. Damaged rows without a history whose values
-    can restart from zero are discarded.
+    A row is restored from its last history entry if this entry matches the saved checksum. If the entry
+    equals the row, only the checksum is damaged, and it is corrected. A damaged row without a history is
+    discarded if its values can restart from zero.
     """
     messages: list[str] = []
     connection.execute("DELETE FROM row_sums WHERE typeof(key) = 'blob'")  # no table has a key of this type
@@ -146,8 +146,8 @@ def find_damaged_rows(
 ) -> tuple[str, ...]:
     """Return a message for each row that does not match its checksum.
 
-    Such a row is treated as if it had never been set. ``tables`` and ``settings`` limit the check to these
-    tables and to these keys of the table of settings.
+    Such a row is treated as if it had never been set. ``tables`` are the tables to check. ``settings`` are
+    the setting keys to check if ``tables`` does not include the settings table.
     """
     looked = [table for table in KEY_COLUMNS if table in tables or (table == "settings" and settings)]
     return tuple(

@@ -58,7 +58,7 @@ def load_migrations() -> tuple[str, ...]:
 
 
 def check_store_header(path: Path) -> None:
-    """Raise StoreError if the file ``path`` does not begin like a TurnDesk store.
+    """Raise StoreError if the file ``path`` does not start with the header of a TurnDesk store.
 
     The function reads 100 bytes and does not open the database. It skips a store that this process has open
     for writing: when a process closes any handle of the file, it releases all locks that SQLite holds on
@@ -296,8 +296,8 @@ class StoreConnections:
 def open_store_read_only(folder: Path) -> StoreConnections:
     """Open the store read-only, or an empty store in memory if the file does not exist.
 
-    Raises StoreError if the file is damaged or has another version. Also raises StoreError if the log has
-    lost changes, because the store would be read in its state before these changes.
+    Raises StoreError if the file is damaged or has another version. Also raises StoreError if changes in
+    the write-ahead log are lost, because the store would be read in its state before these changes.
     """
     path = folder / STORE_FILE_NAME
     if not has_store(folder):

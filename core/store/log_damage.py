@@ -37,7 +37,7 @@ Pair = tuple[int, int]
 
 
 class _LogFrame(NamedTuple):
-    """An entry (frame) of the write-ahead log, with the data from which its checksum is calculated.
+    """An entry (frame) of the write-ahead log, with the data for its checksum.
 
     ``is_commit`` is True for the last entry of a change.
     """
@@ -122,7 +122,7 @@ def _is_torn(frames: list[_LogFrame], previous_sums: Pair, salts: tuple[int, ...
 
 
 def _is_one_word(checksum_differences: Pair, size: int) -> bool:
-    """Return whether a single damaged word of an entry or of its checksum explains the checksum error."""
+    """Return whether one damaged word of an entry or its checksum explains the checksum error."""
     if 0 in checksum_differences:
         return True
     effects = [(1, 1), (0, 1)]  # effects of the two words of the last pair on both checksums
@@ -177,7 +177,7 @@ def check_log_is_readable(path: Path, reader: sqlite3.Connection) -> None:
 
 
 def save_damaged_log(path: Path) -> tuple[str, ...]:
-    """Save a copy of a log that has lost changes before the log is overwritten.
+    """Save a copy of a log whose latest changes are lost, before the log is overwritten.
 
     The result is a message that reports the lost changes, or () if the log is intact. Raises StoreError if
     the log cannot be examined or emptied, or if the copy cannot be saved.

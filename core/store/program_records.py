@@ -32,9 +32,9 @@ RECORD_KEY_PREFIX = "sha256:"  # no file name contains a colon
 
 
 def check_program_name(name: str) -> None:
-    """Raise StoreError if the name contains a character that a file name cannot contain, or is too long.
+    """Raise StoreError if a program name has invalid characters for a file name, or is too long.
 
-    A name that is new must also fulfill ``check_new_program_name``.
+    For a new name, also call ``check_new_program_name``.
     """
     if name.strip() != name or name in {"", ".", ".."} or not name.isprintable():
         raise _make_invalid_name_error(name)
@@ -163,7 +163,7 @@ def find_damaged_versions(connection: sqlite3.Connection) -> tuple[str, ...]:
 
 
 def _flatten_number(number: object) -> str:
-    """Return a version number as a single line of text, even if it is damaged and may be any text."""
+    """Return a version number as one line of text, because a damaged number can be any text."""
     return " ".join(str(number).split())
 
 
@@ -355,7 +355,7 @@ def _loaded(value: object) -> str:
 
 
 def assign_rows_to_text(connection: sqlite3.Connection, program: str) -> None:
-    """Assign rows that an older version stored by name to the text proved at that time, if known."""
+    """Assign rows that an older version stored by name to the text that was proved then, if known."""
     row = connection.execute(
         "SELECT sha256 FROM program_versions JOIN programs ON program = programs.id"
         " WHERE name = ?1 AND saved <= coalesce((SELECT proved FROM runs WHERE program = ?1), '')"

@@ -81,7 +81,7 @@ class TextBytes(bytes):
 def calculate_checksum(table: str, values: RowValues) -> str:
     """Return the SHA-256 of a row over all its columns in order.
 
-    Text values are included as bytes, and floats with every bit.
+    Text values are included as bytes. Floats are included with full precision.
     """
     if table not in _WITH_BLOBS:  # a blob in another table is a text whose type is damaged
         shown = [("blob", value) if type(value) is bytes else value for value in values]
@@ -218,9 +218,9 @@ def decode_values(values: Iterable[ColumnValue]) -> list[int | float | str | Non
 
 
 def is_schema_intact(connection: sqlite3.Connection) -> bool:
-    """Return whether tables and indexes are unchanged since their creation.
+    """Return whether the definitions of tables and indexes are unchanged since their creation.
 
-    Column limits and defaults are included.
+    The definitions include column constraints and defaults.
     """
     return read_saved_checksum(connection, *_SCHEMA) == calculate_schema_checksum(connection)
 

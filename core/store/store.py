@@ -38,7 +38,7 @@ P = ParamSpec("P")
 
 
 class Store:
-    """An open store with its repositories, one for each subject.
+    """An open store with its repositories, such as the settings and the event log.
 
     Use ``open`` to get a store. Methods can be called from any thread. ``repair_messages`` contains a
     message for each damaged row that was restored when the store was opened.
@@ -66,11 +66,13 @@ class Store:
         """Open the store in ``folder``, and create it if it does not exist.
 
         A read-only store can be opened while another process writes to it. It is empty if the file does not
-        exist. Raises StoreError if the file is damaged, from another program or of a newer version; such a
-        file is not changed. Also raises StoreError if the folder or the file cannot be accessed. For
-        writing, raises StoreError if another process has the store open for writing, or if the file is
-        missing although its log exists. For reading only, raises StoreError if the file is of an older
-        version or its log has lost changes.
+        exist. Raises StoreError in these cases:
+
+        - The file is damaged, from another program or of a newer version. Such a file is not changed.
+        - The folder or the file cannot be accessed.
+        - For writing: another process has the store open for writing, or the file is missing although its
+          write-ahead log exists.
+        - For reading only: the file is of an older version, or changes in its write-ahead log are lost.
         """
         return cls(open_store_read_only(folder) if read_only else open_store_for_writing(folder))
 
@@ -135,8 +137,8 @@ class Store:
     ) -> tuple[str, ...]:
         """Return a message for each row that does not match its checksum.
 
-        ``tables`` are the tables to check. ``settings`` are the keys to check if ``tables`` does not include
-        the table of settings.
+        ``tables`` are the tables to check. ``settings`` are the setting keys to check if ``tables`` does
+        not include the settings table.
         """
         return self.run_query(damaged_rows.find_damaged_rows, tables, settings)
 

@@ -21,7 +21,10 @@ Operation = Callable[[sqlite3.Connection], T]
 
 @dataclass(frozen=True, slots=True)
 class PendingEntries:
-    """The numbers of entries that have not been written to disk yet, and the reason for the delay."""
+    """The numbers of entries that have not been written to disk yet, and the reason for the delay.
+
+    The numbers of parts, events and other entries are separate.
+    """
 
     reason: str
     event_count: int = 0

@@ -105,11 +105,11 @@ def get_log_and_index_paths(path: Path) -> tuple[Path, Path]:
 
 
 class WriterLock:
-    """The advisory lock file of the store, locked from construction until ``close``.
+    """The lock file of the store, locked from construction until ``close``.
 
-    Another process may briefly hold the lock while it reads which process has the store open. Locking is
-    therefore retried for 0.1 s. ``pause`` waits between two attempts, for a time in seconds. Raises
-    StoreError if the store is already locked or the lock file cannot be opened.
+    Another process may briefly hold the lock while it checks which process has the store open. Locking is
+    therefore retried for 0.1 s. ``pause`` is the function that waits a number of seconds between two
+    attempts. Raises StoreError if the store is already locked or the lock file cannot be opened.
     """
 
     def __init__(self, folder: Path, pause: Callable[[float], object] = time.sleep) -> None:
@@ -169,7 +169,7 @@ class WriterLock:
 
 
 def is_open_for_writing(folder: Path) -> bool:
-    """Return, without locking the store of this folder, whether a process has it open for writing."""
+    """Return, without locking, whether a process has the store of this folder open for writing."""
     try:
         file = os.open(folder / _LOCK, os.O_RDONLY)
     except OSError:

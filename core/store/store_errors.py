@@ -85,9 +85,10 @@ _DAMAGED_WORDS = ("Could not decode to UTF-8", "unsupported file format")
 
 
 def find_store_error_cause(path: Path, error: sqlite3.Error | OSError) -> StoreErrorCause:
-    """Return the cause of an error that SQLite or the system reported.
+    """Return the cause of an error that SQLite or the operating system reported.
 
-    If SQLite's code is ambiguous, a trial file is written to the folder to find the system's error.
+    If the SQLite error code is ambiguous, the function writes a test file to the folder to find the error
+    of the operating system.
     """
     if isinstance(error, OSError):
         return _of_system(error)
@@ -116,9 +117,9 @@ def get_system_error_text(error: Exception) -> str:
 
 
 def _trial(folder: Path) -> OSError | None:
-    """Write a trial file to ``folder`` and return the system's error, or None if writing succeeds.
+    """Write a test file to ``folder`` and return the system's error, or None if writing succeeds.
 
-    The trial is necessary because SQLite does not report the system's error.
+    The test is necessary because SQLite does not report the error of the operating system.
     """
     from tempfile import TemporaryFile  # noqa: PLC0415  rarely wanted, and slow to load
 

@@ -222,7 +222,10 @@ def _numbered(
 
 
 def _get_complete_cells(row: Mapping[str, str | None]) -> dict[str, str]:
-    """Return the cells of a row by column. Raises ValueError if a row has too few or too many cells."""
+    """Return the cells of a CSV row by column.
+
+    Raises ValueError if the row has too few or too many cells.
+    """
     cells = {column: text for column, text in row.items() if column is not None and text is not None}
     if len(cells) < len(row):
         raise ValueError(Message("the row does not have one cell for each column"))
@@ -263,8 +266,8 @@ def import_programs_and_offsets(
 ) -> None:
     """Save programs by name and offset rows by number, within the caller's transaction.
 
-    Raises StoreError if a name is invalid, if a number or value is out of range, and in the other cases
-    that ``change_row`` lists.
+    Raises StoreError if a program name is invalid, if a number or value is out of range, or for another
+    reason listed in ``change_row``.
     """
     for name, text in programs.items():
         program_records.save_program_version(connection, name, text, reason.text)

@@ -11,8 +11,9 @@ STORE_FILE_NAME = "turndesk.db"
 def has_store(folder: Path) -> bool:
     """Return whether a file with the name of the store exists, even if it cannot be read.
 
-    The result is also True for a pipe, for a link to a disk that is not mounted, and if the folder is such
-    a link or this user has no permission for it. The error is reported when the store is read.
+    The result is also True for a pipe, or a link to a disk that is not mounted. It is True as well if the
+    folder is such a link, or if this user has no permission for the folder. The error is reported when the
+    store is read.
     """
     try:
         os.lstat(folder / STORE_FILE_NAME)

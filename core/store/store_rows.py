@@ -46,7 +46,7 @@ FieldValue = float | int | str | bool
 
 
 class FieldType(StrEnum):
-    """The type and the unit of a field's value."""
+    """The type of a field's value, with its unit."""
 
     LENGTH = "length"  # stored in mm, entered and shown in inches
     METRIC_LENGTH = "millimetres"
@@ -64,8 +64,8 @@ _UNITS = {FieldType.METRIC_LENGTH: "mm", FieldType.ANGLE: "degrees", FieldType.M
 class RowField:
     """The name, the limits and the type of one field of a row.
 
-    ``minimum`` and ``maximum`` are in mm for a length, and numbers of characters for a string. A field is
-    declared as the annotation of an attribute of the row. Commands and files use the name of this
+    ``minimum`` and ``maximum`` are in mm for a length, and numbers of characters for a string. Each field
+    is declared in the annotation of an attribute of the row class. Commands and files use the name of this
     attribute.
     """
 
@@ -222,7 +222,7 @@ class ToolShapeRow(NamedTuple):
 class MillToolRow(NamedTuple):
     """A tool of a mill: length L, radius R and corner radius R2 with their oversizes, in mm.
 
-    ``life`` is the tool life in minutes. ``stops`` prevents the start of another part when the tool life is
+    ``life`` is the tool life in minutes. If ``stops`` is True, no further part starts when the tool life is
     used up.
     """
 

@@ -103,7 +103,10 @@ class UnwrittenEntries:
         return PendingEntries(reason, len(self._events), parts, others, self._dropped, counts)
 
     def write_all(self, connection: sqlite3.Connection) -> None:
-        """Write all entries inside the caller's transaction. Entries that the store rejects are logged."""
+        """Write all entries inside the caller's transaction.
+
+        Entries that the store rejects are recorded in the event log.
+        """
         refused = [why for why in (_done(each, connection) for each in self._operations()) if why]
         if self._dropped:
             refused.append(
@@ -132,7 +135,7 @@ class UnwrittenEntries:
 
 
 def _done(operation: Operation[object], connection: sqlite3.Connection) -> str:
-    """Run an operation, and return why the store can never accept it, or an empty string on success.
+    """Run an operation; return why the store rejects it permanently, or an empty string.
 
     Only StoreError and a violated constraint are permanent. Any other SQLite error, such as that of a full
     disk, is raised, so that all entries are tried again later.
@@ -169,12 +172,12 @@ RETRY_INTERVAL_S = 2.0  # s until a failed write is tried again
 
 
 class StoreWriter:
-    """A thread that runs operations one after the other, each in its own transaction.
+    """Thread that runs store operations one after the other, each in its own transaction.
 
     The future of ``queue_operation`` is done when its transaction is on disk. The future raises StoreError
-    if the operation fails; the store is then unchanged. If the disk does not accept an entry of
-    ``queue_entry``, the entry remains in memory and is written later. A disk that hangs reports no error,
-    so the age of the oldest unfinished change is checked. ``clock`` returns a time in seconds.
+    if the operation fails; the store is then unchanged. If an entry of ``queue_entry`` cannot be written,
+    it remains in memory and is written later. A disk that hangs reports no error, so the age of the oldest
+    unfinished change is checked. ``clock`` returns a time in seconds.
     """
 
     def __init__(
@@ -210,7 +213,7 @@ class StoreWriter:
 
     @property
     def _hanging(self) -> str:
-        """Return the message that the disk does not respond, or an empty string if it responds.
+        """Return the error text if the disk does not respond, or an empty string otherwise.
 
         The disk is assumed to respond while the oldest change is younger than ``SLOW_WRITE_S``.
         """

@@ -49,9 +49,9 @@ class UserList(NamedTuple):
 
     @property
     def is_access_restricted(self) -> bool:
-        """Return whether access levels are in force.
+        """Return whether the access levels apply.
 
-        They are in force if the list has a user or a damaged row.
+        They apply if the list contains a user or a damaged row.
         """
         return bool(self.rows) or self.has_damaged_row
 
@@ -99,7 +99,8 @@ def save_user(connection: sqlite3.Connection, row: UserRow) -> None:
 def remove_user(connection: sqlite3.Connection, name: str) -> None:
     """Remove a user.
 
-    Raises StoreError if the name is unknown, or if users would remain but none of them with SERVICE level.
+    The last user in the list may be removed. Raises StoreError if the name is unknown, or if other users
+    remain and none of them has SERVICE level.
     """
     if not connection.execute("DELETE FROM people WHERE name = ?", (name,)).rowcount:
         raise StoreError(Message("{name} is not in the list of users", name=name), "unknown-person")
@@ -167,8 +168,8 @@ class UserRecords:
     def remove_user(self, name: str) -> Future[None]:
         """Remove a user.
 
-        The future raises StoreError for an unknown name, and if users would remain but none of them with
-        SERVICE level.
+        The last user in the list may be removed. The future raises StoreError if the name is unknown, or if
+        other users remain and none of them has SERVICE level.
         """
         return self._store.write(lambda c: remove_user(c, name))
 

@@ -141,7 +141,7 @@ class CanopenAxes:
         self.queue.splice_segments(segments, self.now())
 
     def sample(self) -> AxisSample:
-        """Return the state of the axes from the last replies, with the time of the SYNC before them."""
+        """Return the state of the axes from the last replies, with the time of their SYNC."""
         actual, powered, seen = self._actual_positions(), self._powered(), self.drives.last_reply_s
         demand, velocity = self.queue.get_commanded_state(self.follower.get_path_time(seen))
         busy = self.active_homing is not None or self._given_up is not None
@@ -166,8 +166,8 @@ class CanopenAxes:
         """Switch the power of the drives on or off, and wait until all drives have switched.
 
         Switching off waits at most 0.3 s and reports no error if a drive still has power then. When
-        switching on, raises DriverError if a fault is active, if a drive rejects a request, or, with the
-        names of the drives, if drives do not switch on.
+        switching on, raises DriverError if a fault is active, if a drive rejects a request or if drives do
+        not switch on. The error names these drives.
         """
         if not is_on:
             self._off(DriveState.SWITCH_ON_DISABLED)
@@ -182,7 +182,7 @@ class CanopenAxes:
         self._on = True
 
     def stop(self, mode: StopMode) -> None:
-        """Stop all axes along the programmed path (RAMP_HOLD), or by a stop command at one SYNC."""
+        """Stop all axes: brake along the path for RAMP_HOLD, or else send a stop command at one SYNC."""
         if mode is StopMode.RAMP_HOLD and self._powered():
             self._brake_on_path()
             return
@@ -264,7 +264,7 @@ class CanopenAxes:
     def _check_braking_time(self, now: float) -> None:
         """Switch the drives off if a quick stop takes too long.
 
-        Otherwise a drive with a failed encoder, or with a runaway axis, would continue to apply force.
+        Otherwise a drive with a failed encoder or a runaway axis could continue to move the axis.
         """
         if self._braking and now > self._powerless_at:
             self._braking = False

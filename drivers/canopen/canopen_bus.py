@@ -1,4 +1,4 @@
-"""CAN bus with one socket, which the loop that owns the bus reads without a separate thread."""
+"""CAN bus with one socket, read by the driver loop that owns the bus, without a separate thread."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Configuration of the devices on the CAN bus, which the application reads from the machine file."""
+"""Configuration of the devices on the CAN bus, as read from the machine file."""
 
 from __future__ import annotations
 
@@ -103,9 +103,10 @@ class OutputConfig:
 
 @dataclass(frozen=True, slots=True)
 class PotConfig:
-    """Pot at an analog input: ``low_value`` applies at zero and ``high_value`` at full scale.
+    """Potentiometer at an analog input.
 
-    ``switch_input`` is the name of the input that enables the pot.
+    ``low_value`` is its value at zero, and ``high_value`` is its value at full scale. ``switch_input`` is
+    the name of the input that enables it.
     """
 
     terminal: CanTerminal

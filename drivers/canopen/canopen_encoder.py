@@ -93,7 +93,7 @@ class CanEncoder:
     def clear_fault(self) -> None:
         """Configure the encoder again after a fault.
 
-        If this fails, the encoder sets a fault that affects only the spindle, not the axes.
+        If this fails, the encoder sets a fault again. The fault affects only the spindle, not the axes.
         """
         if not self.failure:
             return

@@ -73,7 +73,7 @@ class CanopenSamples:
 
 
 class CanopenMachine:
-    """Machine on the CAN bus, which the constructor connects.
+    """Complete machine on the CAN bus; the constructor connects all nodes.
 
     The constructor raises DriverError with the name of the first node that does not match the machine file.
     """
@@ -191,7 +191,7 @@ class CanopenMachine:
             self._cycle()
 
     def get_next_cycle_time(self) -> float | None:
-        """Return the time of the next cycle, or None if a cycle must run every 5 ms.
+        """Return the time of the next cycle, or None if cycles run every 5 ms in this motion mode.
 
         If replies must be read first, the time is shortly before the next SYNC, otherwise at that SYNC.
         """
@@ -248,7 +248,7 @@ class CanopenMachine:
             self.bus.mark_failed(str(error))
 
     def _wait_callback(self) -> float:
-        """Send SYNC and setpoints when they are due, while the caller waits for a node.
+        """Send SYNC and setpoints when they are due, while the caller waits for a node to reply.
 
         Returns the time until the next SYNC in seconds.
         """

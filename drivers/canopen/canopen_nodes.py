@@ -100,7 +100,7 @@ class CanTerminal:
 
 
 def get_slow_reply_divisor(sync_period_s: float) -> int:
-    """Return how many SYNCs occur per reply with slow values, so that replies are about 10 ms apart."""
+    """Return the number of SYNCs per reply with slow values, for replies about 10 ms apart."""
     return max(1, round(_SLOW_VALUE_PERIOD_S / sync_period_s))
 
 

@@ -167,10 +167,10 @@ def _check_families(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _check_cyclic_load(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield findings about cyclic setpoints.
+    """Yield findings about the settings for cyclic setpoints.
 
-    The rules concern the SYNC period, which must be a whole number of milliseconds, the bus load and the
-    commit time.
+    The SYNC period must be a whole number of milliseconds. The bus load and the commit time are also
+    checked.
     """
     values = file.file_values
     if read_key_text(file, "canopen.mode") not in CYCLIC_MODES or not values.has_values(
@@ -312,7 +312,7 @@ def _is_c_on_spindle(file: MachineFileReading) -> bool:
 def _check_travel(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield findings about axes whose travel is too long for their drives.
 
-    The travel must not exceed the counting range or the software limits of the drive.
+    The travel must not exceed the range of the drive's counter or the software limits of the drive.
     """
     values = file.file_values
     for axis in file.axes:

@@ -56,7 +56,7 @@ class NodeSetup:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Return one sentence that lists all objects that the node lacks.
+        """Return one sentence that lists all missing objects of the node, in a tuple.
 
         Return an empty tuple if the node has all objects.
         """
@@ -119,12 +119,12 @@ class NodeSetup:
         file_objects: ObjectValues = (),
         required_objects: Iterable[int] = (),
     ) -> None:
-        """Write TurnDesk's values and then those of the machine file to the objects that the node has.
+        """Write TurnDesk's values and then the machine file's values to the objects that exist.
 
-        ``missing_objects`` collects the objects that the node lacks. Raises DriverError with the names of
-        all missing objects that are in ``required_objects``, or otherwise of those that are in the machine
-        file and not optional. Also raises DriverError if the node does not respond, rejects a value or
-        stores a different value.
+        ``missing_objects`` collects the objects that the node lacks. Raises DriverError if the node lacks
+        an object in ``required_objects``, or a mandatory object of the machine file. The error names all
+        such objects. Also raises DriverError if the node does not respond, rejects a value or stores a
+        different value.
         """
         self.missing_objects = {}
         named = {(index, sub) for index, sub, _ in file_objects}

@@ -1,7 +1,7 @@
 """Spindle drive on the CAN bus, in profile velocity mode; it may also serve as the C axis.
 
 The drive changes between spindle mode and C axis mode at standstill. In spindle mode, it generates its own
-ramps. In C axis mode, it is powered, supplied with setpoints and stopped together with the other axes. The
+ramps. In C axis mode, it is powered, receives setpoints and is stopped together with the other axes. Its
 first C position is the last position that the control counted. If orientation is configured, the spindle
 first turns to that position relative to the index.
 """
@@ -95,7 +95,7 @@ class CanopenSpindle:
     def _check_drive(self, is_power_lost: bool) -> None:
         """Switch the drive off after a loss of power, or set a fault if the drive does not switch on.
 
-        The method must not wait for the power to return, because the spindle would then start unexpectedly.
+        If the drive waited for the power to return, the spindle would then start unexpectedly.
         """
         drive, now = self.drive, self._bus.clock.now()
         if is_power_lost:

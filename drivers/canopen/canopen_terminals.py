@@ -303,7 +303,10 @@ class CanopenIO:
                 module.send_outputs(self._bus.clock.now())
 
     def read_state(self) -> StationState:
-        """Return the state of the operator station, whose age is that of the oldest module reply."""
+        """Return the state of the operator station.
+
+        The age of the state is the age of the oldest module reply.
+        """
         now = self._bus.clock.now()
         age = max((now - module.last_reply_s for module in self.modules.values()), default=0.0)
         return build_station_state(

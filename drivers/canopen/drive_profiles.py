@@ -1,7 +1,7 @@
 """Drive families and the properties that their EDS files do not contain.
 
 Objects and data types are from the EDS files and manuals of the vendors: maxon for EPOS2 and EPOS4, Copley
-for Accelnet and Xenus. All other drives, such as those of Schunk and Pilz, are treated as plain CiA 402
+for Accelnet and Xenus. All other drives, such as those of Schunk and Pilz, are treated as standard CiA 402
 drives.
 """
 

@@ -259,7 +259,7 @@ class DriveSet:
         self._bus.send_sync()
 
     def poll_axes(self) -> list[DrivenAxis]:
-        """Process received frames and return the axes; a caller that waits for the drives repeats this.
+        """Process received frames and return the axes; call this repeatedly to wait for the drives.
 
         The next commands and a SYNC are sent if all drives have replied to the last SYNC, or if a reply is
         overdue. In cyclic modes, the SYNC is sent independently of this method.
@@ -347,7 +347,7 @@ class DriveSet:
     def update_moving_axes(self, now: float) -> None:
         """Determine which axes are moving by comparing their positions in two consecutive replies.
 
-        A silent drive is treated as stopped once its own stop reaction must have ended.
+        A silent drive is treated as stopped after the time in which it must have stopped on its own.
         """
         speaking = [axis for axis in self.axes if not axis.drive.is_silent]
         for axis in self.axes:

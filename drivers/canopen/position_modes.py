@@ -4,8 +4,8 @@ Mode IP uses object 60C1h for the setpoints.
 
 With one setpoint per SYNC, a drive moves linearly from setpoint to setpoint in the time of object 60C2h and
 stops at the last setpoint. After a late SYNC, the path continues without a jump and then runs 2 % faster
-until the delay is recovered. A delay of more than 10 ms is a fault, because the drives have stopped within
-a cut.
+until the delay is recovered. A delay of more than 10 ms is a fault, because the drives have then stopped
+during a cut.
 """
 
 from __future__ import annotations
@@ -255,7 +255,7 @@ class CyclicSetpointFollower(SetpointFollower):
             axis.drive.mode_bits &= ~NEW
 
     def delay_path(self, waited_s: float) -> None:
-        """Delay the path by the seconds that the drives have waited at a setpoint.
+        """Delay the path by ``waited_s`` seconds, for which the drives waited at a setpoint.
 
         If the total delay is too long, a fault is set.
         """

@@ -1,4 +1,7 @@
-"""Interpolated position mode with PVT records; the record queue of each drive ends at rest."""
+"""Interpolated position mode with PVT (position, velocity, time) records.
+
+The record queue of each drive always ends at rest.
+"""
 
 from __future__ import annotations
 
@@ -31,9 +34,9 @@ _CHECK_FRACTIONS = (0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875)
 
 
 class PathPiece(NamedTuple):
-    """Piece of the path that is sent as one record.
+    """Piece of the path that is sent as one PVT record.
 
-    ``max_deviation_counts`` is the deviation of the drive's cubic curve from the path in counts.
+    ``max_deviation_counts`` is the largest deviation of the drive's cubic curve from the path in counts.
     """
 
     duration_ms: int
@@ -61,8 +64,7 @@ def find_max_deviation(
 ) -> float:
     """Return the largest deviation of a PVT record's cubic curve from the path, in counts.
 
-    The deviation is that of the axis that deviates most. The curve starts at time ``start_time_s`` and
-    takes ``duration_s`` seconds.
+    The curve starts at time ``start_time_s`` and takes ``duration_s`` seconds.
     """
     p0, v0 = motion_at(start_time_s)
     p1, v1 = motion_at(start_time_s + duration_s)
@@ -111,7 +113,7 @@ class _Phase(Enum):
 
 
 class PvtFollower(SetpointFollower):
-    """Follower that sends PVT records to the drives' queues and fills them for a fixed time ahead.
+    """Follower that sends PVT records to the drives' queues for a fixed time in advance.
 
     All axes have records with the same times. The duration of each record is a whole number of
     milliseconds.

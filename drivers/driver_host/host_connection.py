@@ -78,8 +78,8 @@ def clear_drive_faults(link: HostLink) -> HostLink:
 class HostConnection:
     """A connection that sends requests to the driver host and caches the last polled state.
 
-    ``restart_host`` starts a new driver host to replace a lost one. The driver host rings ``wakeup_bell``
-    while the control sleeps.
+    ``restart_host`` starts a new driver host to replace a lost one. The driver host writes to
+    ``wakeup_bell`` to wake the control while it sleeps.
     """
 
     def __init__(
@@ -138,9 +138,9 @@ class HostConnection:
             self.wakeup_bell.send_wakeup()
 
     def enter_sleep(self) -> None:
-        """Let the driver host send a wake-up for each change, until the control sends another request.
+        """Let the driver host send a wake-up for each change, until the control sends a request.
 
-        Raises DriverError if the request fails.
+        Raises DriverError if this request fails.
         """
         if not self._asleep:
             self.send_request(Message({"do": "rest"}, NO_NUMBERS))
@@ -274,7 +274,7 @@ class InProcessLink:
         return answer
 
     def disconnect(self) -> None:
-        """Mark the driver host as orphaned, which means that the control has ended."""
+        """Mark the driver host as orphaned, as if the control had ended."""
         self._host.is_orphaned = True
 
     def close(self) -> None:

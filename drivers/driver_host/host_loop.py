@@ -27,7 +27,7 @@ _STOP_TIME_LIMIT_S = (
 
 
 def request_real_time_scheduling(priority: int = REAL_TIME_PRIORITY) -> list[str]:
-    """Request SCHED_FIFO, and return a message for the operator if the request is refused."""
+    """Request SCHED_FIFO, and return a list with a message if the request is refused."""
     cause = request_scheduling_policy("SCHED_FIFO", priority)
     words = "the driver host runs without real-time priority ({cause}); see docs/integrator/computer.md"
     return [Message(words, cause=cause)] if cause else []
@@ -48,7 +48,7 @@ def measure_wakeup_delay(period_s: float) -> float:
 
 
 def lock_host_memory() -> list[str]:
-    """Lock the memory of this process, and return warnings if it is not or only partly locked.
+    """Lock the memory of this process, and return warnings unless it is locked completely.
 
     Call this function after the drivers have been created.
     """
@@ -114,7 +114,7 @@ _MAX_UNREAD_S = 0.005  # Seconds after which messages are read even if the drive
 
 
 class MessageListener:
-    """A listener for messages of the control between two cycles."""
+    """Listener that handles messages from the control between two cycles."""
 
     def __init__(self, sock: socket.socket, host: DriverHost, clock: Clock) -> None:
         self._socket, self._host, self._clock = MessageSocket(sock), host, clock

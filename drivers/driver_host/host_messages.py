@@ -127,7 +127,10 @@ def parse_list(value: object) -> list[object]:
 
 
 def read_fault(head: Mapping[str, object], key: str, default_code: FaultCode) -> Fault:
-    """Return the fault in a message header with its code; its text is empty if there is no fault."""
+    """Return the fault in a message header with its code.
+
+    The fault's text is empty if there is no fault.
+    """
     code = next((each for each in get_args(FaultCode) if each == head.get(f"{key}_code")), default_code)
     return Fault(text(head, key), code)
 

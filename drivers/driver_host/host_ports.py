@@ -95,7 +95,7 @@ class HostAxes(_HostPort):
         self._line.send_command("enable", on=is_on)
 
     def stop(self, mode: StopMode) -> None:
-        """Stop the axes in the given stop mode, by means of the drives."""
+        """Stop the axes in the given stop mode; the drives perform the stop."""
         self._line.send_command("stop", how=mode.value)
 
     def home(self, axis: str) -> None:
@@ -295,10 +295,7 @@ class HostTripMonitor(_HostPort):
     """Port that reads and acknowledges trips of the driver host (``core.faults.TrippingDriverHost``)."""
 
     def get_active_trip(self) -> DriverHostTrip | None:
-        """Return the trip that has not been acknowledged, with the functions that were switched off.
-
-        The result is None without a trip.
-        """
+        """Return the unacknowledged trip with the functions that it switched off, or None."""
         shown = self._line.poll_state().get("trip")
         if shown is None:
             return None

@@ -150,13 +150,14 @@ class DriverBundle:
 
 
 class DriverHost:
-    """The driver host, which handles messages and runs the drivers in one thread.
+    """Driver host, which handles messages and runs the drivers in one thread.
 
-    If the control is silent, its queue is executed to the end, where the axes are at rest. Then the spindle
-    stops and the outputs change to their safe states. This is a trip: no axis or spindle moves and no
-    output switches on until the control has acknowledged the trip. ``is_orphaned`` means that the control
-    has ended. The drives are then also switched off at rest, and the driver host ends when the spindle is
-    at standstill.
+    If the control is silent, the driver host executes the setpoint queue to the end, where the axes are at
+    rest. It then stops the spindle and sets the outputs to their safe states. This is a trip: no axis or
+    spindle moves and no output switches on until the control has acknowledged the trip.
+
+    ``is_orphaned`` means that the control has ended. The drives are then also switched off when the axes
+    are at rest, and the driver host ends when the spindle is at standstill.
     """
 
     def __init__(
@@ -168,8 +169,9 @@ class DriverHost:
     ) -> None:
         """Create the driver host.
 
-        ``refresh_periods`` contains, for some outputs, the time in seconds without a message after which
-        the output is switched off. ``ring_bell`` wakes a control that sleeps.
+        ``refresh_periods`` contains the refresh period in seconds of some outputs. An output is switched
+        off if no message arrives for longer than its period. ``ring_bell`` is the function that wakes a
+        sleeping control.
         """
         self._ring = ring_bell
         self.is_asleep = False  # The control has reported that it sleeps.
@@ -268,8 +270,8 @@ class DriverHost:
     def get_next_cycle_time(self, last_cycle_time: float) -> float:
         """Return the due time of the next cycle.
 
-        The next cycle is later if the control sleeps and the drivers are idle. ``last_cycle_time`` is the
-        due time of the last cycle.
+        If the control sleeps and the drivers are idle, the next cycle is delayed. ``last_cycle_time`` is
+        the due time of the last cycle.
         """
         set_by_drivers = self._driven.get_next_tick_time()
         if set_by_drivers is not None:
@@ -303,18 +305,18 @@ class DriverHost:
         return not axes.sample().moving and is_queue_finished(axes.horizon(), axes.now())
 
     def _brake_waiting_cam(self) -> None:
-        """Brake axes that follow a spindle that is stopped, because their queue never ends."""
+        """Brake axes that follow a stopped spindle, because their queue would otherwise never end."""
         ports = self._ports
         follows = ports.gear is not None and ports.gear.geared() is not None
         if follows and not ports.axes.sample().moving and abs(ports.spindle.speed()) < _STANDSTILL_RPM:
             self._carefully(lambda: ports.axes.stop(StopMode.RAMP_HOLD))
 
     def _trip(self, silence_s: float, *, spindle: bool = True) -> None:
-        """Set the outputs to their safe states, stop the spindle, and record the functions that were on.
+        """Set the outputs to their safe states, stop the spindle, and record what was on.
 
         The spindle is not stopped while a tool is in the cut or while the spindle is oriented. A spindle
-        drive that is being engaged as C is released, because it may turn; an engaged C remains engaged.
-        Modules that missed the heartbeat have already changed their outputs.
+        drive that is being engaged as the C axis is released, because it may turn. A C axis that is already
+        engaged remains engaged. I/O modules that missed the heartbeat have already changed their outputs.
         """
         orientation, lock = self._ports.orientation, self._ports.lock
         spindle = spindle and not (orientation is not None and orientation.is_oriented())

@@ -25,9 +25,10 @@ class TripGuard:
     def require_request_allowed(self, message: Message) -> None:
         """Raise TrippedError if a trip is not acknowledged and the message requests an action.
 
-        Such actions are a motion, a start of the spindle, engaging C, and switching on an output. Engaging C
-        counts because the spindle may search its index and turn to its position. Stopping, releasing and
-        switching off are always allowed, and so is the power of the drives, which moves nothing.
+        Such actions are a motion, a start of the spindle, engaging the C axis, and switching on an output.
+        Engaging the C axis is included because the spindle may search its index and turn to its position.
+        Stopping, releasing and switching off are always allowed. Switching on the power of the drives is
+        also allowed, because it causes no motion.
         """
         what, is_on = text(message.header, "what"), message.header.get("on") is True
         turns = what == "orient" or (what == "run" and number(message.header, "rpm") != 0.0)
@@ -47,12 +48,12 @@ class TripGuard:
             self._turns = turns
 
     def record_accepted_command(self, message: Message) -> None:
-        """Record whether C is requested, after the drivers have accepted the command."""
+        """Record whether the C axis is requested, after the drivers have accepted a command."""
         if text(message.header, "what") == "hold":
             self.is_c_requested = message.header.get("on") is True
 
     def record_c_state(self, *, is_enabled: bool, fault: str) -> None:
-        """Record the end of C if the drives have no power or C has a fault; the drivers then end C."""
+        """Record that C-axis mode has ended if the drives have no power or the C axis has a fault."""
         if not is_enabled or get_fault_code(fault, "axis") == "c-coupling":
             self.is_c_requested = False
 
@@ -66,8 +67,8 @@ class TripGuard:
     ) -> None:
         """Record that outputs and the spindle were switched off.
 
-        ``is_c_canceled`` means that the spindle drive was being engaged as C, which counts as a spindle that
-        turns. No trip is recorded if nothing was on.
+        ``is_c_canceled`` means that the spindle drive was being engaged as the C axis, which is treated as
+        a turning spindle. No trip is recorded if nothing was on.
         """
         turned = (self._turns and is_spindle_stopped) or is_c_canceled
         self._turns = self._turns and not is_spindle_stopped

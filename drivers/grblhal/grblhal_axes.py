@@ -1,4 +1,4 @@
-"""Axes of a grblHAL controller; they accept no setpoints, because it plans its own motion."""
+"""Axes of a grblHAL controller, which plans its own motion and therefore accepts no setpoints."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class GrblAxes:
     def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:  # noqa: ARG002  at rest only
         """Return the current positions and zero velocities.
 
-        If the exact end of the last block is known, the positions are those of this end.
+        If the exact end of the last block is known, the returned positions are the end of that block.
         """
         return self._places(), (0.0,) * len(self.axes)
 

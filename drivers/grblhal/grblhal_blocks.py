@@ -63,10 +63,10 @@ class GrblBlocks:
     def capabilities(self) -> frozenset[str]:
         """Return the names of the ``machine_requirements`` that the controller meets.
 
-        Threading needs an encoder at the controller; its speed is the third speed in the reports. Constant
-        surface speed needs a spindle with variable speed, or a spindle that the controller does not drive.
-        During a threading pass, the spindle override is fixed at 100 %, so a spindle that the controller
-        drives cannot follow the radius.
+        Threading needs an encoder at the controller, whose speed is the third speed in the reports.
+        Constant surface speed needs a spindle with variable speed, or a spindle that the controller does
+        not drive. Constant surface speed during threading needs a spindle that the controller does not
+        drive, because the controller fixes its spindle override at 100 % during a threading pass.
         """
         report, own = self._c.report, self._c.config.has_own_spindle
         able = {"arc"} if report is None or report.measured is None else {"arc", "thread"}
@@ -104,11 +104,11 @@ class GrblBlocks:
         return self._settled and not self._c.is_script_running
 
     def submit_block(self, block: BlockOperation) -> int | None:
-        """Send one block and return its ticket, or None while the buffer of the controller is full.
+        """Send one block and return its ticket number, or None if the block cannot be sent yet.
 
-        A threading block is sent only after the reported overrides are 100 %, because a feed override would
-        change the lead. Until then, None is returned as well. Raises DriverError if the controller is not
-        ready or motion is not permitted.
+        The block must wait while the buffer of the controller is full. A threading block must also wait
+        until the reported overrides are 100 %, because a feed override would change the lead. Raises
+        DriverError if the controller is not ready or motion is not permitted.
         """
         c = self._c
         self._demand_ready()
@@ -134,9 +134,9 @@ class GrblBlocks:
         return ticket
 
     def state(self) -> BlockState:
-        """Return the state of the blocks.
+        """Return the execution state of the blocks.
 
-        The state results from the last report and the lines that were sent after that report.
+        It is derived from the last report and from the lines that were sent after that report.
         """
         c = self._c
         resting = self.is_at_standstill or c.is_lost or (c.fault != "" and self._is_motion_ended())
@@ -233,7 +233,7 @@ class GrblBlocks:
     # --- inside -------------------------------------------------------------------------------------------
 
     def _rapid_rate(self, op: BlockOperation) -> float:
-        """Return the speed of G0 to the end of a block in mm/s.
+        """Return the speed in mm/s at which G0 would move to the end of a block.
 
         The axis limits of the controller determine this speed, as in ``planner.c`` of grblHAL.
         """

@@ -145,7 +145,7 @@ _EQUAL_RAPID_RATIO = 1.01  # Rapids that differ by less than this ratio are equa
 def number(value: float) -> str:
     """Return a number as text with up to five decimals and without trailing zeros.
 
-    In mm, the fifth decimal is a tenth of the finest step.
+    In mm, the last decimal is a tenth of the finest motor step.
     """
     text = f"{value:.5f}".rstrip("0").rstrip(".")
     return "0" if text in {"-0", ""} else text

@@ -1,4 +1,4 @@
-"""Configuration of the grblHAL driver, which the application reads from the machine file."""
+"""Configuration of the grblHAL driver, as read from the machine file."""
 
 from __future__ import annotations
 

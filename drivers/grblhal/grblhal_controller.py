@@ -108,7 +108,7 @@ class GrblController(ReportedState):
         return self.script_runner.purpose
 
     def expect_driver_reset(self) -> None:
-        """Treat the controller's next startup message as the result of the driver's own reset."""
+        """Expect a reset by the driver, so that the next startup message is not treated as a restart."""
         self.is_reset_expected = True
 
     def set_override_reports_enabled(self, enabled: bool) -> None:
@@ -272,7 +272,7 @@ class GrblController(ReportedState):
     def handle_invalid_line(self, line: str) -> None:
         """Handle an invalid line, which may be a damaged reply.
 
-        The driver never guesses which line the controller acknowledged. If a reply may be missing, it sets
+        The driver does not guess to which line a damaged reply belongs. If a reply may be missing, it sets
         a fault.
         """
         now = self.clock.now()
@@ -350,7 +350,7 @@ class GrblController(ReportedState):
         self.on_status_report(report)
 
     def _check_report(self, report: StatusReport) -> None:
-        """Handle events that the state in a report shows, even if their messages were missed."""
+        """Handle changes of state that a report shows, in case the corresponding messages were missed."""
         if report.state != "Alarm":
             self.alarm_number = 0
         if self.is_script_running:

@@ -71,7 +71,7 @@ def convert_override_to_percent(fraction: float) -> int:
 
 
 class GrblOverrides:
-    """Commanded overrides, which the driver compares with the reported overrides.
+    """Commanded overrides of the controller, compared with the overrides in its reports.
 
     If they differ, the driver sends override steps.
     """
@@ -223,8 +223,8 @@ _MIN_RENEWAL_S = 0.02  # Seconds; a shorter renewal is not sent.
 class GrblJogSender:
     """Sender of jog lines (``$J``), which waits for the acknowledgment of each line.
 
-    The lease is the time for which a jog may continue without renewal. At any time, the target is the
-    position that an axis at full speed since the start of the jog would reach one lease later. The
+    The lease is the time for which a jog may continue without renewal. The target is always the position
+    that the axis would reach one lease later if it had moved at full speed since the start of the jog. The
     remaining travel is therefore at most lease · velocity plus the braking distance.
     """
 
@@ -261,7 +261,7 @@ class GrblJogSender:
         self.send_remaining_travel()
 
     def send_remaining_travel(self) -> None:
-        """Send the travel that is still due, if the last line has been acknowledged."""
+        """Send the jog travel that was not sent yet, if the last line has been acknowledged."""
         if not self.is_active or (self._ask is not None and not self._ask.is_acknowledged):
             return
         added = abs(self._wanted - self._sent)

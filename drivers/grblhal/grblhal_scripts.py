@@ -85,7 +85,7 @@ def query_line(
 
 
 def send_required_modes(controller: GrblController) -> Script:
-    """Send the required modes, end other modes that another host has left active, and verify the result."""
+    """Send the required modes, cancel modes that another host has left active, and verify the result."""
     yield from query_line(controller, "".join(grblhal_codes.REQUIRED_MODES))
     modes = yield from _read_modes(controller)
     cures = dict.fromkeys(
@@ -352,10 +352,10 @@ def _past(c: GrblController, t: float) -> Callable[[], bool]:
 
 
 def verify_modes(controller: GrblController) -> Script:
-    """Send and verify the modes, clear active offsets, and check that X is a radius and no offset remains.
+    """Send and verify the required modes, and clear active offsets.
 
-    Raises ScriptError if a check fails, or if the controller rejects a line or is in another state than
-    Idle or Jog.
+    Raises ScriptError if X is not a radius or an offset remains. Also raises ScriptError if the controller
+    rejects a line, or is in a state other than Idle or Jog.
     """
     yield from synchronize_controller(controller)
     yield from send_required_modes(controller)

@@ -61,7 +61,7 @@ class GrblEncoder:
 
 
 class _SpeedSign:
-    """Sign for a speed that is measured without direction.
+    """Sign for a measured speed whose direction is not measured.
 
     The sign changes only at standstill, or when the speed rises again after it has fallen.
     """
@@ -183,9 +183,9 @@ class GrblSpindle:
     def _base_rpm(self) -> float:
         """Return the speed for the S word in rpm, signed.
 
-        For constant surface speed, it is half of the highest speed, because the override ranges from 10 to
-        200 %. If the override is reset to 100 %, for example by a pendant, the speed then never exceeds the
-        programmed limit.
+        For constant surface speed, the base is half of the highest speed, because the override range is 10
+        to 200 %. If the override is reset to 100 %, for example by a pendant, the speed then never exceeds
+        the programmed limit.
         """
         highest, wanted = self._blocks.max_css_rpm, abs(self._wanted)
         if not highest:

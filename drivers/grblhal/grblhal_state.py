@@ -165,7 +165,7 @@ class ReportedState:
         return self.read_axis_setting(110, letter) / 60.0
 
     def get_line_wait_s(self, line: str) -> float:
-        """Return the maximum seconds for which the controller waits when it executes a line.
+        """Return the longest time in seconds that the controller may wait before it acknowledges a line.
 
         The controller may wait for the spindle or for the coolant.
         """

@@ -132,8 +132,8 @@ class GrblIO:
     def get_outputs(self) -> Mapping[str, bool]:
         """Return the states of the outputs by name, without outputs that the controller does not have.
 
-        From 1 s after its last command, a coolant output has the reported state. An auxiliary output always
-        has the commanded state, because the controller does not report it.
+        A coolant output has the reported state, except in the first second after a command. An auxiliary
+        output always has the commanded state, because the controller does not report it.
         """
         accessory_report = self._c.reported_accessories
         shown = {name: on for name, on in self._wanted.items() if not self.describe_missing_output(name)}

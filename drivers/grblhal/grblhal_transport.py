@@ -172,7 +172,7 @@ class GrblTcpTransport:
     def close(self) -> None:
         """Receive the remaining bytes, and then close the connection.
 
-        If bytes remained, a simulator on the other side would fail.
+        A simulator at the other end would fail if bytes remained unread.
         """
         with suppress(OSError):
             self._socket.shutdown(socket.SHUT_WR)
@@ -193,9 +193,9 @@ _MAX_LINE_BYTES = 256  # bytes of a line
 
 @dataclass(slots=True)
 class SentLine:
-    """Line that was sent to the controller, with the lines that were received before its reply.
+    """Line that was sent to the controller, with the messages received before its acknowledgment.
 
-    If the reply is ``ok``, ``error_code`` is 0.
+    ``error_code`` is 0 if the line was acknowledged by ``ok``.
     """
 
     line_text: str
@@ -212,7 +212,7 @@ class SentLine:
 
 
 class LineSender:
-    """Sender of lines in order, which sends a line only if it fits into the buffer of the controller."""
+    """Sender that sends lines in order, each as soon as it fits into the buffer of the controller."""
 
     def __init__(self, write: Callable[[bytes], None]) -> None:
         self._write = write
@@ -322,7 +322,10 @@ class ScriptRunner:
         self._script = None
 
     def advance_script(self, now: float) -> str:
-        """Advance the script as far as possible; return the reason for a failure, or an empty string."""
+        """Advance the script as far as possible without waiting.
+
+        Returns the reason for a failure, or an empty string if the script has not failed.
+        """
         while self._script is not None:
             until, _, why = self._step
             if not until():

@@ -59,17 +59,13 @@ class HalAxes:
         self.active_homing: HalHoming | None = None
         self.fault: Fault | str = ""
         self.fault_clearers: list[Callable[[], None]] = []  # Functions that clear the faults of other parts.
-        self.reconnect_handlers: list[
-            Callable[[], None]
-        ] = []  # Functions to call after HAL was loaded again.
+        self.reconnect_handlers: list[Callable[[], None]] = []  # They are called after HAL was loaded again.
         self.spindle_sample: tuple[float, float] | None = None  # Time and revolutions of the newest sample.
         self.index_rev = 0.0  # Revolutions at the spindle's index in HAL's count.
         probe = config.probe_input
-        self.touch_input = (
-            HalTouchInput(config.hal_table.period, active_low=probe.is_active_low)
-            if probe is not None
-            else None
-        )
+        self.touch_input: HalTouchInput | None = None
+        if probe is not None:
+            self.touch_input = HalTouchInput(config.hal_table.period, active_low=probe.is_active_low)
         # An axis that is used as the spindle and retains its count. None: C is engaged or does not exist.
         self._lent = next((n for n, axis in enumerate(config.axes) if axis.is_spindle_c_axis), None)
         self.is_c_turning = False  # C turns to its position relative to the index.
@@ -300,9 +296,8 @@ class HalAxes:
         if self._powered:
             return
         self._order = self._link.send_command("enable")
-        if not self._link.wait_until_ready(
-            lambda: self._link.last_report.get("powered") is True, _POWER_ON_S
-        ):
+        link = self._link
+        if not link.wait_until_ready(lambda: link.last_report.get("powered") is True, _POWER_ON_S):
             self._link.send_command("off")
             raise DriverError(
                 "the drives stay off because HAL's E-stop chain does not close; check the E-stop "
@@ -366,10 +361,10 @@ class HalAxes:
     def transfer_c_axis(
         self, axis_index: int | None, hal_position: float = 0.0, control_position: float = 0.0
     ) -> None:
-        """Release the axis ``axis_index`` to the spindle, or engage the C axis if ``axis_index`` is None.
+        """Release the C axis ``axis_index`` to the spindle, or engage it if ``axis_index`` is None.
 
-        The count does not change when C is released. When C is engaged, ``hal_position`` is its position in
-        HAL and ``control_position`` is its position in the control.
+        The position count does not change when C is released. When C is engaged, ``hal_position`` is its
+        position in HAL and ``control_position`` is its position in the control.
         """
         held, self._lent = self._lent, axis_index
         # HAL continues to play this setpoint, independent of the feedback.

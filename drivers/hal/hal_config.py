@@ -1,4 +1,4 @@
-"""Configuration of a machine on HAL, which the application creates from the machine file."""
+"""Configuration of a machine on HAL, as created from the machine file."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from drivers.setpoint_queue import AxisProperties
 
 @dataclass(frozen=True, slots=True)
 class HalAxis(AxisProperties):
-    """One axis of the machine; an axis without ``pins`` has no drive and is only counted."""
+    """One axis of the machine; without ``pins``, it has no drive and only its position is counted."""
 
     pins: HalAxisPins | None = None
     home_method: int = 0
@@ -70,9 +70,9 @@ class HalInput:
 
 @dataclass(frozen=True, slots=True)
 class HalPot:
-    """Pot with its pin (0…1), or handwheel with its count pin.
+    """Potentiometer with its pin (0…1), or handwheel with its count pin.
 
-    ``switch_input`` is the name of the input of the switch on the pot, which selects AUTO.
+    ``switch_input`` is the name of the input of the potentiometer's switch, which selects AUTO.
     """
 
     pin_name: str

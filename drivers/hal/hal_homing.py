@@ -193,9 +193,10 @@ class HalHoming:
         self._slides.request_encoder_index(f"{self.name}.index", True)
 
     def _search_index(self, now: float, rests: bool) -> None:
-        """Wait until the index request turns off, which happens when the index passes.
+        """Wait until the index request turns off, which happens when the encoder passes its index.
 
-        The jump of the count that HAL compensates is then the position of the index.
+        The count then jumps, and HAL compensates the jump. The size of the jump is the position of the
+        index.
         """
         if now > self._since + 0.1 and not self._slides.read_bit_pin(f"{self.name}.index"):
             self._mark = self._slides.read_number_pin(f"{self.name}.index-at")

@@ -157,7 +157,7 @@ class HalLink:
                 self.send_command("beat")
 
     def send_command(self, command: str, **values: object) -> int:
-        """Send a command, and return the number that the bridge reports after executing it.
+        """Send a command and return its number, which the bridge reports after execution.
 
         Raises DriverError if the bridge does not accept the command.
         """

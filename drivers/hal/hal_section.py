@@ -1,7 +1,7 @@
 """TurnDesk's own section of the HAL file: setpoint streams, gear, E-stop chain and samples.
 
 The section uses standard LinuxCNC components and replaces the line ``#turndesk`` of the machine's HAL file.
-It is located after the functions that read the machine and before those that drive it. See decision 0028.
+It is placed between the functions that read the hardware and those that write it. See decision 0028.
 """
 
 from __future__ import annotations
@@ -225,7 +225,7 @@ def _add_estop(border: HalSection, config: HalConfig) -> None:
 def _reached_signal(border: HalSection, config: HalConfig) -> str:
     """Return the signal that is on while the E-stop is released and the inputs are up to date.
 
-    An E-stop input that is frozen counts as pressed.
+    A stale E-stop input is treated as pressed.
     """
     if not config.hal_table.link_fault:
         return "td-estop-ok"
@@ -292,9 +292,9 @@ def _slide(border: HalSection, axis: HalAxis) -> None:
 
 
 def _add_smooth_start(border: HalSection, signal: str, path: str, pin: str, own_signal: str) -> None:
-    """Create a feedback signal that continues to count where the encoder resets to 0 at its index.
+    """Create a feedback signal that stays continuous when the encoder resets to 0 at its index.
 
-    The signal with the suffix "shift" is the compensated jump and, after the reset, also the position of
+    The signal with the suffix "shift" is the compensated jump. After the reset, it is also the position of
     the index. ``own_signal`` is the bridge pin that requests the index.
     """
     name, index = signal.replace("td-", "td.", 1), f"{signal}-index"
@@ -463,9 +463,9 @@ def _comment_out_load(line: str, modules: dict[str, list[str]]) -> str:
 
 
 def _section_lines(border: HalSection, thread: str, modules: Mapping[str, list[str]]) -> Iterator[str]:
-    """Yield the lines that load, call, set and connect the components of the section.
+    """Yield the HAL lines that load, call, set and connect the components of the section.
 
-    The bridge's own pins are not included.
+    The lines also connect the pins, except the bridge's own pins.
     """
     yield from border.loadrt_lines
     yield from (f"loadrt {component} names={','.join(names)}" for component, names in modules.items())

@@ -65,7 +65,7 @@ def create_session_folder() -> tuple[Path, int]:
 def remove_old_session_folders(should_continue: Callable[[], bool]) -> None:
     """Remove the folders of sessions whose control has ended, as soon as their processes have ended.
 
-    ``should_continue`` is called between two checks and must wait briefly. When it returns False, folders
+    ``should_continue`` is called between two checks, and must wait briefly. If it returns False, folders
     with running processes remain.
     """
     for folder in _deserted():

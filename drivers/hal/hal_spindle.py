@@ -79,7 +79,10 @@ class HalOrientingSpindle:
 
 
 class HalSpindle:
-    """Spindle port on HAL (``core.ports.Spindle``), which does not restart after an E-stop."""
+    """Spindle port on HAL (``core.ports.Spindle``).
+
+    After an E-stop, the spindle does not restart automatically.
+    """
 
     def __init__(self, config: HalConfig, link: HalLink, axes: HalAxes) -> None:
         self._config = config.spindle

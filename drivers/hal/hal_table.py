@@ -194,7 +194,7 @@ def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _iterate_pins(file: MachineFileReading) -> Iterator[tuple[str, str]]:
-    """Yield every pin that the machine file names, with its path."""
+    """Yield every pin that the machine file specifies, with the path of its key."""
     values = file.file_values
     places = ["hal.machine_on", "hal.charge_pump", "hal.link_fault"]
     places += [

@@ -21,10 +21,10 @@ def append_estop_instruction(reason: str) -> str:
 class InverterCommandMonitor:
     """Monitor that checks whether an inverter follows its commands.
 
-    ``record_command`` records a command, and ``check_polled_state`` checks a poll. On a slow line, the
-    values of a poll are as old as the duration of its exchange. The one second that the inverter has to
-    react therefore starts after the exchange, and a decreasing speed is compared with the first poll after
-    the command. ``setpoint_step_hz`` is the resolution of the reported setpoint in Hz.
+    ``record_command`` records a command, and ``check_polled_state`` checks a polled state. On a slow line,
+    polled values are outdated by up to the duration of the exchange. The one second in which the inverter
+    must react therefore starts after the exchange, and a decreasing speed is compared with the first poll
+    after the command. ``setpoint_step_hz`` is the resolution of the reported setpoint in Hz.
     """
 
     def __init__(self, setpoint_step_hz: float = 0.01) -> None:
@@ -110,7 +110,7 @@ class InverterCommandMonitor:
         )
 
     def _describe_rotation_error(self, state: InverterState) -> str:
-        """Return a description of a wrong output, or an empty string.
+        """Return a description of a wrong output speed or direction, or an empty string.
 
         The speed must decrease toward a lower setpoint or before a reversal.
         """
@@ -145,7 +145,7 @@ _SLACK_RPM = 30.0  # rpm
 
 
 class SpeedComparator:
-    """A comparison of the speeds of the encoder and the inverter.
+    """Comparator of the spindle speeds that the encoder and the inverter report.
 
     ``max_difference`` is the permitted relative difference.
     """

@@ -1,6 +1,6 @@
-"""Rules between the keys of an inverter family.
+"""Rules for the keys of an inverter family file.
 
-Each address must be read only once, and every reported value must be in an address that is read.
+Each address must be read only once, and every reported value must be at an address that is read.
 """
 
 from __future__ import annotations

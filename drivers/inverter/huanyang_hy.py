@@ -180,7 +180,7 @@ class HuanyangInverter:
 
 
 def _reject_write(_parameter: int, _value: int) -> None:
-    """Leave the parameter unchanged.
+    """Do not write the parameter; this function replaces the write function.
 
     It is unknown which parameters the inverter accepts during operation.
     """

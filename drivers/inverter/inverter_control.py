@@ -41,7 +41,7 @@ class PolledState:
 
 
 class InverterControl:
-    """The owner of the inverter's line.
+    """Control of the inverter, which owns its serial line.
 
     Any thread may set ``commanded_hz``; everything else may be used only by the thread of ``run_exchange``.
     ``open_line`` opens the line and returns the inverter, or raises DriverError. ``setpoint_step_hz`` is
@@ -115,7 +115,7 @@ class InverterControl:
     def line_delay_s(self) -> float:
         """Return the delay in seconds from a command to the poll that shows its effect.
 
-        The delay is caused by the line.
+        This delay is caused by the serial line.
         """
         seen = self.last_poll
         return self._clock.now() - seen.command_cutoff_time_s if seen is not None else 0.0

@@ -33,12 +33,12 @@ class InverterState:
 
 
 class InverterFamily(Protocol):
-    """An inverter on its line.
+    """Protocol for an inverter on its serial line.
 
     Methods that communicate raise NoResponseError, RequestRejectedError or SerialLineError.
-    ``is_stop_pending`` returns whether a stop is pending. It is called between requests, so that a stop
-    cancels the remaining requests. It is also called directly before each frame that can start the motor.
-    If a stop is pending, the frame is not sent and RequestWithheldError is raised.
+    ``is_stop_pending`` is a function that returns whether a stop is pending. It is called between requests,
+    so that a stop cancels the remaining requests. It is also called directly before each frame that can
+    start the motor. If a stop is pending, the frame is not sent and RequestWithheldError is raised.
     """
 
     required_response_count: int  # Consecutive valid responses before the inverter is trusted.
@@ -69,7 +69,7 @@ class InverterFamily(Protocol):
         ...
 
     def iter_poll_steps(self) -> Iterator[InverterState | None]:
-        """Poll the inverter, yielding None between requests and the state at the end.
+        """Poll the inverter; yield None between requests, and the polled state at the end.
 
         Raises RequestWithheldError if a stop is pending and the poll would repeat a run command. Families
         that only read registers never raise it here.

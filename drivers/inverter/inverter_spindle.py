@@ -72,8 +72,8 @@ class InverterSpindle:
     def set_speed(self, rpm: float) -> None:
         """Run the spindle at the signed speed ``rpm``; 0 stops it.
 
-        If the speed is not 0, raises DriverError in E-stop, with a fault, or before a stopped inverter has
-        sent enough valid responses.
+        For a speed other than 0, raises DriverError if the E-stop is pressed or a fault is active. Also
+        raises DriverError if the inverter is stopped and has not sent enough valid responses yet.
         """
         if rpm:
             require_estop_released(self._estop())
@@ -123,9 +123,9 @@ class InverterSpindle:
         return seen.inverter_state.signed_output_hz / self._config.hz_per_rpm if seen else 0.0
 
     def get_line_delay(self) -> float:
-        """Return the delay in seconds from a command to the speed that shows its effect.
+        """Return the delay in seconds from a command to the reported speed that shows its effect.
 
-        The delay is caused by the line.
+        This delay is caused by the serial line.
         """
         return self._attendant.line_delay_s
 
@@ -171,7 +171,10 @@ class InverterSpindle:
         return ""
 
     def _is_encoder_wrong(self, encoder: SpindleEncoder) -> bool:
-        """Return whether the spindle turns, or must turn, without a valid measurement."""
+        """Return whether the encoder has been invalid since the last reset.
+
+        It is checked only while the spindle turns or must turn.
+        """
         needed = self._attendant.commanded_hz != 0.0 or self.reported_rpm != 0.0
         if needed and not self._unmeasured:
             now = self._clock.now()
@@ -191,7 +194,7 @@ class InverterSpindle:
         return not self._alive() or self._attendant.is_state_unknown
 
     def describe_status(self) -> str:
-        """Return one line of text about the state of the inverter, for a check."""
+        """Return the state of the inverter as one line of text, for a check of the inverter."""
         seen = self._attendant.last_poll
         if seen is None:
             return "no response yet"

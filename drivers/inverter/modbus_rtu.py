@@ -119,7 +119,7 @@ _EXCEPTION_TEXTS = {
 
 
 def report_no_pending_stop() -> bool:
-    """Return False, because no stop can be pending."""
+    """Return False; this default function is used if a stop can never be pending."""
     return False
 
 
@@ -189,7 +189,7 @@ class ModbusMaster:
     def _send_read(self, pdu: bytes, size: int) -> bytes:
         """Send a read request, and return its response.
 
-        A response does not identify its request. After an error, an echo is therefore exchanged first.
+        A response does not identify its request. After an error, an echo request is therefore sent first.
         """
         for left in reversed(range(MAX_TRIES)):
             try:

@@ -24,7 +24,7 @@ class RegisterInverter:
 
     @property
     def is_stop_pending(self) -> Callable[[], bool]:
-        """Return the function that returns whether a stop is pending."""
+        """Return the function that reports whether a stop is pending."""
         return self._line.is_stop_pending
 
     @is_stop_pending.setter
@@ -94,7 +94,7 @@ class RegisterInverter:
     def reset_trip(self) -> None:
         """Reset a trip of the inverter.
 
-        The next command is then sent completely.
+        Afterward, all requests of the next command are sent again.
         """
         self._said = ()
         sending = self._registers.command_settings

@@ -92,7 +92,8 @@ class SimAxes(_PlantPort):
     def enable(self, is_on: bool) -> None:
         """Switch the drives on or off.
 
-        Raises DriverError when switching on in E-stop or with a fault. Switching off is always possible.
+        When switching on, raises DriverError if the E-stop is pressed or a fault is active. Switching off
+        is always possible.
         """
         self._plant.set_drive_power(is_on)
 
@@ -158,7 +159,7 @@ class SimSpindlePort(_PlantPort):
     def set_speed(self, rpm: float) -> None:
         """Run the spindle at the signed speed ``rpm``; 0 stops it.
 
-        If the speed is not 0, raises DriverError in E-stop or with an inverter fault.
+        For a speed other than 0, raises DriverError if the E-stop is pressed or the inverter has a fault.
         """
         plant = self._plant
         with plant.lock:
@@ -181,7 +182,7 @@ class SimSpindlePort(_PlantPort):
     def read_angle(self) -> tuple[float, float] | None:
         """Return the time and the counted revolutions of the encoder, or None without an encoder.
 
-        The resolution is a quarter of a pulse.
+        The resolution is a quarter of an encoder pulse.
         """
         if not self._plant.config.spindle.pulses_per_rev:
             return None
@@ -206,8 +207,8 @@ class SimOrientingSpindle(_PlantPort):
     def orient_spindle(self, angle: float, direction: int = 0) -> None:
         """Orient the spindle to an angle in degrees.
 
-        Raises DriverError in E-stop, with an inverter fault, and while the spindle turns, except while an
-        orientation is already active.
+        Raises DriverError if the E-stop is pressed or the inverter has a fault. Also raises DriverError
+        while the spindle turns, unless an orientation is already active.
         """
         plant = self._plant
         with plant.lock:

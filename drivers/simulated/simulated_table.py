@@ -1,4 +1,4 @@
-"""The table [sim] of the machine file: pace, random seed and scheduled faults of the simulation."""
+"""The table [sim] of the machine file: real-time option, random seed, faults and tool tips."""
 
 from __future__ import annotations
 
@@ -42,9 +42,9 @@ _AXIS_FAULTS = frozenset(
 
 @make_key_table
 class PlannedFault:
-    """A scheduled fault that starts at ``at`` and lasts ``seconds``.
+    """A scheduled fault, which starts at time ``at`` and lasts ``seconds``.
 
-    A duration of 0 makes the fault permanent.
+    A duration of 0 makes the fault permanent. Times are in seconds.
     """
 
     at: float = declare_key(
@@ -96,9 +96,7 @@ class SimulatedTable:
         meaning="true: a run without a screen also takes real time. false: it runs as fast as possible.",
     )
     faults: tuple[PlannedFault, ...] = ()
-    tool_tip_positions: tuple[
-        tuple[float, float], ...
-    ] = ()  # Axis positions when a tip is at part zero, in mm.
+    tips: tuple[tuple[float, float], ...] = ()  # Axis positions when a tip is at part zero, in mm.
 
 
 def _read(file: MachineFileReading) -> Iterator[FileFinding]:
@@ -139,7 +137,7 @@ def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _read_faults(file: MachineFileReading) -> dict[str, object]:
-    """Return the entries of the lists ``faults`` and ``tool_tip_positions`` of the table."""
+    """Return the entries of the lists ``faults`` and ``tips`` of the table."""
     values = file.file_values
     tips = (
         (values.read_number(f"{path}.x"), values.read_number(f"{path}.z"))

@@ -194,7 +194,7 @@ class AxisDrive:
         )
 
     def write(self, index: int, subindex: int, value: int) -> None:
-        """Store a value that the host has written to an object, and carry out its effect."""
+        """Store a value that the host has written to an object, and apply its effect."""
         self.values[index, subindex] = value
         if index == od.CONTROL:
             self._control(value)
@@ -218,7 +218,10 @@ class AxisDrive:
             self.power_states.enter_fault()
 
     def reset(self) -> None:
-        """Clear the volatile values and the home reference of an incremental encoder, as a restart does."""
+        """Clear the volatile values, as a restart does.
+
+        An incremental encoder also loses its home reference.
+        """
         self.power_states.switch_off()
         self.operation_mode, self.is_playing, self._homing, self._going = 0, False, False, False
         self.is_interpolating = False

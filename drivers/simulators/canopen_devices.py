@@ -137,7 +137,7 @@ ENCODER_REVOLUTION_COUNT = 4096  # Number of revolutions after which the positio
 class SimulatedEncoder:
     """Simulated CiA 406 encoder on the spindle.
 
-    While its coupling is detached, ``stuck`` is the constant position of the encoder; otherwise it is None.
+    If its coupling is detached, ``stuck`` is the constant position of the encoder; otherwise it is None.
     """
 
     def __init__(self, plant: SimulatedPlant, counts_per_rev: int) -> None:
@@ -173,7 +173,7 @@ class SimulatedEncoder:
         self.values[index, subindex] = value
 
     def handle_host_loss(self) -> None:
-        """Do nothing, because an encoder only measures."""
+        """Do nothing, because an encoder does not need to react to the loss of the host."""
 
     def reset(self) -> None:
         """Clear the stored values; the absolute position does not change."""
@@ -221,7 +221,7 @@ class CanopenPlant(SimulatedPlant):
             self.spindle.set_cutting(self._at, is_cutting=self.is_cutting())
 
     def _are_drives_idle(self) -> bool:
-        """Return whether no drive will change until a frame arrives or the operator acts."""
+        """Return whether the drives will not change before a frame arrives or the operator acts."""
         if self.spindle.faults.belt_slip_fraction or (
             self.spindle_drive is not None and not self.spindle_drive.is_idle
         ):

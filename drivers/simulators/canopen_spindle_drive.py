@@ -41,7 +41,7 @@ class SpindleServo(SimulatedServo):
         self.p, self.v = self.place, 0.0
 
     def set_home_position(self, homing_method: int) -> None:
-        """Set the home position: the next index, or the current position if the method uses no index."""
+        """Set the home position: the next index, or the current position for a method without index."""
         ahead = (math.floor(self._motor.revolutions + 1e-9) + 1) * _DEGREES_PER_REV - self._zero
         self.switch = ahead if homing_method in _INDEX else self.p
 

@@ -87,13 +87,8 @@ def _override(m: GrblFirmware, byte: int) -> None:
         m.spindle_percent = 100
     elif byte - 9 in _OVERRIDE_STEPS:
         m.spindle_percent = min(max(m.spindle_percent + _OVERRIDE_STEPS[byte - 9], 10), 200)
-    elif (
-        byte == 0x9E
-        and m.is_in_hold
-        and m.programmed_rpm
-        and not (m.behavior.toggle_broken or m.program.active_wait)
-    ):
-        m.is_spindle_paused = not m.is_spindle_paused
+    elif byte == 0x9E and m.is_in_hold and m.programmed_rpm:
+        m.is_spindle_paused ^= not (m.behavior.toggle_broken or m.program.active_wait)
     m.command_spindle_speed(m.programmed_rpm)
 
 
@@ -120,12 +115,8 @@ def advance_firmware_step(firmware: GrblFirmware) -> None:
     resting = (firmware.is_in_hold or firmware.is_door_open) and not slides.is_moving
     if first is not None and not resting and _waits_for_index(firmware, first):
         return
-    if (
-        first is not None
-        and first.is_feed_per_revolution
-        and not first.is_thread
-        and abs(firmware.spindle.speed) < 1.0
-    ):
+    needs_speed = first is not None and first.is_feed_per_revolution and not first.is_thread
+    if needs_speed and abs(firmware.spindle.speed) < 1.0:
         firmware.raise_alarm(14)
         return
     slides.is_in_hold = firmware.is_in_hold or firmware.is_door_open or firmware.is_canceling_jog
@@ -147,7 +138,7 @@ def _home(m: GrblFirmware, until: float, axes: int) -> None:
 
 
 def _waits_for_index(m: GrblFirmware, block: PlannedBlock) -> bool:
-    """Return whether a threading block waits for the second spindle index after its request.
+    """Return whether a threading block still waits for the second spindle index after its start.
 
     The controller processes no bytes during this wait. If the index is missing for 5 s, alarm 14 is raised.
     """
@@ -175,9 +166,9 @@ _BUSY_STATES = frozenset(("Run", "Hold", "Jog", "Home", "Door"))
 class ReportGenerator:
     """Generator of status reports, which decides when a report includes offsets and overrides.
 
-    Both are included at intervals and after a change. If both are due at once, the report includes the
-    overrides, and the next report includes the offsets. A full report includes both. Firmware of 2023
-    delayed the overrides and never included them in a full report.
+    Both are included at intervals and after a change. If both are due at the same time, the report includes
+    the overrides, and the next report includes the offsets. A full report includes both. Firmware of 2023
+    delays the overrides and never includes them in a full report.
     """
 
     reports_until_offsets: int = 0
@@ -244,9 +235,8 @@ def _extras(m: GrblFirmware, offsets: bool, overrides: bool, full: bool) -> str:
     text += f"|A:{accessories}" if has_accessories else ""
     if not full:
         return text
-    homed = f"|H:{int(m.homed_axis_mask & 5 == 5)}" + (
-        f",{m.homed_axis_mask}" if int(m.registers[22]) & 2 else ""
-    )
+    mask = f",{m.homed_axis_mask}" if int(m.registers[22]) & 2 else ""
+    homed = f"|H:{int(m.homed_axis_mask & 5 == 5)}{mask}"
     read = "" if m.last_input_result is None else f"|In:{m.last_input_result}"
     lathe = f"|D:{int(m.program.modes.radius == 'G7')}" if m.registers.is_in_lathe_mode else ""
     return f"{text}|Sc:|MPG:0{homed}{lathe}|T:0|P:0|TLR:0{read}|FW:grblHAL"
@@ -358,7 +348,7 @@ class GrblFirmware:
 
     @property
     def _is_idle(self) -> bool:
-        """Return whether only the spindle can change until the host sends bytes."""
+        """Return whether nothing except the spindle can change before the host sends bytes."""
         busy = (
             self.motion.block_queue
             or self.homing_end_and_axes is not None

@@ -1,6 +1,6 @@
 """Planner and axes of the grblHAL simulator.
 
-The speed along the path always permits a stop at the end of the last block.
+At any time, the speed along the path is low enough for a stop at the end of the last block.
 """
 
 from __future__ import annotations
@@ -185,10 +185,10 @@ class GrblMotion:
         return min(along_x, along_z) if x or z else self._registers[first]
 
     def _allowed_speed(self, accel: float, turns_per_s: float) -> float:
-        """Return the highest speed in mm/s that permits slowing down for all corners ahead.
+        """Return the highest speed in mm/s that permits slowing down for all following corners.
 
-        The speed also permits stopping at the end of the path. ``accel`` is the acceleration in the current
-        block in mm/s².
+        The axes can also stop at the end of the path. ``accel`` is the acceleration in the current block in
+        mm/s².
         """
         before = self.block_queue[0]
         left = max(before.length_mm - self._s, 0.0)

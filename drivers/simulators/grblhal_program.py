@@ -216,7 +216,10 @@ __all__ = ["LineInterpreter", "ModalState"]
 
 
 class LineInterpreter:
-    """Interpreter of received lines in order; a line may wait for the planner or for standstill."""
+    """Interpreter that executes received lines in order.
+
+    A line may have to wait until the planner has space or the axes are at rest.
+    """
 
     def __init__(self, controller: ProgramController) -> None:
         self._m = controller

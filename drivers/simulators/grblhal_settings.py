@@ -19,8 +19,8 @@ from drivers.simulators.spindle_motor import SimulatedSpindle
 class SimulatorBehavior:
     """Behavior of the simulator that tests can change.
 
-    By default, the simulator behaves like the one that is part of the firmware. In addition, it has an
-    encoder, auxiliary ports and the settings of a machine file.
+    By default, the simulator behaves like the simulator that is supplied with grblHAL. In addition, it has
+    an encoder, auxiliary ports and the settings of a machine file.
     """
 
     encoder: bool = True

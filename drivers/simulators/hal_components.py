@@ -1,7 +1,7 @@
 """Simulated versions of the LinuxCNC components in TurnDesk's section of the HAL file.
 
-The components operate on cells, which replace the HAL signals, and follow the LinuxCNC sources of 2026.
-``limit3`` approaches its limits in a simpler manner.
+The components operate on cells, which replace the HAL signals. They follow the LinuxCNC sources of 2026,
+except that ``limit3`` approaches its limits in a simpler manner.
 """
 
 from __future__ import annotations

@@ -355,7 +355,7 @@ class HalSimulator:
                 )
 
     def _set_encoder(self, turns: float) -> None:
-        """Simulate the spindle encoder, whose count restarts at the index when the thread requests this."""
+        """Simulate the spindle encoder; its count resets at the index if the thread requests this."""
         pins, last = self.config.spindle.pins, self._turns
         self._turns = turns
         if pins.index_enable and self._get(pins.index_enable):
@@ -366,9 +366,9 @@ class HalSimulator:
         self._set(pins.position, turns - self._index_at)
 
     def _drive_axes(self, t: float, period: float) -> None:
-        """Apply the cells that HAL writes to the machine; an axis without power coasts.
+        """Apply the values that HAL writes to the simulated machine; an axis without power coasts.
 
-        If the thread is stopped, the boards remove the power.
+        If the servo thread is stopped, the boards remove the power.
         """
         plant, config, cells = self.plant, self.config, self.servo_thread.cells
         powered = not self.is_thread_stopped and not plant.station_panel.estop

@@ -127,9 +127,9 @@ class SimulatedPlant:
         return self._hands
 
     def is_state_constant(self) -> bool:
-        """Return whether the machine will not change until an operator or a test acts.
+        """Return whether the machine will not change before the next action of an operator or a test.
 
-        A machine with scheduled faults is never settled.
+        The result is always False for a machine with scheduled faults.
         """
         with self.lock:
             now = self.advance()
@@ -210,7 +210,7 @@ class SimulatedPlant:
     def home_axis(self, name: str) -> None:
         """Start to home one axis; nothing happens if the axis has an absolute encoder.
 
-        Raises DriverError without power, with a fault, during another homing, or while an axis moves.
+        Raises DriverError without power, with a fault, while another axis homes, or while an axis moves.
         """
         with self.lock:
             now = self.advance()

@@ -1,4 +1,4 @@
-"""Configuration of the simulated machine, which the application reads from the machine file."""
+"""Configuration of the simulated machine, as read from the machine file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Operator actions and faults of the simulated machine, started by calls or at scheduled times."""
+"""Operator actions and simulated faults of the simulated machine, called directly or scheduled."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class PlantControls(StationControls):
 
     @contextmanager
     def _locked_time(self) -> Iterator[float]:
-        """Lock the machine, and yield the clock time in seconds while the lock is held."""
+        """Lock the machine, and yield the clock time in seconds while the machine is locked."""
         with self._plant.action_lock:
             yield self._plant.advance()
 
@@ -49,12 +49,12 @@ class PlantControls(StationControls):
     # --- faults -------------------------------------------------------------------------------------------
 
     def jam(self, axis: str, jammed: bool = True) -> None:
-        """Jam an axis mechanically, or end this fault."""
+        """Jam an axis mechanically, or release it if ``jammed`` is False."""
         with self._locked_time():
             self._servo(axis).jammed = jammed
 
     def encoder_stuck(self, axis: str, stuck: bool = True) -> None:
-        """Freeze the encoder reading of an axis, or end this fault."""
+        """Freeze the encoder reading of an axis, or unfreeze it if ``stuck`` is False."""
         with self._locked_time():
             servo = self._servo(axis)
             servo.stuck = servo.reading if stuck else None
@@ -83,7 +83,7 @@ class PlantControls(StationControls):
             worn.ripple, worn.turn = amplitude_mm, period_mm
 
     def encoder_missed(self, axis: str, lost_mm: float, period_mm: float = SCREW_LEAD_MM) -> None:
-        """Make an encoder miss ``lost_mm`` of axis travel once per ``period_mm``; 0 ends the fault."""
+        """Make an encoder miss ``lost_mm`` of travel once per ``period_mm``; 0 ends the fault."""
         with self._locked_time():
             worn = self._servo(axis).worn
             worn.missed, worn.turn = lost_mm, period_mm
@@ -124,7 +124,7 @@ class PlantControls(StationControls):
             self._plant.spindle.faults.oscillation_period_s = period
 
     def spindle_ignores_stop(self, ignored: bool = True) -> None:
-        """Make the inverter ignore commands for a lower speed, or end this fault."""
+        """Make the inverter ignore commands for a lower speed, or obey them if ``ignored`` is False."""
         with self._locked_time():
             self._plant.spindle.faults.is_stop_ignored = ignored
 
@@ -137,12 +137,12 @@ class PlantControls(StationControls):
             self._plant.spindle.faults.fault_text = text
 
     def spindle_never_oriented(self, never_oriented: bool = True) -> None:
-        """Prevent the drive from reporting that the spindle is oriented, or end this fault."""
+        """Prevent the report of an oriented spindle, or permit it again if ``never_oriented`` is False."""
         with self._locked_time():
             self._plant.spindle.faults.is_never_oriented = never_oriented
 
     def collet_sensor_stuck(self, stuck: bool = True) -> None:
-        """Freeze the collet switch in its current state, or end this fault."""
+        """Freeze the collet switch in its current state, or release it if ``stuck`` is False."""
         with self._locked_time() as now:
             self._plant.terminals.read_inputs(now)
             self._plant.terminals.is_collet_sensor_stuck = stuck
@@ -153,7 +153,7 @@ class PlantControls(StationControls):
             self._plant.station_panel.set_cable_disconnected(silent, self._plant.clock.now())
 
     def pot_noise(self, width: float) -> None:
-        """Add noise with an amplitude of ``width`` to both pots, as a worn wiper does."""
+        """Add noise with an amplitude of ``width`` to both potentiometers, as a worn wiper causes."""
         with self._plant.action_lock:
             self._plant.station_panel.noise_amplitude = width
 

@@ -1,4 +1,4 @@
-"""Motion of the simulated axes along one setpoint piece, predicted while no drive limit acts.
+"""Motion of the simulated axes along one setpoint piece, predicted while no drive limit applies.
 
 One formula per moving axis then replaces the single steps, and the samples for the scope are calculated for
 many grid points at once.

@@ -1,8 +1,8 @@
 """Simulated servo axis with position loop, feed-forward, drive limits, encoder, wear and faults.
 
 ``SimulatedServo.follow_setpoint`` calculates one step of a linear second-order model. While no drive limit
-acts, the model has a closed-form solution: the axis follows the setpoint with a steady lag, and two
-deviations decay. One evaluation of ``ServoLoop`` then replaces any number of steps. Both results agree
+takes effect, the model has a closed-form solution: the axis follows the setpoint with a constant lag, and
+two deviations decay. One evaluation of ``ServoLoop`` then replaces any number of steps. Both results agree
 within rounding (1e-9 mm).
 """
 
@@ -24,7 +24,7 @@ _SETTLED_DISTANCE = 1e-4  # Mm or degrees; an axis closer than this and almost a
 class SimulatedServo:
     """Simulated axis with its drive.
 
-    Positions are those that the control counts; once the axis is homed, they are relative to home.
+    Positions are as the control counts them; after homing, they are relative to the home position.
     """
 
     def __init__(self, axis: SimAxis, step_s: float = 0.001) -> None:
@@ -131,10 +131,10 @@ class SimulatedServo:
         return False
 
     def predict_response(self, setpoints: SetpointPolynomial, point_count: int) -> ServoResponse | None:
-        """Return the response to ``point_count`` setpoints, or None if a fault or a limit may act.
+        """Return the response to ``point_count`` setpoints, or None if a fault or a limit may apply.
 
-        The limits are those of ``follow_setpoint``. The first force is calculated exactly; all other values
-        are upper bounds.
+        The limits are those of ``follow_setpoint``. The force at the first point is calculated exactly; all
+        other values are upper bounds.
         """
         loop, axis, dt = self._loop, self.axis, self._step
         if not self.sound or loop is None:
@@ -196,7 +196,7 @@ class SimulatedServo:
         self.over = self.load = 0.0
 
     def settle_at_setpoint(self, position: float) -> bool:
-        """Settle the axis at ``position`` if it is almost there, and return whether it is at rest."""
+        """If the axis is almost at ``position``, set it to rest there; return whether it is at rest."""
         if self.jammed or self.stuck is not None or self.runaway:
             return False
         if (
@@ -277,11 +277,11 @@ class AxisWear:
 
     With a loose gib, the drive controls the motor, but the encoder measures the slide. The slide lags by
     half of the play in the direction of motion, so that a reversal loses the full play. Below 2 mm/s, the
-    slide sticks until the screw has wound up another quarter of the play, and then slips.
+    slide sticks until the screw has advanced by another quarter of the play, and then slips.
 
     An encoder error also affects the drive. ``ripple`` is the amplitude of an error that repeats once per
-    revolution, as with an eccentric disc. ``missed`` is the distance that the encoder does not count at one
-    spot of each revolution.
+    revolution, as with an eccentric encoder disc. ``missed`` is the distance that the encoder fails to
+    count once per revolution.
     """
 
     def __init__(self) -> None:
@@ -371,7 +371,10 @@ class ServoLoop:
     def calculate_response(
         self, position: float, last_move: float, setpoints: SetpointPolynomial
     ) -> ServoResponse:
-        """Return the response of an axis at ``position`` after ``last_move``, in mm or degrees."""
+        """Return the response of an axis at ``position`` with the last move ``last_move``.
+
+        Both are in mm or degrees.
+        """
         w, missing, (p, dp, ddp) = self._w, self._missing, setpoints
         drift = -4.0 * ddp * missing / w
         lag = (2.0 * w * (ddp - missing * dp - drift) - 2.0 * ddp) / (w * w)

@@ -129,7 +129,7 @@ class SpindleMotor:
 
     @property
     def is_speed_constant(self) -> bool:
-        """Return whether the speed will not change until a command or a fault changes it."""
+        """Return whether the speed will remain constant until a command or a fault changes it."""
         faults = self.faults
         target = 0.0 if faults.fault_text else self._target * faults.speed_fraction
         return self._even == target and not (
@@ -281,9 +281,9 @@ class SpindleMotor:
                 return
 
     def _oscillation_seconds(self, t: float, dt: float) -> float:
-        """Return the additional rotation by the speed oscillation, as seconds at the constant speed.
+        """Return the additional rotation caused by the oscillation, as seconds at constant speed.
 
-        The rotation is that from time ``t`` on during ``dt`` seconds. The fault ``oscillation_fraction``
+        The rotation starts at time ``t`` and lasts ``dt`` seconds. The fault ``oscillation_fraction``
         causes the oscillation.
         """
         faults = self.faults

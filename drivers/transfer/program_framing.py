@@ -19,10 +19,10 @@ class TransferSettings:
     """Settings for the transfer of a program, in addition to the line settings.
 
     - ``delimiter`` is the line before and after a program. If it is empty, only silence marks the end.
-    - ``has_dc_codes``: DC2 and DC4 are sent before and after a program, DC1 and DC3 before and after
-      reception.
-    - ``needs_dc1``: sending starts only after DC1 from the other side.
-    - ``leader_nul_count`` is the number of NULs before and after a program.
+    - ``has_dc_codes`` means that DC2 and DC4 are sent before and after a program, and DC1 and DC3 before
+      and after reception.
+    - ``needs_dc1`` means that sending starts only after DC1 from the connected device.
+    - ``leader_nul_count`` is the number of NUL characters before and after a program.
     """
 
     line_settings: LineSettings
@@ -225,7 +225,7 @@ class ProgramParser:
         )
 
     def _split_text(self, text: bytes) -> tuple[bytes, list[bytes]]:
-        """Return the rest of the line with the first %, and the lines of the program."""
+        """Return the text after the first % on its line, and the lines of the program."""
         lines = split_lines(text)
         if not self._wrap:
             return b"", lines
@@ -295,8 +295,9 @@ class ProgramParser:
     def _handle_bad_parity(self, character: int) -> None:
         """Handle a parity error.
 
-        In noise before an eight-bit program, a character may look like a % with parity. Reception then
-        starts again. Otherwise, raises IncompleteProgramError.
+        In noise before an eight-bit program, a character may look like a % with parity. The parser then
+        discards the received characters and waits for the first % again. Otherwise, it raises
+        IncompleteProgramError.
         """
         if not self._settings.is_parity_checked and not self.line_count:
             self._skipped += len(self._raw) + 1
@@ -393,7 +394,10 @@ def encode_program(text: bytes, settings: TransferSettings) -> bytes:
 
 
 def _strip_framing(lines: list[bytes], wrap: bytes) -> list[bytes]:
-    """Return the lines without their own delimiter lines, which would otherwise be sent twice."""
+    """Return the lines without the delimiters that the program already contains.
+
+    Otherwise, the delimiters would be sent twice.
+    """
     if lines and lines[0].strip() == wrap:
         lines = lines[1:]
     return lines[:-1] if lines and lines[-1].strip() == wrap else lines

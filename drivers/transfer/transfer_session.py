@@ -84,7 +84,7 @@ class _Transfer:
 
 
 class SendTransfer(_Transfer):
-    """A transfer that sends bytes in chunks of 64, as fast as the other side permits."""
+    """Transfer that sends bytes in chunks of 64, as fast as the connected device permits."""
 
     def __init__(
         self, wire: FlowControlTransport, clock: Clock, settings: TransferSettings, data: bytes
@@ -101,8 +101,8 @@ class SendTransfer(_Transfer):
         """Send the program, and return the number of bytes.
 
         Raises TransferCanceledError, SerialLineError or another DriverError if the program is not sent
-        completely. Bytes after the final % need not be accepted by the other side, but are included in the
-        number.
+        completely. The connected device does not have to accept the bytes after the final %, but the number
+        includes them.
         """
         try:
             if self._settings.needs_dc1:

@@ -76,7 +76,7 @@ def _list_entries(text: str, page: PurePosixPath, used: set[str]) -> Iterator[di
 def _with_decisions(
     entry: dict[str, str | Navigation], project_folder: Path, used: set[str]
 ) -> dict[str, str | Navigation]:
-    """Return the entry, with the decision records below it if it is their index."""
+    """Return the entry; if it is the index of the decision records, add the records below it."""
     if str(DECISIONS_PATH) not in entry.values():
         return entry
     text = (project_folder / DECISIONS_PATH).read_text(encoding="utf-8")
@@ -128,9 +128,9 @@ def convert_lists(text: str) -> str:
 
 
 def _find_item(line: str, begins_block: bool) -> _Item | None:
-    """Return the list item that a line begins, or None.
+    """Return the list item that starts in a line, or None if the line does not start an item.
 
-    As on GitHub, a number other than 1 within a paragraph does not begin an item.
+    As on GitHub, a number other than 1 within a paragraph does not start an item.
     """
     found = _ITEM.match(line)
     if found is None or not (begins_block or found[2].strip() in {"-", "*", "+", "1."}):

@@ -46,7 +46,10 @@ _REASONS = {
 
 
 class PostError(ValueError):
-    """A command that the post cannot write, with the operation and the reason."""
+    """Error raised for a command that the post-processor cannot write.
+
+    The text contains the operation and the reason.
+    """
 
 
 def number(value: float, places: int = 5) -> str:
@@ -103,7 +106,7 @@ class Writer:
     # --- lines and words
 
     def add(self, text: str) -> None:
-        """Append a line with the comment that waits for it."""
+        """Append a line, together with the comment that ``note`` has set for it."""
         comment = "" if self.options.no_comments else self.comment
         self.lines.append(text + (f"({comment})" if comment else ""))
         self.comment = ""
@@ -154,7 +157,10 @@ class Writer:
     # --- moves
 
     def rapid(self, x: float | None, z: float | None) -> None:
-        """Write a rapid. An unknown coordinate is added when a later rapid specifies it."""
+        """Write a rapid.
+
+        If a coordinate is unknown, nothing is written until a later rapid specifies it.
+        """
         if x is None or z is None:
             self.x, self.z = x, z
             return
@@ -174,10 +180,11 @@ class Writer:
         self.x, self.z = x, z
 
     def arc(self, name: str, values: dict[str, float], x: float | None, z: float | None, feed: float) -> None:
-        """Write an arc of the XZ plane; one of more than 180° is divided at its middle.
+        """Write an arc of the XZ plane; an arc of more than 180° is divided at its middle.
 
-        G02 and G03 are exchanged, because FreeCAD looks at the plane with X+ up, and OmniTurn with X+ down.
-        An arc that ends at its start because of rounding is not written. The control would cut a full circle.
+        G02 and G03 are exchanged, because FreeCAD views the plane with X+ up, and OmniTurn with X+ down. An
+        arc that ends at its start because of rounding is not written, because the control would cut a full
+        circle.
         """
         if x is None or z is None or self.x is None or self.z is None:
             self.reject(name, "the position before this arc is unknown")
@@ -261,7 +268,7 @@ class Writer:
             self.rapid(0.0, high)
 
     def cycle(self, name: str, words: str) -> None:
-        """Write a line with a drilling cycle, which ends at its start point."""
+        """Write a line with a drilling cycle, after which the tool is at the start point again."""
         feed = self.feed(name, self.cycle_feed)
         self.add(words if not feed else feed + words)
 

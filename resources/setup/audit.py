@@ -35,7 +35,7 @@ _LONGEST = 300.0  # s
 
 
 class AuditResult(NamedTuple):
-    """Vulnerabilities that the database contains for the packages in one locked file.
+    """Known vulnerabilities of the packages in one locked file.
 
     ``unchecked_packages`` are the packages for which the database returned no result.
     """

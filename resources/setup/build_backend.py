@@ -1,7 +1,7 @@
 """Build backend of the TurnDesk wheel, which has all source packages in one package ``turndesk``.
 
-Setuptools builds the wheel, and this backend then moves its packages and adds the guide. Editable
-installs and source distributions, which Setuptools builds alone, have the same package names as a clone.
+Setuptools builds the wheel, and this backend then moves its packages and adds the user's guide. Setuptools
+alone builds editable installs and source distributions, whose package names are those of the repository.
 """
 
 from __future__ import annotations

@@ -82,7 +82,7 @@ def _package(name: str, files: list[Path]) -> Component:
 
 
 def _qt(name: str, version: str) -> list[Component]:
-    """Return the component for Qt, which is part of a Python package.
+    """Return a list with the component for Qt if the package ``name`` contains Qt, otherwise [].
 
     Qt has the same version as this package. The CPE of the component identifies known vulnerabilities of
     Qt.

@@ -331,7 +331,7 @@ def _texts_of_file(path: Path, loud: bool, marked_alone: bool) -> list[str]:
 
 
 def _of_levels() -> list[str]:
-    """Return the names of the access levels and of the protected changes."""
+    """Return the names of the access levels and of the changes that they protect."""
     return [*(level.name for level in AccessLevel), *(act.value for act in ProtectedChange)]
 
 
@@ -392,7 +392,7 @@ def read_translations(language: str) -> dict[str, str]:
 
 
 def _entries(language: str) -> dict[str, tuple[str, bool]]:
-    """Return each translation and whether it is finished, with the English texts as keys.
+    """Return each translation and whether it is marked as finished, with the English texts as keys.
 
     The result is empty if the file does not exist.
     """

@@ -96,7 +96,7 @@ def _pieces(node: ast.expr) -> list[str | None] | None:
 
 
 def _own_parts(node: ast.expr) -> Iterator[ast.AST]:
-    """Yield the nodes that are parts of a string, without expressions for values."""
+    """Yield the syntax nodes that are parts of a string, except the expressions of inserted values."""
     yield node
     if isinstance(node, ast.JoinedStr):
         yield from (value for value in node.values if isinstance(value, ast.Constant))

@@ -80,7 +80,7 @@ def test_faults_and_tips_are_read_in_order() -> None:
         "tips = [{ x = 1.0, z = 2.0 }, { x = -1.0, z = 0.0 }]"
     )
     assert table.faults == (PlannedFault(12.0, "jam", "Z"), PlannedFault(1.0, "estop"))
-    assert table.tool_tip_positions == ((25.4, 50.8), (-25.4, 0.0))  # the lathe's file counts in inches
+    assert table.tips == ((25.4, 50.8), (-25.4, 0.0))  # the lathe's file counts in inches
     assert table_with("").faults == ()
 
 

@@ -28,7 +28,7 @@ def with_setter(setter: ToolSetterModel = SETTER, *inputs: str, tip: tuple[float
     """The shipped lathe with a tool setter, and one tool whose tip is where only the simulation knows."""
     machine = load_machine()
     wired = {name: InputModel(name, f"test {name}") for name in ("probe", *inputs)}
-    tables = {**machine.hardware.tables, "setter": setter, "sim": SimulatedTable(tool_tip_positions=(tip,))}
+    tables = {**machine.hardware.tables, "setter": setter, "sim": SimulatedTable(tips=(tip,))}
     hardware = dataclasses.replace(machine.hardware, tables=tables)
     return dataclasses.replace(machine, inputs={**machine.inputs, **wired}, hardware=hardware)
 

@@ -23,19 +23,9 @@ ACCEPTED_NAMES = frozenset(
         "drivers/hal/hal_table.py: on",
         "drivers/inverter/family_table.py: on",
         "core/extras/sharing/sharing_table.py: look",
-        "core/ports.py: take",
     }
 )
-"""Keys of the machine file, and the port of samples, which has many implementations."""
-SAMPLE_SOURCES = frozenset(
-    {
-        "app/compose/backends/inverter_backend.py",
-        "drivers/canopen/canopen_machine.py",
-        "drivers/driver_host/host_ports.py",
-        "drivers/hal/hal_machine.py",
-        "drivers/simulated/simulated_machine.py",
-    }
-)
+"""Keys of the machine file."""
 NOT_CHECKED = frozenset({"kept", "keeps", "centre", "slides", "palms", "millimetre", "is no", "is none"})
 """Words that only texts for readers must not contain, or that are normal in "if there is no"."""
 ACCEPTED: dict[str, frozenset[str]] = {
@@ -109,4 +99,4 @@ def test_functions_and_fields_do_not_have_unclear_names() -> None:
         for each in iter_defined_names(ast.parse(text))
         if each in UNCLEAR_NAMES
     }
-    assert found == ACCEPTED_NAMES | {f"{name}: take" for name in SAMPLE_SOURCES}
+    assert found == ACCEPTED_NAMES

@@ -33,11 +33,11 @@ OffsetChanges = Mapping[OffsetKind, Mapping[int, Mapping[str, FieldValue]]]
 
 
 def confirm_changes(store: Store, args: argparse.Namespace, changes: OffsetChanges) -> None:
-    """Raise CommandError if a value exceeds the axis travel or a suspicious change is not confirmed.
+    """Require the user to confirm suspicious offset changes before they are saved.
 
-    CommandError is also raised if the machine file with the travel is invalid. The option --yes confirms
-    suspicious changes, but does not permit a value that exceeds the travel. The store itself rejects values
-    that are out of range.
+    Raises CommandError if a value exceeds the axis travel, if a suspicious change is not confirmed, or if
+    the machine file with the travel limits is invalid. The option --yes confirms suspicious changes, but
+    does not permit a value that exceeds the travel. The store itself rejects values that are out of range.
     """
     travel = _machine_travel(store, args)
     tables = {kind: store.offsets.get_table(kind).read_rows() for kind in changes}

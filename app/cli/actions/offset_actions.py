@@ -136,7 +136,7 @@ def _format_shape(row: ToolShapeRow) -> str:
 
 
 def _format_details(row: ToolOffsetRow) -> str:
-    """Return those of a tool's wear, tip, master mark and remark that are set, as text."""
+    """Return a tool's wear, tip orientation, master mark and remark as text. Unset values are omitted."""
     wear = (
         Message(
             "  wear X {wear_x} Z {wear_z}",
@@ -339,7 +339,7 @@ def _parse_value(field: RowField, text: str) -> FieldValue:
 
 
 def _clear(args: argparse.Namespace) -> int:
-    """Clear one offset or a whole table in one step that can be undone."""
+    """Clear one offset or a whole offset table as a single change, which the user can undo."""
     letter = args.offset.upper()
     with open_store() as store:
         if letter in {**_KIND, **_MILL_KIND}:

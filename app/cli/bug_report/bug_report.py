@@ -142,7 +142,7 @@ def _latest(store: Store, name: str) -> tuple[str, str] | None:
 
 
 def _stored_names(connection: sqlite3.Connection) -> tuple[set[str], set[str]]:
-    """Return the names of people and of programs in all tables."""
+    """Return the user names and the program names that occur in any table of the store."""
     people = _texts(connection, "people", "name")
     programs = _texts(connection, "programs", "name")
     for (table,) in connection.execute("SELECT name FROM sqlite_master WHERE type = 'table'").fetchall():

@@ -36,7 +36,7 @@ def report_crash(
 
 
 def report_thread_exception(thread_error: threading.ExceptHookArgs) -> None:
-    """Report an exception that ended a thread. The other threads continue."""
+    """Report an uncaught exception that ended a software thread. The other threads continue."""
     if thread_error.exc_value is not None and not isinstance(thread_error.exc_value, SystemExit):
         report_crash(thread_error.exc_type, thread_error.exc_value, thread_error.exc_traceback)
 
@@ -93,7 +93,7 @@ def _try_write(folder: Path, text: str) -> Path | None:
 
 @contextmanager
 def catch_interrupts() -> Iterator[None]:
-    """Remember each interrupt that Python drops inside the block.
+    """Record each Ctrl+C interrupt that Python drops in the ``with`` block.
 
     ``raise_dropped_interrupt`` then raises it.
     """
@@ -114,7 +114,7 @@ def catch_interrupts() -> Iterator[None]:
 
 
 def raise_dropped_interrupt() -> None:
-    """Raise KeyboardInterrupt once if an interrupt was dropped."""
+    """Raise KeyboardInterrupt once if Python dropped a Ctrl+C interrupt in ``catch_interrupts``."""
     if _dropped:
         _dropped.clear()
         raise KeyboardInterrupt

@@ -60,7 +60,10 @@ def mask_machine_file(text: str, public_strings: Collection[str], replacer: Priv
 
 
 def _parts(line: str, replaced: Callable[[re.Match[str]], str]) -> Iterator[str]:
-    """Yield the parts of a line before its comment, with every string replaced by ``replaced``."""
+    """Yield the segments of a line up to its comment.
+
+    Each string is replaced by the result of ``replaced``.
+    """
     end = 0
     while True:
         string, comment = _STRING.search(line, end), line.find("#", end)

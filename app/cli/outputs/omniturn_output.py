@@ -1,6 +1,7 @@
 """Output of elementary blocks of OmniTurn programs, in inches and minutes.
 
-Long columns of numbers are formatted together for speed. The text is the same as for single numbers.
+Long columns of numbers are formatted together for speed. The result is the same as if each number were
+formatted separately.
 """
 
 from __future__ import annotations
@@ -54,10 +55,11 @@ def round_exactly(values: FloatArray, decimal_places: int) -> FloatArray:
 
 
 def format_decimals(values: FloatArray, decimal_places: int) -> list[str]:
-    """Return the shortest text of each value (m,) rounded to at most 11 places, identical to ``repr``.
+    """Return each value (m,) as the shortest decimal text, identical to ``repr`` of the rounded value.
 
-    A decimal fraction of twelve digits is the shortest text of its double. The function therefore only
-    writes the digits and omits leading and trailing zeros.
+    The values are rounded to ``decimal_places``, which is at most 11. A decimal fraction of at most twelve
+    digits is already the shortest text of its double. The function therefore only writes the digits and
+    omits leading and trailing zeros.
     """
     found = round_exactly(values, decimal_places)
     size = np.abs(found)
@@ -185,7 +187,7 @@ def format_series(moves: TimedSeries) -> str:
 
 
 def _feed_texts(series: StraightMoveSeries, text: Callable[[Block], str]) -> Iterable[str]:
-    """Return ``text(block)`` for each move of a series. The text may depend only on the feed."""
+    """Return ``text(block)`` for each move of a series. ``text`` may use only the feed of the block."""
     like = series.pattern
     if series.feed is None:
         return [text(like)] * len(series)

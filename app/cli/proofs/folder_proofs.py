@@ -155,7 +155,7 @@ class _ProofUnit:
 
 
 class _FolderProofRun:
-    """One execution of the command, with the programs to prove and the results reported so far."""
+    """One execution of ``turndesk prove DIR``, with the programs to prove and the results so far."""
 
     def __init__(
         self,
@@ -304,7 +304,7 @@ class _FolderProofRun:
         self._progress.report_progress(len(self._proofs))
 
     def _print_result(self, path: Path, proof: Proof) -> None:
-        """Print the proof of a program. The method is called for the programs in the order of their names."""
+        """Print the proof of a program. The method is called for all programs in alphabetical order."""
         if proof.failure_reason:
             sys.stderr.write(f"turndesk: {proof.failure_reason}\n")
         elif self._args.json:

@@ -48,10 +48,10 @@ class ProofJob:
 
 @dataclass(slots=True)
 class ProofJobsByMachine:
-    """Proof jobs by machine.
+    """Proof jobs by machine, created on first use by calling ``create_job``.
 
     There is one job for the machine that the options specify, and one for each shipped machine that a
-    program needs. ``create_job`` creates a job.
+    program needs.
     """
 
     arguments: argparse.Namespace
@@ -71,9 +71,9 @@ class ProofJobsByMachine:
         return select_mill_for_program(source)
 
     def get_job(self, machine: str) -> ProofJob:
-        """Return the proof job for a machine name. Raises CommandError if the machine is invalid.
+        """Return the proof job for a machine name.
 
-        CommandError is also raised if an option is invalid.
+        Raises CommandError if the machine or an option is invalid.
         """
         if machine not in self._made:
             args = self.arguments
@@ -84,5 +84,5 @@ class ProofJobsByMachine:
 
 
 def describe_machine_choice(program_name: str, machine: str) -> str:
-    """Return the message that reports which machine was chosen for a program."""
+    """Return a message that names the shipped machine on which a program is proved."""
     return f"turndesk: {program_name} is proved on the shipped {machine}; --machine chooses another one\n"

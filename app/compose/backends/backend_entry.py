@@ -39,12 +39,10 @@ DeviceSimulation = Callable[
 class ConnectedMachine:
     """Ports of a connected machine.
 
-    - ``on_screen_station`` is the operator station on the screen, or None if the machine has its
-      own.
-    - ``list_extra_check_rows`` returns the rows of ``turndesk machine check`` that follow the row of the
-      station.
-    - ``list_measured_row_names`` returns names of those rows, and of inputs outside the backend. It
-      returns only the names of rows and inputs with values that hardware measures.
+    - ``on_screen_station`` is the operator station on the screen, or None if the machine has its own.
+    - ``list_extra_check_rows`` returns the rows of ``turndesk machine check`` that follow the station's row.
+    - ``list_measured_row_names`` returns the names of those extra rows, and of the inputs outside the
+      backend, whose values hardware measures.
     """
 
     ports: MachinePorts
@@ -99,7 +97,7 @@ def _backend(word: str) -> Backend:
 
 
 def list_simulatable_backend_names() -> list[str]:
-    """Return the names of the backends that can simulate their devices without the other hardware."""
+    """Return the names of the backends that can simulate only the devices of a machine."""
     return [word for word in BACKENDS if _backend(word).simulate_devices is not None]
 
 
@@ -186,9 +184,10 @@ class MachineCheckRow(NamedTuple):
         return NOT_CHECKED if self.state == NOT_CHECKED else "ok"
 
     def mark_unchecked(self, measured_names: Container[str]) -> MachineCheckRow:
-        """Return the row with the state ``NOT_CHECKED`` if no hardware reported the row.
+        """Return the row with the state ``NOT_CHECKED`` if no hardware reported its value.
 
-        A failed row does not change. ``measured_names`` has the names of the rows that hardware reported.
+        A failed row does not change. ``measured_names`` are the names of the rows with values that hardware
+        reported.
         """
         if self.name in measured_names or self.state in FAILED_STATES:
             return self

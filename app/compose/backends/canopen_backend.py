@@ -265,11 +265,11 @@ BACKEND = Backend(
 
 
 def list_startup_objects(machine: Machine) -> dict[str, ObjectValues]:
-    """Return the objects that are written to each node at startup, by node name.
+    """Return the CANopen objects that are written to each node at startup, by node name.
 
     The accelerations of the spindle drive are omitted, because the text of the machine file contains them.
-    Raises DriverError if a library is missing, if the configuration is invalid, or if the EDS file of a drive
-    cannot be used.
+    Raises DriverError if a library is missing, if the configuration is invalid, or if the EDS file of a
+    drive cannot be used.
     """
     try:
         from drivers.canopen.canopen_objects import load_drive_dictionary

@@ -87,7 +87,7 @@ class DriverHostProcess:
         self.connection = HostConnection(link, clock, self._restart, self._bell)
 
     def _restart(self) -> ConnectionAttempt[HostLink]:
-        """Start a new process after the old one has ended. The bus must never have two masters."""
+        """Start a new process after the old one has ended, because a bus must never have two masters."""
 
         def start_new_host() -> HostLink:
             self._end()

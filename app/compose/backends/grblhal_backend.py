@@ -104,10 +104,10 @@ def _connect_controller(machine: Machine, clock: Clock) -> ConnectedMachine:
 
 
 def _measured_rows(machine: Machine) -> Iterator[str]:
-    """Yield the names of the controller, the spindle if it has an encoder, and the inputs.
+    """Yield the names of the check rows with values that hardware measures.
 
-    Axis positions are only counts of steps, and the overrides are set on the screen. Hardware measures
-    neither the axis positions nor the overrides.
+    These are the rows of the controller, the inputs, and the spindle if it has an encoder. Axis positions
+    are only step counts, and the overrides are set on the screen.
     """
     yield "controller"
     if machine.spindle.encoder_ppr:

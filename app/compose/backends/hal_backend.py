@@ -107,10 +107,11 @@ def _survey_rows(machine: Machine, _clock: Clock) -> Iterator[tuple[str, str, st
 
 
 def _measured_rows(machine: Machine) -> Iterator[str]:
-    """Yield the names of all inputs, and of the axes and the spindle if they have encoders.
+    """Yield the names of the check rows with values that hardware measures.
 
-    A simulated board yields no names. The position of a step drive is only the number of steps sent.
-    Without [board], the driver does not know the kind of the axes' drives.
+    These are the rows of all inputs, and of the axes and the spindle if they have encoders. A simulated
+    board has no such rows. The position of a step drive is only the number of steps sent. Without a [board]
+    table, the kind of the axis drives is unknown.
     """
     board, hal = machine.hardware.find_driver_table(BoardTable), machine.hardware.find_driver_table(HalTable)
     if board is not None and board.kind == SIM:

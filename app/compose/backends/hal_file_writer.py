@@ -57,7 +57,7 @@ class GeneratedHalFiles:
 def generate_hal_files(machine: Machine) -> GeneratedHalFiles:
     """Return the generated HAL file and wiring table of a machine.
 
-    Raises the errors of ``build_hal_file``.
+    Raises the same exceptions as ``build_hal_file``.
     """
     file, hal = build_hal_file(machine), machine.hardware.find_driver_table(HalTable)
     return GeneratedHalFiles(

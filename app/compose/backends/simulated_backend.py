@@ -50,7 +50,7 @@ def create_sim_config(machine: Machine) -> SimConfig:
         commit_time_s=machine.timing.commit_time_s,
         planned_faults=sim.faults,
         random_seed=sim.seed,
-        setter=_tool_setter(machine, sim.tool_tip_positions),
+        setter=_tool_setter(machine, sim.tips),
         has_spindle_load_input="spindle_load" in machine.hardware.analog_inputs,
     )
 

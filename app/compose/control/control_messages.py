@@ -59,7 +59,7 @@ class ScreenAliveMessage(NamedTuple):
 
 
 class StopSocketMessage(NamedTuple):
-    """Message that a file descriptor follows. It belongs to a socket for stop keys."""
+    """Message that precedes the file descriptor of the socket for stop keys."""
 
 
 class EventStoredMessage(NamedTuple):
@@ -118,7 +118,7 @@ class EventMessage(NamedTuple):
 
 
 class InterruptedJobMessage(NamedTuple):
-    """Message with the job that is running, which a power failure would interrupt, or None."""
+    """Message with the job that a power failure would interrupt, or None if no job is running."""
 
     job: InterruptedJob | None
 

@@ -64,7 +64,7 @@ def main(arguments: list[str]) -> int:
 
 
 def _serve_screens(server: ControlServer, listener: ScreenListener) -> None:
-    """Accept one screen after another that connects to the control."""
+    """Accept the connections of screens to the control, one after another."""
     while not server.closing_event.is_set():
         with suppress(OSError, EOFError):
             connection = listener.accept_screen()

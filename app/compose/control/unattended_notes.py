@@ -21,7 +21,10 @@ EVENTS_FILE_NAME = "left_events.json"
 
 
 def save_interruption_note(folder: Path, job: InterruptedJob | None) -> None:
-    """Save a note of the interrupted job, or of None if no job is interrupted. Log a disk error."""
+    """Save a note with the interrupted job, or with None if no job was interrupted.
+
+    A disk error is logged.
+    """
     try:
         write_atomically(
             folder / NOTE_FILE_NAME,
@@ -32,7 +35,7 @@ def save_interruption_note(folder: Path, job: InterruptedJob | None) -> None:
 
 
 def pop_interruption_note(folder: Path) -> tuple[bool, InterruptedJob | None]:
-    """Return whether a note was saved by a control without a screen, and its interrupted job.
+    """Return whether a control without a screen saved a note, and the interrupted job in the note.
 
     The note is then deleted.
     """

@@ -92,9 +92,9 @@ def make_guarded_post(
     reviewed_changes: MachineFileChanges,
     report_refusal: Callable[[str], None],
 ) -> Callable[[Command], None]:
-    """Return a function that posts commands, but rejects switching the drives on if necessary.
+    """Return a function that posts commands, but can reject switching the drives on.
 
-    It rejects that command while changes of the machine file are not accepted.
+    It rejects only this command, and only while changes of the machine file are not accepted.
     """
 
     def post_if_accepted(command: Command) -> None:

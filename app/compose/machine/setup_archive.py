@@ -93,7 +93,7 @@ def _not_unpacked(source: Path, folder: Path, error: Exception) -> CommandError:
 
 
 def find_member_error(name: str, path: Path) -> CodedError | None:
-    """Return why a file cannot be the archive member ``name``, or None if it can.
+    """Return the error if a file is not valid as the archive member ``name``, or None if it is valid.
 
     Raises OSError if the file cannot be read.
     """

@@ -29,8 +29,8 @@ _FORMAT = "%(asctime)s %(levelname)s %(threadName)s %(name)s: %(message)s"
 class ErrorLog:
     """Log file in the folder ``logs`` to which all loggers write until the log is closed.
 
-    Nothing is written if the file cannot be created. Log records are queued, because the machine's threads
-    must not wait for the disk.
+    If the file cannot be created, no records are written. Records are queued, because the machine's
+    software threads must not wait for the disk.
     """
 
     def __init__(self, name: str = "turndesk.log") -> None:
@@ -44,9 +44,9 @@ class ErrorLog:
 
     @property
     def error_text(self) -> str:
-        """Return the reason why the error log cannot be written, or an empty string if it can.
+        """Return the reason why the error log cannot be written, or an empty string if it can be written.
 
-        After a delay, reading this property also retries the write.
+        If the last retry was long enough ago, reading this property also retries the write.
         """
         found = self._file.error_text if self._file else ""
         if found and time.monotonic() >= self._next:

@@ -40,8 +40,8 @@ from drivers.wakeups import ManualClock, RealClock
 class HeadlessToolLife:
     """Counter of tool life during a program run without a screen.
 
-    ``update`` is called at every step of the run. Without a store, nothing is counted and a message is
-    printed.
+    ``update`` is called at every step of the run. If no store is open, tool life is not counted and a
+    message is printed.
     """
 
     def __init__(

@@ -59,7 +59,9 @@ def _do_nothing() -> None:
 
 
 class Journal(Persistence):
-    """Access of the operator screen to the store. A separate thread writes, so that callers do not wait.
+    """Connection of the operator screen to the store.
+
+    A separate thread writes, so that callers do not wait.
 
     The machine also works if the store cannot be opened. Events are then buffered in memory. If the cause
     is temporary, such as a full disk, the store is opened as soon as possible.
@@ -102,7 +104,7 @@ class Journal(Persistence):
                 self._start_opener()
 
     def _open(self) -> Store:
-        """Open the store, and on the first call read the data that the last control has left.
+        """Open the store, and on the first call read the data that the last control has left there.
 
         Raises StoreError on failure. The store is then closed, because its lock would block later attempts.
         """
@@ -116,7 +118,7 @@ class Journal(Persistence):
         return store
 
     def _read_interrupted(self, store: Store) -> None:
-        """Read damage reports, the interrupted job, and records of runs that have no end.
+        """Read damage reports, the interrupted job, and the records of program runs without an end time.
 
         Raises StoreError on failure.
         """
@@ -154,10 +156,7 @@ class Journal(Persistence):
 
     @property
     def write_error(self) -> str:
-        """Return the reason why nothing is saved or why the last write failed.
-
-        The result is an empty string if the last write succeeded.
-        """
+        """Return why the store is not open or why its last write failed, or else an empty string."""
         return self._write_error or (self._store.write_error if self._store else "")
 
     @property
@@ -182,7 +181,7 @@ class Journal(Persistence):
         self._post(lambda store: store.settings.save_setting(INTERRUPTED_JOB_KEY, value))
 
     def book(self) -> OffsetBook:
-        """Return the book of stored offsets, through which the screen shows and changes them."""
+        """Return the offset book, through which the screen displays and changes the stored offsets."""
         store = self._store
         book = OffsetBook(
             store, "" if store else Message("OFFSETS CANNOT BE SAVED: {problem}", problem=self.write_error)
@@ -205,7 +204,7 @@ class Journal(Persistence):
             return None
 
     def create_parts_book(self, tool_kind: OffsetKind = OffsetKind.TOOL) -> ProductionRecords:
-        """Return the book of measured parts and tool lives in the store.
+        """Return the production records of the store: measured parts and tool lives.
 
         ``tool_kind`` is the tool table of this machine.
         """
@@ -215,7 +214,7 @@ class Journal(Persistence):
         return book
 
     def _attach_book(self, book: OffsetBook | ProductionRecords, store: Store | None) -> None:
-        """Register a book whose store must be replaced whenever the journal's store is replaced.
+        """Register a book, so that its store is replaced whenever the journal's store is replaced.
 
         The journal's store may also be replaced while the book is being created.
         """
@@ -243,9 +242,9 @@ class Journal(Persistence):
         return last is not None and origin.control_id == last.control_id and origin.number <= last.number
 
     def resume_recording(self, snapshot: Snapshot) -> None:
-        """Count parts for the program of a control that ran without this process.
+        """Count the parts of the program of a control that ran without this process.
 
-        Call this method before its events arrive.
+        Call this method before the control's events arrive.
         """
         with self._lock:
             self._program = snapshot.program
@@ -328,7 +327,10 @@ class Journal(Persistence):
         return store.runs if store is not None else NullRunRecords(self._write_error or STORE_CLOSED_TEXT)
 
     def people(self) -> UserList:
-        """Return the users, even if another process writes the store. Raises StoreError on failure."""
+        """Return the users, even while another process has the store open for writing.
+
+        Raises StoreError if the users cannot be read.
+        """
         store = self._store
         if store is not None:
             return store.people.read_users()
@@ -383,9 +385,9 @@ class Journal(Persistence):
     def restore(self, source: Path) -> Path | None:
         """Replace the store with a backup, and add the events that occurred during the restore.
 
-        Raises StoreError if no store is open, and then changes nothing. Raises StoreError also if the restore
-        fails. After a restore and after a failed restore, the store is opened again. If it cannot be opened,
-        ``write_error`` contains the reason, and after a temporary error the journal retries.
+        Raises StoreError if no store is open, which changes nothing, or if the restore fails. The store is
+        opened again after a successful or a failed restore. If it cannot be opened, ``write_error``
+        contains the reason. After a temporary error, the journal retries.
         """
         with self._lock:
             store, self._store = self.require_store(), None
@@ -446,7 +448,7 @@ class Journal(Persistence):
         return self._opener is not None and self._opener.is_alive()
 
     def _start_opener(self) -> None:
-        """Start the thread that retries, unless it is running."""
+        """Start the thread that retries opening the store, unless it is already running."""
         if not self._is_retrying():
             self._opener = threading.Thread(target=self._retry_open, name="store-opener", daemon=True)
             self._opener.start()

@@ -12,8 +12,8 @@ from core.store.store_rows import EventOrigin
 class EventReceipt(NamedTuple):
     """Origin of an event, the function that confirms its storage, and its rows of cycles and stops.
 
-    ``confirm_storage`` is called from any thread when the event is on the disk, or when it need not be
-    stored.
+    ``confirm_storage`` may be called from any thread. It is called when the event is on the disk, or when
+    the event does not need to be stored.
     """
 
     origin: EventOrigin

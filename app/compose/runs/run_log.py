@@ -106,7 +106,10 @@ def _kept(path: Path) -> _LogFile:
 
 
 def _list_excess(files: Sequence[_LogFile]) -> list[_LogFile]:
-    """Return the files that exceed the limits. ``files`` excludes the file that is being written."""
+    """Return the log files to delete so that the rest are within the limits.
+
+    ``files`` excludes the file that is being written.
+    """
     gone, size = [], 0
     for place, each in enumerate(sorted(files, key=lambda one: (one.age_s, one.path.name)), start=1):
         size += each.size_bytes

@@ -41,7 +41,7 @@ class StartHandler(Protocol):
 
 
 class FrameWatcher(Protocol):
-    """Object that observes every frame and may add a reminder to the prompt line."""
+    """Object that is notified of every screen frame and may add a reminder to the prompt line."""
 
     def observe_frame(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Update the watcher from the snapshot and the loaded program, once per frame."""

@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class CodeHelp:
-    """Help for the program code at the cursor, with a list of choices to insert.
+    """Help for the program code at the cursor, with a list of codes that the operator can insert.
 
     - ``current_entry`` is the code at the cursor.
     - ``choices`` are the listed codes, and ``marked`` is the index of the selected choice.
-    - ``start_column`` is the column where the typed part of the code begins, or 0 if a choice is
-      inserted at the cursor.
+    - ``start_column`` is the column where the typed part of the code begins, or 0 if a choice is inserted at
+      the cursor.
     """
 
     current_entry: CodeBookEntry | None = None
@@ -36,7 +36,10 @@ class CodeHelp:
     _asked: tuple[str, int] = field(default=("", 0))
 
     def update_for_cursor(self, code_book: CodeBook | None, line: str, column: int) -> None:
-        """Update the help for the cursor position. No code is known until a code book is available."""
+        """Update the help for the cursor position.
+
+        Without a code book, no code at the cursor is known.
+        """
         if code_book is self._book and (line, column) == self._asked:
             return
         self._book, self._asked = code_book, (line, column)
@@ -45,7 +48,7 @@ class CodeHelp:
     def open_choices(self) -> bool:
         """List the completions of the typed text, or else the code book chapter of the code at the cursor.
 
-        Returns False if no code book exists yet, because the text is still being proved for the first time.
+        Returns False if no code book exists yet, because the first proof of the text is still in progress.
         """
         if self._book is None:
             return False

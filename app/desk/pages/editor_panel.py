@@ -8,9 +8,9 @@ from app.desk.pages.table_content import FunctionKey
 
 
 class EditorPanelModel:
-    """Panel without functions, for an editor whose panel is not installed.
+    """Interface of the editor's optional panel, with default members that have no effect.
 
-    A feature overrides all members.
+    The feature that provides a panel overrides all members.
 
     - ``text`` is the program with the lines that the panel writes.
     - ``text_number`` counts the texts to prove.
@@ -30,14 +30,14 @@ class EditorPanelModel:
 
     @property
     def is_list_shown(self) -> bool:
-        """Return whether the panel shows a list, so that leaving the page loses no input."""
+        """Return whether the panel shows a list and no form, so that leaving the page loses no input."""
         return True
 
     def open_file(self, file: Path) -> None:
         """Open the form that makes a program from this file."""
 
     def process_results(self) -> None:
-        """Process the results of the workers. The editor calls this method once per frame."""
+        """Process the results of the panel's background work. The editor calls this method once per frame."""
 
     def make_function_keys(self) -> dict[int, FunctionKey]:
         """Return the function keys of the panel by number."""

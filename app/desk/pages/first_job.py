@@ -55,7 +55,7 @@ FIRST_JOB_STEPS = (
 class FirstJobCard:
     """Progress of the operator through the steps of the first job.
 
-    A completed step remains completed until the card is shown again.
+    A completed step remains completed until the operator opens the card again.
     """
 
     step_index: int = 0

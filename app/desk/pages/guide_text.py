@@ -57,7 +57,7 @@ _LIST_ITEM = re.compile(r"\s*(-|\d+\.) +(.*)")
 
 
 class BlockKind(Enum):
-    """Kinds of blocks of a section."""
+    """Kinds of blocks in a section of the user's guide."""
 
     HEADING = "heading"
     TEXT = "text"
@@ -67,9 +67,9 @@ class BlockKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class GuideBlock:
-    """One heading, paragraph, key or picture of the guide.
+    """One heading, paragraph, key description or picture of the guide.
 
-    ``text`` of a picture is its path. ``key`` is the first cell of a table row.
+    ``text`` of a picture is its path. ``key`` of a key description is the first cell of its table row.
     """
 
     kind: BlockKind
@@ -125,7 +125,7 @@ def _list_headings(folder: Path, name: str) -> tuple[str, ...]:
 
 
 def read_section(name: str, heading: str) -> tuple[GuideBlock, ...]:
-    """Return the blocks of one section of a file, with its subsections and without its own heading."""
+    """Return the blocks of one section of a guide file, including subsections but not its heading."""
     folder = find_guide_folder()
     return tuple(_make_blocks(_find_section(_read_lines(folder, name), heading), (folder / name).parent))
 

@@ -1,8 +1,8 @@
 """Conditions for opening a page or a program, which both the keys and the page check.
 
-The original control cancels the spindle-on command when its editor is opened, so that the operator does not
-type next to a turning chuck. The executor has no command that only stops the spindle, because Reset also
-cancels the program. TurnDesk therefore does not open the editor until the spindle has stopped.
+The original control stops the spindle when its editor is opened, so that the operator does not type next to
+a rotating chuck. The executor cannot stop only the spindle, because Reset also cancels the program.
+TurnDesk therefore does not open the editor until the spindle has stopped.
 
 While a cycle runs, the machine uses the program as it was loaded. A different program can be edited and
 proved during that time. Pause, Scroll Lock and Esc stop the machine as on other pages.

@@ -18,7 +18,7 @@ AttachedT = TypeVar("AttachedT", bound=AttachedModel)
 
 @dataclass(slots=True)
 class PageRegistry:
-    """Page models by class, with start handlers, watchers, notices and program keys."""
+    """Registry of page models by class, with start handlers, watchers, notices and program keys."""
 
     _attached: dict[type[AttachedModel], AttachedModel] = field(default_factory=dict)
     _made_later: dict[str, Callable[[], AttachedModel]] = field(default_factory=dict)  # By class name.
@@ -74,18 +74,21 @@ class PageRegistry:
         self._program_keys[name] = key
 
     def set_notice_finder(self, find_notice: Callable[[Snapshot], NoticeRow | None]) -> None:
-        """Set the function that finds a notice to show between cycles, for example about the next job."""
+        """Set the function that finds a notice to show between cycles, such as about the next job."""
         self._notice = find_notice
 
     def set_recording_opener(self, open_recording: Callable[[str], None]) -> None:
-        """Set the function that opens the scope recording of an alarm by name."""
+        """Set the function that opens the scope recording of an alarm.
+
+        Its argument is the recording's name.
+        """
         self._open_record = open_recording
 
     # --- uses ----------------------------------------------------------------------------------------
 
     @property
     def active_start_handler(self) -> StartHandler | None:
-        """Return the page that uses the start buttons now, or None if the buttons start the program."""
+        """Return the page that currently uses the start buttons, or None if they start the program."""
         return next((page for page in self._starts if page.is_open), None)
 
     @property

@@ -41,7 +41,7 @@ class RejectedText(str):
 
 
 def refused(text: str) -> str:
-    """Return a rejected value as RejectedText, but return a rejected name unchanged.
+    """Return a rejected number as RejectedText, and a rejected name unchanged.
 
     The operator edits a rejected name instead of typing it again.
     """
@@ -61,7 +61,7 @@ def apply_edit_key(text: str, key: str, max_length: int = MAX_LENGTH) -> str:
 class TableRow:
     """One row of a table.
 
-    - ``is_lamp_lit`` draws a lamp, which is filled if True and hollow if False. None draws no lamp.
+    - ``is_lamp_lit`` determines the indicator lamp: filled if True, hollow if False, and no lamp if None.
     - A cell may have two lines if the table has ``has_tall_rows`` set.
     - ``tool_outline`` is drawn in the last cell.
     """
@@ -77,10 +77,10 @@ class TableRow:
 class TableContent:
     """Content of a table with a title, column heads and an entry line.
 
-    - ``relative_column_widths`` are the fractions of the table's width that the columns have.
+    - ``relative_column_widths`` are the column widths as fractions of the table width.
     - ``marked`` is the index of the selected row, or -1 if no row is selected.
     - ``entry_prompt`` and ``text`` are shown in the entry line.
-    - Cells of the columns ``untranslated_columns`` contain names and user texts, which are not translated.
+    - ``untranslated_columns`` are the columns with names and user texts, which are not translated.
     """
 
     title: str

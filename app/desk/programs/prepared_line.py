@@ -54,7 +54,7 @@ class PreparedMdiLine:
     _begun: int = 0  # Number of lines that the executor had started at the last update.
 
     def prove_line(self, text: str, snapshot: Snapshot, on_failed: Callable[[str], None]) -> None:
-        """Prove this MDI line from the current machine state, and cancel a line that is already ready.
+        """Prove this MDI line from the current machine state, and discard a previous line that is ready.
 
         ``on_failed`` is called with an error text if the proof fails unexpectedly.
         """
@@ -62,12 +62,12 @@ class PreparedMdiLine:
         self.worker.request_work(partial(self.prove_text, text, snapshot), self._proved, on_failed)
 
     def cancel_line(self) -> None:
-        """Cancel the line, so that Cycle Start has no effect."""
+        """Cancel the line. Cycle Start then has no effect until another line is ready."""
         self.discard_line()
         self.post_command(PrepareCycleStart(StartAction.MDI_LINE))
 
     def stop_line_mode(self) -> None:
-        """Cancel the line, so that Cycle Start starts programs again."""
+        """Cancel the line and end MDI mode, so that Cycle Start starts programs again."""
         self.discard_line()
         self.post_command(PrepareCycleStart(StartAction.PROGRAM))
 
@@ -80,8 +80,8 @@ class PreparedMdiLine:
         """Make Cycle Start run MDI lines instead of the program.
 
         The MDI page calls this method once per frame while it is open. The command is repeated until the
-        snapshot shows its effect. The executor rejects the command during a program, which may have started
-        after the snapshot was made.
+        snapshot shows its effect. While a program runs, the executor rejects the command. A program may
+        have started after the snapshot was made.
         """
         if snapshot.state in CYCLE_STATES or snapshot.starts is StartAction.MDI_LINE:
             return

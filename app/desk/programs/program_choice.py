@@ -45,7 +45,7 @@ class ProgramChoice:
         return True
 
     def load_path(self, path: Path) -> None:
-        """Load the program at this path, but ask the operator before it replaces an interrupted job."""
+        """Load the program at this path. Ask the operator first if it would replace an interrupted job."""
         found = self.read_snapshot().interrupted
         self.prompt_line.withdraw_question()
         if found is not None and found.program != path.name:

@@ -127,7 +127,7 @@ _FileStamp = tuple[int, int]  # Modification time in ns and size in bytes, or an
 class ProgramFileMonitor:
     """Monitor that compares the loaded text with the program's files in a separate thread.
 
-    The separate thread is necessary because access to a network drive may hang.
+    Access to a network drive may hang, and would then block the screen.
     """
 
     def __init__(
@@ -204,7 +204,7 @@ class ProgramFileMonitor:
                 self.check_file_safely()
 
     def check_file_safely(self) -> None:
-        """Check the program's files once. If an exception occurs, they count as unreadable."""
+        """Check the program's files once. If an exception occurs, the files are reported as unreadable."""
         with ErrorCatcher() as trial:
             self.compare_files()
         if trial.error is not None:
@@ -222,9 +222,9 @@ def _stamp(file: Path) -> _FileStamp:
 
 
 def _find_difference(file: Path, read: ProgramSource) -> str:
-    """Return the message that a file has changed or is unreadable, or an empty string.
+    """Return the message that a file has changed or is unreadable, or else an empty string.
 
-    The result is empty if the text of the file equals the loaded text.
+    The file counts as changed if its text differs from the loaded text.
     """
     try:
         now = load_source(file)

@@ -1,6 +1,6 @@
 """Loading, proving and drawing of a program on a worker thread.
 
-The screen reads the result from ``ProgramLoader.loaded``.
+The screen reads the result from ``ProgramLoader.loaded_program``.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ ApproachLegs = tuple[tuple[float, float, bool], ...]
 class FirstMoveResult(NamedTuple):
     """Result of checking the first move of a program for collisions.
 
-    The result has one verdict for a start at the current position and one verdict for Cycle Repeat.
-    ``approach_legs`` is the path to draw. ``part_zero_position`` is the machine position, X and Z in mm, at
-    which the tool tip is at part zero.
+    - ``clearances`` contains one verdict for a start at the current position and one for Cycle Repeat.
+    - ``approach_legs`` is the path to draw.
+    - ``part_zero_position`` is the machine position, X and Z in mm, at which the tool tip is at part zero.
     """
 
     clearances: tuple[StartClearance, ...]
@@ -63,9 +63,9 @@ class LoadingPhase(StrEnum):
 class ProvedJob:
     """Proof of a job with its diagnostics.
 
-    If ``waits_for_part_proof`` is True, the job must not start before the part is proved, because an error
-    of the part may prevent the start. ``first_move_result`` is the result of the first-move check of an MDI
-    line or a restart.
+    ``waits_for_part_proof`` is True if the job must not start before its part is proved, because an error
+    in the part would prevent the start. ``first_move_result`` is the result of the first-move check of an
+    MDI line or a restart.
     """
 
     proof: Proof
@@ -114,10 +114,10 @@ def _no_part(_picture: ProgramPicture, _watch: ProgressCallback) -> PartProof | 
 
 @dataclass(frozen=True, slots=True)
 class LoadingSteps:
-    """Functions of other packages that load a program, called only on the worker thread.
+    """Functions of other packages that load a program. They are called only on the worker thread.
 
-    The ``ProgressCallback`` receives the progress. It may raise WorkAbandonedError, which the functions must
-    not catch.
+    They report progress to a ``ProgressCallback``. The callback may raise WorkAbandonedError, which the
+    functions must not catch.
     """
 
     read_source: Callable[[Path], ProgramSource]  # Raises OSError or ValueError with an error message.
@@ -169,9 +169,9 @@ class LoadedProgram:
 
 @dataclass(slots=True)
 class ProgramLoader:
-    """Loader that loads one program at a time.
+    """Loader of programs, which loads one program at a time.
 
-    ``post_command`` sends commands to the executor. The worker thread also calls it.
+    ``post_command`` sends commands to the executor, and is also called on the worker thread.
     """
 
     loading_steps: LoadingSteps
@@ -190,7 +190,7 @@ class ProgramLoader:
         return self._now
 
     def start_loading(self, path: Path, block_delete: bool = False) -> None:
-        """Start loading a program, and cancel loading that is in progress."""
+        """Start loading a program, and cancel any loading in progress."""
         with self.worker.lock:
             self.load_count += 1
             self._now = LoadedProgram(LoadingPhase.READING, path, block_delete)
@@ -199,7 +199,7 @@ class ProgramLoader:
     def replace_loaded_program(self, loaded: LoadedProgram) -> None:
         """Replace the loaded program with an updated object for the same program.
 
-        The updated object has a new proof or a new progress of loading.
+        The updated object contains a new proof or new progress.
         """
         self._now = loaded
 

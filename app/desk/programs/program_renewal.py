@@ -26,11 +26,11 @@ from core.message import Message
 
 @dataclass(slots=True)
 class RunningRenewal:
-    """One renewal of the proof during a program run.
+    """Renewal of the proof for a running program after one change of offsets.
 
-    A newer renewal or a newly loaded program replaces this renewal. It uses the text of the running
-    program, and not the file on the disk. The screen shows the old program until the executor uses the new
-    program.
+    A newer renewal or a newly loaded program replaces this renewal. The renewal uses the text of the
+    running program, and not the file on the disk. The screen shows the old program until the executor uses
+    the new one.
     """
 
     program_loader: ProgramLoader
@@ -63,7 +63,10 @@ class RunningRenewal:
         return True
 
     def is_in_use(self, snapshot: Snapshot) -> bool:
-        """Return whether the executor uses the renewed program, and if so, show it on the screen."""
+        """Return whether the executor uses the renewed program.
+
+        If it does, show that program on the screen.
+        """
         ready = self._next
         if ready is None or ready.job is None or self.program_loader.load_count != self._loads:
             return False
@@ -211,9 +214,9 @@ class ProgramRenewal:
             )
 
     def _is_outdated(self, snapshot: Snapshot) -> bool:
-        """Return whether the proof was made for a unit other than the machine's modal unit.
+        """Return whether the unit of the proof differs from the machine's current modal unit.
 
-        The difference matters only if the program does not specify the unit.
+        The difference matters only if the program does not specify its unit.
         """
         now = self.program_loader.loaded_program
         at_rest = (

@@ -1,11 +1,11 @@
 """Check whether the first move of the next start would collide with the part.
 
-A collision prevents the start. A program is checked on a worker each time the axes stop at a new position.
-The worker that proves an MDI line or a restart also checks its first move. The executor receives the
-verdict, and rejects a start without a verdict.
+A collision prevents the start.
 
-The geometry is in ``core/proving/start_check.py``. Any worker may use ``FirstMoveChecker``, because it does
-not read a clock or wait for the machine.
+A program is checked on a worker each time the axes stop at a new position. An MDI line or a restart is
+checked by the worker that proves it. The executor receives the verdict, and rejects a start without a
+verdict. The geometry is in ``core/proving/start_check.py``. Any worker may use ``FirstMoveChecker``,
+because it does not read a clock or wait for the machine.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ if TYPE_CHECKING:
 
 
 class PreviousPart(NamedTuple):
-    """The program that made the part now in the chuck.
+    """The program that made the part that is currently in the chuck.
 
     If the program was interrupted, this object also contains the interrupted job.
     """
@@ -61,10 +61,7 @@ class PreviousPart(NamedTuple):
 
 
 class FirstMoveQuery(NamedTuple):
-    """Data for one first-move check.
-
-    The data include the job, the kind of start, the axis positions and the active tool.
-    """
+    """Data for one first-move check, such as the job, kind of start, axis positions and active tool."""
 
     job: Job
     start_kind: StartAction
@@ -321,7 +318,10 @@ class FirstMoveWatch:
     # --- requests -----------------------------------------------------------------------------------------
 
     def _track_part(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
-        """Update which part is in the chuck. An interrupted part stays there until a program starts."""
+        """Update the record of the part in the chuck.
+
+        An interrupted part stays there until a program starts.
+        """
         found, job, picture = snapshot.interrupted, loaded.job, loaded.picture
         self._loaded = PreviousPart(job, picture) if job is not None and picture is not None else None
         if snapshot.state in CYCLE_STATES and snapshot.starts not in MDI_ACTIONS:

@@ -18,15 +18,15 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class DeskControl:
-    """Access to the commands, the snapshots and the simulated station of the control.
+    """Access of the screen to the commands, the snapshots and the simulated station of the control.
 
     - ``station_panel`` is None if the machine has its own operator station.
     - ``set_input`` switches an input of a simulated machine.
-    - ``recordings`` contains the last minutes of samples, or is None without a recorder.
-    - ``open_stop_channel`` opens a connection that sends stop keys to the control without the screen.
-    - ``restart_control`` replaces a silent control, or is None if this is not possible.
-    - ``read_control_identity`` returns the identity of a control process, or an empty string for a control in
-      this process.
+    - ``recordings`` contains the last minutes of samples, or is None if there is no recorder.
+    - ``open_stop_channel`` opens a connection that sends stop keys to the control, bypassing the screen.
+    - ``restart_control`` replaces a control that does not respond, or is None if this is not possible.
+    - ``read_control_identity`` returns the identity of a control process, or an empty string for a control
+      in this process.
     """
 
     post: Callable[[Command], None]

@@ -65,7 +65,7 @@ class ProgramRuns:
     def pop_part_warning(self, snapshot: Snapshot, loaded: LoadedProgram) -> str:
         """Return the next new warning about a part that was proved while its program was running.
 
-        Each warning is returned only once. If there is no new warning, the result is an empty string.
+        Each warning is returned only once. The result is an empty string if there is no new warning.
         """
         part, seen = loaded.part_proof, self._part_seen
         self._part_seen = part

@@ -8,7 +8,10 @@ from dataclasses import dataclass
 
 @dataclass(slots=True)
 class StorageState:
-    """State of the data store and the program file. Without a store, no data count as unsaved."""
+    """State of the data store and of the loaded program's file.
+
+    Without a store, no data count as unsaved.
+    """
 
     _problem: Callable[[], str] = str
     _waiting: Callable[[], str] = str
@@ -19,7 +22,10 @@ class StorageState:
     def set_store_readers(
         self, read_problem: Callable[[], str] = str, read_unsaved: Callable[[], str] = str
     ) -> None:
-        """Set the functions that ``read_problem`` and ``read_unsaved`` call to read the state of a store."""
+        """Set the functions that read the storage problem and the description of the unsaved data.
+
+        ``read_storage_problem`` and ``read_unsaved_text`` call these functions.
+        """
         self._problem, self._waiting = read_problem, read_unsaved
 
     def set_file_readers(self, read_difference: Callable[[], str], recheck_file: Callable[[], None]) -> None:
@@ -30,7 +36,7 @@ class StorageState:
         self._difference, self._recheck_file = read_difference, recheck_file
 
     def read_storage_problem(self) -> str:
-        """Return the reason why events, parts and versions are not saved, or an empty string if they are."""
+        """Return why events, parts and versions cannot be saved, or an empty string if they can be saved."""
         return self._problem()
 
     def read_unsaved_text(self) -> str:
@@ -41,7 +47,7 @@ class StorageState:
         return self._waiting()
 
     def describe_file_difference(self) -> str:
-        """Return how the program file differs from the loaded program, or an empty string if equal."""
+        """Return how the program file differs from the loaded program, or else an empty string."""
         return self._difference()
 
     def recheck_file(self) -> None:

@@ -32,14 +32,14 @@ class WindowState:
         is_stop_held: Callable[[], bool],
         find_press_age: Callable[[], float],
     ) -> None:
-        """Connect the functions of a window in place of those of the previous window."""
+        """Connect the functions of a new window, which replace the functions of the previous window."""
         self._wake, self._is_stop_held, self._press_age = wake_window, is_stop_held, find_press_age
 
     def set_page_properties(self, *, can_start: bool, has_field: Callable[[], bool] = bool) -> None:
-        """Set the properties of the current page.
+        """Set the properties of the page that is currently shown.
 
-        ``can_start`` is True if cycles can be started from this page. ``has_field`` returns whether a text
-        field accepts letters.
+        ``can_start`` is True if cycles can be started from this page. ``has_field`` returns whether the
+        page has a text field that accepts letters.
         """
         self._starts_here, self._has_field = can_start, has_field
 
@@ -72,7 +72,7 @@ class WindowState:
         return self._press_age()
 
     def wake_window(self) -> None:
-        """Make the window read a state that changed while the machine was at rest.
+        """Make the window read a machine state that has changed while the machine was at rest.
 
         Any thread may call this method.
         """

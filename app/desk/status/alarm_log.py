@@ -1,4 +1,4 @@
-"""Log of alarms, E-stops and stops with causes and remedies, newest first, which F7 shows.
+"""Log of alarms, E-stops and other stops, with causes and remedies, newest first (F7).
 
 Entries of this session come from the executor's events. Older entries come from the store's event log.
 """

@@ -27,7 +27,7 @@ def format_fixed(value: float, decimals: int) -> str:
 
 
 def format_length(mm: float, is_metric: bool) -> str:
-    """Return a length or coordinate in mm as text.
+    """Return a length or coordinate as text. ``mm`` is the value in mm.
 
     If ``is_metric`` is true, the text is in mm with 4 decimals. Otherwise it is in inches with 5 decimals.
     """
@@ -57,7 +57,7 @@ def format_feed(value: float, is_metric: bool, per_rev: bool) -> str:
 
 
 def format_surface_speed(mm_s: float, is_metric: bool) -> str:
-    """Return a surface speed in mm/s as text without a sign.
+    """Return a surface speed as text without a sign. ``mm_s`` is the speed in mm/s.
 
     If ``is_metric`` is true, the text is in m/min. Otherwise it is in ft/min.
     """
@@ -96,9 +96,9 @@ def format_file_size(size_bytes: int) -> str:
 
 
 def format_wall_time(utc_time: str, today_format: str = "%H:%M") -> str:
-    """Return a UTC time of the store as local time, with the date if it is not today.
+    """Return a UTC time from the store as local time, with the date if it is not today.
 
-    ``today_format`` is the format for times of today. An invalid time is returned unchanged.
+    ``today_format`` is the format for a time of the current day. An invalid time is returned unchanged.
     """
     try:
         then = datetime.fromisoformat(utc_time).astimezone()
@@ -109,7 +109,7 @@ def format_wall_time(utc_time: str, today_format: str = "%H:%M") -> str:
 
 
 def format_local_time(utc_time: str, *, with_seconds: bool = True) -> str:
-    """Return a UTC time of the store (ISO 8601) as local date and time.
+    """Return a UTC time from the store (ISO 8601) as local date and time.
 
     The text contains seconds if ``with_seconds`` is true.
     """

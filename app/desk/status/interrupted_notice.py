@@ -110,9 +110,9 @@ def _changed(found: InterruptedJob, loaded: LoadedProgram) -> bool:
 
 
 def _describe_pass(found: InterruptedJob, loaded: LoadedProgram) -> str:
-    """Return as text in which repetition the line was interrupted.
+    """Return a text that states in which repetition of its line the job was interrupted.
 
-    The result is an empty string unless the line runs more than once per part.
+    The text is empty if the line runs only once per part.
     """
     picture, job = loaded.picture, loaded.job
     if picture is None or job is None or job.text_digest != found.text:

@@ -12,9 +12,9 @@ from core.message import Message
 
 @dataclass(slots=True)
 class MachineFileChanges:
-    """List of changes in the machine file, which is empty if the file is the accepted file.
+    """Changes of the machine file since it was last accepted. The list is empty if there are none.
 
-    ``file_path`` is the path of the file. ``save_acceptance`` stores the current file as accepted.
+    ``file_path`` is the path of the machine file. ``save_acceptance`` stores the current file as accepted.
     """
 
     file_path: str = ""

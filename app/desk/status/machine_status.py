@@ -1,7 +1,7 @@
 """Texts and values of one snapshot for the operator, and detection of a silent control.
 
-The module also describes the event that a waiting program (WAITING) needs in order to continue. It contains
-no Qt and no machine logic.
+The module also describes the event for which a waiting program (WAITING) waits. It contains no Qt and no
+machine logic.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def _is_input(snapshot: Snapshot) -> bool:
 class StatusTone(StrEnum):
     """Appearance of a machine state.
 
-    Each tone has a color and a shape, so that color is not the only indication.
+    Each tone has its own color and shape, so that operators do not depend on color alone.
     """
 
     OFF = "off"
@@ -149,7 +149,7 @@ def _find_tool_text(modal: ModalState) -> str:
 
 
 def _find_secondary_offset(modal: ModalState) -> str:
-    """Return the text for the offset that is displayed after the tool number.
+    """Return the offset text that is displayed after the tool number.
 
     The text is the secondary offset, or the cutting edge and the zero offset.
     """

@@ -57,7 +57,7 @@ _MODAL_GROUPS = {
 def _make_rows(point: Checkpoint, language: str) -> tuple[ModalRow, ...]:
     """Return the modal rows for Klartext or SINUMERIK from the saved modal state.
 
-    Without a saved state, the rows show the state at the end of a program.
+    If no state is saved, the rows show the modal state that a program leaves at its end.
     """
     saved_lines = dict(point.kept.state_lines) if point.kept is not None else {}
     begun = _RESET_CODES | {"speed": f"G97 S{point.modal.rpm:g}"} if language == "sinumerik" else {}

@@ -1,7 +1,7 @@
 """Prompt line, which shows the currently possible actions and the response to the last key.
 
-State, question and message are at separate places on the screen. A message remains for 4 s or until the
-next key. The prompt depends on one snapshot and the loaded program.
+The state, the question and the message have separate places on the screen. A message remains for 4 s or
+until the next key press. The prompt depends on one snapshot and the loaded program.
 """
 
 from __future__ import annotations
@@ -112,9 +112,9 @@ def _estop(release: str) -> str:
 
 
 def reason(status: MachineStatus) -> str:
-    """Return the text below the prompt, which gives the cause of a stop.
+    """Return the text below the prompt, which states the cause of a stop.
 
-    For a feed hold, the text also gives the remedy.
+    For a feed hold, the text also states the remedy.
     """
     if status.alarms:
         return Message("CAUSE: {stop}", stop=describe_cause(status.alarms[0]))
@@ -216,8 +216,8 @@ def make_refusal_text(loaded: LoadedProgram) -> str:
 def find_remedy(loaded: LoadedProgram, prompt: str) -> str:
     """Return the remedy for the program error that ``prompt`` shows.
 
-    If the program can start, return the first warning of a check instead. Otherwise the result is an empty
-    string.
+    If the program has no error and the prompt offers a start, return the first warning of a check.
+    Otherwise the result is an empty string.
     """
     errors = loaded.blocking_errors
     if errors:
@@ -264,12 +264,10 @@ MESSAGE_TIME_S = 4.0  # Seconds for which a message remains without a key press.
 class PromptLine:
     """The message and the question on the prompt line.
 
-    A message remains for ``MESSAGE_TIME_S`` seconds or until the next key. A change of the machine's state
-    does not remove it. A question is valid in the machine state in which it was asked. Y executes the
-    action. N and Esc only remove the question.
-
-    An action that loses data is confirmed by its own key, which differs from the key that caused the
-    question. ``read_time_s`` returns monotonic time in seconds.
+    A message remains for ``MESSAGE_TIME_S`` seconds or until the next key press, even if the machine's
+    state changes. A question is valid only in the machine state in which it was asked. Y executes its
+    action. N and Esc only remove the question. An action that loses data is confirmed by a separate key,
+    which differs from the key that opened the question. ``read_time_s`` returns monotonic time in seconds.
     """
 
     read_snapshot: Callable[[], Snapshot]
@@ -363,7 +361,7 @@ class PromptLine:
             self.message = ""
 
     def remove_expired_texts(self, snapshot: Snapshot) -> None:
-        """Remove a message that has expired, and a question if the machine's state has changed since."""
+        """Remove an expired message, and a question that was asked in a different machine state."""
         if self.message and self.read_time_s() - self._said_at >= MESSAGE_TIME_S:
             self.message, self.is_lasting_message = "", False
         if self.on_confirmed is not None and snapshot.state is not self._in:
@@ -374,7 +372,7 @@ class PromptLine:
         self._heard.append(event)
 
     def record_start_attempt(self) -> None:
-        """Record an attempt to start, so that even a repeated refusal with the same reason is shown."""
+        """Record an attempt to start, so that a repeated refusal with the same reason is shown again."""
         self._refused = ""
 
     def update(self, snapshot: Snapshot) -> None:

@@ -51,10 +51,10 @@ def make_mode_lamps(snapshot: Snapshot) -> tuple[Lamp, ...]:
 
 
 def make_lamps(snapshot: Snapshot, *, is_table_rotary: bool = True) -> tuple[Lamp, ...]:
-    """Return the lamps of a lathe, or of a mill including its rotary axes.
+    """Return the lamps of a lathe or of a mill. The lamps of a mill include its rotary axes.
 
-    The outputs are identified by their names in the machine file (coolant, collet, live1 …).
-    ``is_table_rotary`` is True if a rotary table turns on this mill.
+    Outputs are identified by their names in the machine file (coolant, collet, live1 …).
+    ``is_table_rotary`` is True if the mill has a rotary table.
     """
     if snapshot.axes != LATHE_AXES:
         return (
@@ -97,7 +97,7 @@ def _make_output_lamp(snapshot: Snapshot, lamp: Lamp) -> Lamp:
 
 
 def _make_rotary_lamps(snapshot: Snapshot, *, table: bool) -> tuple[Lamp, ...]:
-    """Return the lamps for a mill's tilted plane and for a table or head that is not at 0 degrees."""
+    """Return a mill's lamps for a tilted plane and for a table or head that is not at 0 degrees."""
     tilted = snapshot.swivel is not None and snapshot.swivel.system.is_tilted
     rotary = zip(snapshot.axes, snapshot.actual, strict=True)
     turned = any(abs(math.remainder(at, 360.0)) > ZERO_TOLERANCE_DEG for name, at in rotary if name in "ABC")
@@ -191,7 +191,7 @@ def _slides(at: tuple[float, ...]) -> tuple[float, float, float]:
 
 
 def _find_shown_position(snapshot: Snapshot, swivel: PlanePosition, zero: Mapping[str, float]) -> list[float]:
-    """Return the displayed angles of the rotary axes, each measured from the zero of its axis.
+    """Return the displayed angles of the rotary axes in degrees, each relative to its zero angle.
 
     The angle of a modulo axis is from 0 to 360 degrees.
     """
@@ -273,7 +273,10 @@ _MILL_SYSTEMS = {
 
 
 def _wrap_angles(at: tuple[float, ...], snapshot: Snapshot) -> tuple[float, ...]:
-    """Return the position, with C from 0 to 360 degrees if C wraps in the modal state."""
+    """Return the axis positions.
+
+    If C is a modulo axis in the modal state, its angle is from 0 to 360 degrees.
+    """
     if not snapshot.modal.is_c_axis_modulo:
         return at
     return (*at[:-1], round(at[-1], formats.ANGLE_DECIMALS) % 360.0)
@@ -324,7 +327,7 @@ def _find_x_label(snapshot: Snapshot, readout: ReadoutKind) -> str:
 
 
 def _find_unit(metric: bool, control: bool) -> str:
-    """Return the unit of the values, with a note if the control uses a different unit."""
+    """Return the unit of the displayed values, with a note if the control uses a different unit."""
     names = ("INCH", "MM")
     return (
         names[metric]
@@ -418,8 +421,8 @@ def _directions(language: str) -> tuple[str, str, str]:
 def make_spindle_readout(snapshot: Snapshot, is_metric: bool, program_language: str) -> SpindleReadout:
     """Return the commanded and measured spindle speed, and the surface speed in m/min or ft/min.
 
-    ``program_language`` is the machine's program language. OmniTurn writes M05, and the other languages
-    write M5.
+    ``program_language`` is the machine's program language. The code for spindle stop is M05 in OmniTurn and
+    M5 in the other languages.
     """
     modal = snapshot.modal
     if UnknownPart.SPINDLE in snapshot.unknown:

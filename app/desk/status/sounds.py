@@ -92,7 +92,7 @@ def _run_player(command: list[str]) -> str:
 
 
 class SoundPlayer:
-    """Player of sounds. Its callers do not wait for the sound.
+    """Player of sounds in a separate thread, so that callers do not wait.
 
     ``error_text`` is the reason why the last sound failed, or an empty string.
     """

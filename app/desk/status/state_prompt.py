@@ -60,7 +60,7 @@ def _prompt(desk: Desk, snapshot: Snapshot, loaded: LoadedProgram, page: str) ->
 
 
 def _find_due_prompt(desk: Desk, snapshot: Snapshot, prompt: str) -> str:
-    """Return the reminders of the run watchers that are due.
+    """Return the reminders of the run watchers that apply now, as one text.
 
     The result is an empty string during an alarm, an interrupted job or a refusal.
     """

@@ -1,1 +1,1 @@
-"""Separate connection that sends the keyboard's stop keys to the control, bypassing the screen."""
+"""Separate connection that sends stop key presses to the control, bypassing the screen."""

@@ -25,7 +25,7 @@ _MAX_SENT = 64  # Number of presses.
 
 
 class KeyWatcherClient:
-    """Connection of the screen to the key watcher. Only ``close`` waits."""
+    """Connection of the screen to the key watcher. Only the method ``close`` may block."""
 
     def __init__(self, stop_channel: socket.socket) -> None:
         self._screen, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -47,7 +47,7 @@ class KeyWatcherClient:
     def send_focus(self, focus: FocusRecord) -> None:
         """Send the focus record to the watcher if it has changed.
 
-        The record contains the windows, and whether Esc starts feed hold.
+        The record contains the window IDs, and whether Esc starts feed hold.
         """
         if focus != self._shown:
             with suppress(OSError):

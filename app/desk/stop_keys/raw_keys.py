@@ -1,8 +1,8 @@
 """Reader of key presses directly from the X server, even while the focused program hangs.
 
-XInput 2.0 sends raw events to every client that selects them, and other clients still receive their events.
-While another client has grabbed the keyboard, for example a screen lock, a client of version 2.0 receives
-no raw events.
+XInput 2.0 sends raw events to every client that requests them, and the other clients still receive their
+events. While another client has grabbed the keyboard, for example a screen lock, a client of version 2.0
+receives no raw events.
 """
 
 from __future__ import annotations

@@ -206,7 +206,7 @@ _WRONG = "wrong PINs"  # setting, shared with the operator screen
 
 
 def require_pin(store: Store, row: UserRow, remedy: str) -> None:
-    """Ask for the PIN of a user. Previous wrong PINs delay the prompt.
+    """Ask for the PIN of a user. After wrong PINs, the prompt is delayed.
 
     Raises CommandError if no PIN is stored or the PIN is wrong. Wrong PINs are logged.
     """

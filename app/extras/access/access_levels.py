@@ -26,7 +26,7 @@ _DOT = "●"
 
 @dataclass(slots=True)
 class _EntryDraft:
-    """Unfinished entry with several steps: the PIN for signing in, or the data of a user."""
+    """Unfinished entry of several steps: the PIN for signing in, or the data of a new user."""
 
     entry_step: str  # sign in, name, level, pin or again
     name: str = ""
@@ -265,7 +265,11 @@ class AccessLevelsFunction(SpecialFunction):
         self.persistence.require_store().people.save_user(renewed).result()
 
     def _change(self, work: Callable[[], None], said: str, noted: str) -> None:
-        """Change the users on the worker and reload them. Show the change, and log it with the user name."""
+        """Change the users on the worker and reload them.
+
+        ``said`` is the message for the operator, and ``noted`` is the text that is logged with the user
+        name.
+        """
 
         def report_change(_none: None) -> None:
             self.user_access.log_access(noted)

@@ -58,10 +58,7 @@ class AccessExtra(OptionalFeature):
         return True
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the JSON outputs of ``turndesk access``.
-
-        The reference lists them after ``scope FILE --json``.
-        """
+        """Return the JSON outputs of ``turndesk access`` for the reference page."""
         from app.extras.access.access_command import OUTPUTS
 
         return OUTPUTS

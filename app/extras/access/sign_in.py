@@ -26,9 +26,9 @@ _WRONG, _MINUTES = "wrong PINs", "access minutes"  # names of settings
 
 @dataclass(slots=True)
 class PinSignIn:
-    """Sign-in by PIN, an implementation of ``app.desk.access.SignInSession``.
+    """Sign-in by PIN. This class implements ``app.desk.access.SignInSession``.
 
-    ``record_activity`` must be called for every key and touch.
+    ``record_activity`` must be called for every key press and touch.
     """
 
     user_access: UserAccess
@@ -190,7 +190,7 @@ RESET_DELAY_S = 600.0  # seconds
 
 @dataclass(slots=True)
 class AccessReset:
-    """Service reset, which removes all users after the E-stop was pressed for a waiting time.
+    """Service reset, which removes all users if the E-stop stays pressed for the whole waiting time.
 
     ``remove_all_users`` is called when the waiting time is over.
     """
@@ -214,7 +214,7 @@ class AccessReset:
         return self._since is not None
 
     def find_start_refusal(self, snapshot: Snapshot) -> str:
-        """Return the reason why the service reset cannot start, or an empty string."""
+        """Return the reason why the service reset cannot start, or an empty string if it can start."""
         if not self.user_access.user_list.is_access_restricted:
             return tr("NO ACCESS LEVELS TO RESET")
         if snapshot.state is not MachineState.ESTOP:

@@ -1,7 +1,7 @@
-"""Analyses of a scope record: path error, thread passes, ball-bar plot, axis or spindle response.
+"""Analyses of a scope record: path error, screw thread, ball-bar plot, axis or spindle response.
 
 An analysis uses the frozen curves of the scope. If the scope is not frozen, it uses the last program run in
-the live samples. A worker calculates the results. If no result is possible, the page shows the reason.
+the live samples. A worker calculates the results. If an analysis has no result, the page shows the reason.
 """
 
 from __future__ import annotations
@@ -54,8 +54,8 @@ _WORST = 12
 class AnalysesModel:
     """Model of the analyses page.
 
-    ``selected_row`` is the selected row of the result table. ``magnification`` is the factor by which the
-    drawing enlarges path errors.
+    ``selected_row`` is the index of the selected row in the result table. ``magnification`` is the factor
+    by which the drawing enlarges path errors.
     """
 
     scope: ScopeModel
@@ -71,7 +71,7 @@ class AnalysesModel:
 
     @property
     def desk(self) -> Desk:
-        """Return the desk, which shows messages to the operator."""
+        """Return the TurnDesk model, which shows messages to the operator."""
         return self.scope.desk
 
     # --- what is asked -------------------------------------------------------------------------------
@@ -82,10 +82,7 @@ class AnalysesModel:
         self.result = None
 
     def choose_analysis(self, kind: AnalysisKind) -> None:
-        """Select an analysis.
-
-        Selecting the same analysis again uses newer samples.
-        """
+        """Select an analysis. Selecting the current analysis again repeats it with newer samples."""
         self.desk.clear_prompt_line()
         self.analysis_kind, self.arc_index, self.selected_row = kind, 0, 0
         self.restart_analysis()
@@ -103,7 +100,7 @@ class AnalysesModel:
         self.restart_analysis()
 
     def change_magnification(self, steps: int) -> None:
-        """Increase or decrease the magnification of the errors by a number of steps."""
+        """Increase or decrease the magnification of the path errors by a number of steps."""
         at = min(range(len(MAGNIFICATIONS)), key=lambda i: abs(MAGNIFICATIONS[i] - self.magnification))
         self.magnification = MAGNIFICATIONS[max(0, min(len(MAGNIFICATIONS) - 1, at + steps))]
 
@@ -283,9 +280,10 @@ def _analysed(kind: AnalysisKind, record: ScopeRecord, arc: int, drives: Mapping
 def _analyze_ball_bar(
     slides: tuple[str, ...], setpoints: FloatArray, actual: FloatArray, lines: FloatArray, arc: int
 ) -> Found:
-    """Return the ball-bar result of an arc, which can be in any plane of two axes.
+    """Return the ball-bar result of an arc, which can be in the plane of any two axes.
 
-    ``arc`` is the index of the arc, counted from 0. After the last arc, the first arc follows again.
+    ``arc`` is the index of the arc, counted from 0. An index after the last arc selects the first arc
+    again.
     """
     arcs = [
         (cut.start, line, cut, pair)
@@ -313,10 +311,7 @@ def _analyze_ball_bar(
 
 
 def _select_drawn_axes(slides: tuple[str, ...], setpoints: FloatArray) -> tuple[str, str]:
-    """Return the two axes with the longest travel.
-
-    A path in three axes is drawn in the projection onto these two axes.
-    """
+    """Return the two axes with the longest travel. A path in three axes is projected onto their plane."""
     least = int(np.argmin(np.ptp(setpoints, axis=0))) if len(slides) > 2 else -1
     first, second = (each for number, each in enumerate(slides) if number != least)
     return first, second

@@ -1,4 +1,4 @@
-"""Chart of an analysis: a path with magnified error, thread passes or a ball-bar plot."""
+"""Chart of an analysis: a path with magnified error, screw thread passes or a ball-bar plot."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class AnalysisChart(Chart):
     def show_drawing(self, drawing: AnalysisDrawing) -> bool:
         """Show a drawing, and return whether it is shown.
 
-        The result is False while the plots are still being created. The caller must then call this method
+        While the plots are still being created, the result is False. The caller must then call this method
         again.
         """
         if not self.prepare_plots(bool(drawing.upper_curves) + bool(drawing.lower_curves)):
@@ -57,7 +57,7 @@ class AnalysisChart(Chart):
             set_curve_points(line, points[:, 0], points[:, 1])
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        """Adjust axes of equal scale again after the size of the chart has changed."""
+        """Adjust axes that share a scale after the chart is resized."""
         super().resizeEvent(event)
         if self.isVisible() and self.plots:  # Qt also calls this method while pyqtgraph creates the chart.
             self._fit()

@@ -1,4 +1,4 @@
-"""Page of the analyses: path error, thread passes, ball-bar plot and responses.
+"""Page of the analyses: path error, screw thread passes, ball-bar plot and responses.
 
 Each analysis has a drawing and a table.
 """
@@ -130,7 +130,7 @@ class AnalysesPage(ListPage):
         self.table = TablePanel(self.theme, analyses.select_row, self)
 
     def continue_preparation(self) -> bool:
-        """Create a part of the chart in advance, and return whether more parts must be created."""
+        """Create one part of the chart in advance, and return whether further parts must be created."""
         self.analyses.worker.deliver_results()
         return not self.drawing.is_ready()
 
@@ -222,7 +222,7 @@ class _AnalysesKeyAdapter:
         return False
 
     def on_open(self) -> None:
-        """Analyze the current data when the page opens."""
+        """Start the analysis of the current data when the page opens."""
         self._analyses.restart_analysis()
 
     def handle_escape(self) -> bool:

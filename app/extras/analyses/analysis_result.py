@@ -29,10 +29,9 @@ class AnalysisKind(Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Found:
-    """Result of an analysis.
+    """Result of an analysis. Only the field for the type of the analysis is set.
 
-    Only the field for this type of analysis is set. If there is no result, ``unavailable_reason`` is the
-    reason.
+    If there is no result, ``unavailable_reason`` is the reason.
     """
 
     analysis_kind: AnalysisKind

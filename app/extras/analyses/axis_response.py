@@ -1,7 +1,7 @@
-"""Response of an axis to its last move: step response, lag, and effect of other error limits.
+"""Response of an axis to its last move: step response, lag, and effect of changed error limits.
 
-The analysis uses a move from rest to rest, such as a jog step. It does not move an axis or write to a
-drive.
+The analysis uses a recorded move from rest to rest, such as a jog step. It does not move an axis or write
+to a drive.
 """
 
 from __future__ import annotations
@@ -166,7 +166,7 @@ def draw_response(response: AxisMotion) -> AnalysisDrawing:
 
 @dataclass(frozen=True, slots=True)
 class UnitFormat:
-    """Formatter for lengths and speeds in the selected unit of length, mm or inches."""
+    """Formatter of lengths and speeds in the selected unit of length, mm or inches."""
 
     metric: bool
 
@@ -207,7 +207,7 @@ def make_step_rows(steps: Sequence[StepResponse], units: UnitFormat) -> list[tup
 
 
 def make_limit_rows(response: AxisMotion, units: UnitFormat) -> list[tuple[str, str, str]]:
-    """Return table rows that show the effect of other following-error limits and other speeds.
+    """Return table rows that show the effect of changed following-error limits and changed speeds.
 
     Each row contains a name, a verdict and a value.
     """
@@ -252,7 +252,7 @@ def make_limit_rows(response: AxisMotion, units: UnitFormat) -> list[tuple[str, 
 
 
 def make_response_table(title: str, response: AxisResponse, metric: bool) -> TableContent:
-    """Return the table of a response, with rows for other following-error limits and other speeds."""
+    """Return the table of a response, with rows for changed following-error limits and changed speeds."""
     units = UnitFormat(metric)
     rows = [
         TableRow((tr("TRAVEL"), "", units.format_length(response.step_response.step_size_mm))),

@@ -41,8 +41,8 @@ class AnalysisDrawing:
 def scale_drawing(drawing: AnalysisDrawing, factor: float) -> AnalysisDrawing:
     """Return the drawing converted to another unit of length.
 
-    Axes that share a scale are both multiplied by ``factor``. Otherwise only a vertical axis that is a
-    length is multiplied.
+    If the axes share a scale, both are multiplied by ``factor``. Otherwise only those vertical axes that
+    are lengths are multiplied.
     """
     by = np.array(
         [factor if drawing.has_equal_axes else 1.0, factor if drawing.has_upper_length_axis else 1.0]

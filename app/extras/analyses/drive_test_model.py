@@ -55,7 +55,7 @@ TestDirection = tuple[str, int]  # axis and sign
 
 @dataclass(slots=True)
 class HeldTestKey(HeldJog):
-    """Key that must be held down during a drive test.
+    """Key that the operator must hold down during a drive test.
 
     ``make_test_path`` returns the test path, and ``requested_direction`` is the direction whose travel is
     shown.
@@ -90,8 +90,8 @@ class HeldTestKey(HeldJog):
 class DriveTestModel:
     """Model of the drive test page.
 
-    ``linear_axes`` contains the linear axes by letter. ``displayed_section`` is the part of the last results
-    that is displayed, or None while the page shows the selection.
+    ``linear_axes`` contains the linear axes by letter. ``displayed_section`` is the section of the last
+    results that is displayed, or None while the page shows the test settings.
     """
 
     desk: Desk
@@ -193,7 +193,7 @@ class DriveTestModel:
             self.frequency_index = (self.frequency_index + 1) % (len(SINE_FREQUENCIES_HZ) + 1)
 
     def show_next_results(self) -> None:
-        """Show the next part of the results, or return to the selection after the last part (F5)."""
+        """Show the next section of the results, or the test settings after the last section (F5)."""
         self.desk.clear_prompt_line()
         if self.results is None:
             self.desk.say(tr("NO TEST VALUES YET. RUN A TEST FIRST"))
@@ -217,7 +217,7 @@ class DriveTestModel:
     # --- conditions and travel -------------------------------------------------------------------------
 
     def find_test_refusal(self) -> str:
-        """Return the reason why no test can start now, or an empty string."""
+        """Return the reason why no test can start now, or an empty string if a test can start."""
         snapshot = self.desk.read_snapshot()
         if self.desk.window_state.is_stop_key_held():
             return tr(RELEASE_STOP_KEY)
@@ -228,7 +228,7 @@ class DriveTestModel:
         return find_jog_refusal(snapshot.state)
 
     def find_direction_refusal(self, direction: TestDirection) -> str:
-        """Return the reason why an axis cannot be tested in this direction, or an empty string.
+        """Return why an axis cannot be tested in this direction, or an empty string if it can.
 
         The control makes its own check before the axis moves.
         """
@@ -269,7 +269,7 @@ class DriveTestModel:
         )
 
     def make_travel_question(self) -> str:
-        """Return the question about the travel of the next test, or an empty string if none is pending."""
+        """Return the pending question about the travel of the next test, or else an empty string."""
         asked = self.held_jog.requested_direction
         if asked is None or self.held_jog.active_jog is not None:
             return ""
@@ -287,9 +287,9 @@ class DriveTestModel:
     # --- every frame ---------------------------------------------------------------------------------
 
     def update(self, snapshot: Snapshot) -> None:
-        """Renew the jog lease while the key is held down, and monitor the active test.
+        """Renew the motion lease while the key is held down, and monitor the active test.
 
-        This method is called once per frame.
+        Without renewal, the axis stops. This method is called once per frame.
         """
         self.held_jog.update(snapshot)
         if snapshot.state not in MANUAL_STATES:

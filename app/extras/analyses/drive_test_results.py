@@ -1,4 +1,4 @@
-"""Results of a drive test: responses, bandwidth, and the effect of other following-error limits.
+"""Results of a drive test: responses, bandwidth, and the effect of changed following-error limits.
 
 The record of a test contains the commanded test path, so a stored record gives the same results.
 """
@@ -68,7 +68,7 @@ def find_test_path(record: ScopeRecord) -> DriveTestMotion | None:
 class DriveTestResults:
     """Results of one drive test.
 
-    A step or ramp has two responses, one for the outbound and one for the return move. A sine has one
+    A step or ramp has two responses: one for the outbound move and one for the return move. A sine has one
     response per frequency.
     """
 
@@ -165,7 +165,7 @@ def describe_test_path(path: DriveTestMotion, metric: bool) -> str:
 
 
 class ResultsSection(Enum):
-    """Part of the results that the page shows at one time, because a small screen cannot show all."""
+    """Section of the results that the page shows at one time, because a small screen cannot show all."""
 
     RESPONSE = "response"
     LIMITS = "window"
@@ -175,7 +175,7 @@ class ResultsSection(Enum):
 def make_results_table(
     title: str, results: DriveTestResults, metric: bool, displayed_part: ResultsSection = ResultsSection.ALL
 ) -> TableContent:
-    """Return the table of the responses, followed by the effect of other following-error limits."""
+    """Return the table of the responses, followed by the effect of changed following-error limits."""
     units = UnitFormat(metric)
     rows = (
         [TableRow(cells) for cells in _responses(results, units)]

@@ -52,7 +52,8 @@ class DriveTestPad(JogCross):
 class DriveTestPage(HeldKeysPage):
     """Page of the drive test.
 
-    ``refresh`` renews the jog lease of a held key. If the screen freezes, the axis therefore stops.
+    ``refresh`` renews the motion lease of a held key. If the screen freezes, the lease expires and the axis
+    stops.
     """
 
     NAME = "DRIVE TEST"
@@ -85,11 +86,11 @@ class DriveTestPage(HeldKeysPage):
         }
 
     def find_disabled_keys(self) -> frozenset[str]:
-        """Return the disabled keys, which are F5 (results) until a test has run, and none afterward."""
+        """Return the disabled keys: F5 (results) before the first test, and no keys afterward."""
         return frozenset() if self.model.results is not None else frozenset({"F5"})
 
     def find_pending_question(self) -> str:
-        """Return the question about the travel of the next test, or an empty string if none is pending."""
+        """Return the pending question about the travel of the next test, or else an empty string."""
         return self.model.make_travel_question()
 
     def prompt_text(self) -> str:
@@ -107,7 +108,7 @@ class DriveTestPage(HeldKeysPage):
         return True
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
-        """Renew the jog lease while a key is held down, and update the page."""
+        """Renew the motion lease while a key is held down, and update the page."""
         if not self._has_keyboard():
             self.stop_if_active()
         model = self.model

@@ -1,6 +1,6 @@
 """Response of the spindle to its last speed change: rise, overshoot, settling time and variation.
 
-The analysis uses a recorded speed change. It does not command the spindle; only programs and MDI do.
+The analysis uses a recorded speed change. It does not command the spindle, which only programs and MDI do.
 """
 
 from __future__ import annotations
@@ -61,9 +61,9 @@ class SpindleResponse:
 def find_last_speed_change(record: ScopeRecord, model: SpindleModel | None) -> SpindleResponse:
     """Return the response to the last change to a speed other than 0.
 
-    A change counts only if it exceeds twice the at-speed tolerance of the new speed and twice each of
-    ``TOLERANCE_RATIOS``. Raises AnalysisError if the machine has no spindle, or if the record has no such
-    change or no measured spindle speed.
+    A change counts only if it exceeds twice the widest tolerance band of the new speed. The bands are the
+    at-speed tolerance and ``TOLERANCE_RATIOS``. Raises AnalysisError if the machine has no spindle, or if
+    the record has no such change or no measured spindle speed.
     """
     if model is None:
         raise AnalysisError(tr("this machine has no spindle"), "no-spindle")

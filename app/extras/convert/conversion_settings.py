@@ -13,7 +13,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ConversionSettings:
-    """Facts that the source program does not contain. ``no_point`` 0 and None mean not specified."""
+    """Settings for facts that the source program does not contain, such as its unit.
+
+    The value 0 of ``no_point`` and the value None of other settings mean not specified.
+    """
 
     no_point: float = 0.0
     is_metric: bool | None = None

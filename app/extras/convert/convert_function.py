@@ -54,7 +54,7 @@ _TONES = {
 
 @dataclass(frozen=True, slots=True)
 class _Request:
-    """Program and settings of a conversion."""
+    """Program to convert, with the settings of the conversion."""
 
     source: ProgramSource
     control: SourceControl | None
@@ -93,7 +93,7 @@ class ConvertFunction(SpecialFunction):
 
     @property
     def loaded_source(self) -> ProgramSource | None:
-        """Return the text of the loaded program, or None without a program for OmniTurn."""
+        """Return the text of the loaded program, or None if no OmniTurn program is loaded."""
         source = self.desk.program_loader.loaded_program.source
         return source if source is not None and source.dialect == Dialect.OMNITURN else None
 
@@ -214,9 +214,10 @@ class ConvertFunction(SpecialFunction):
         return True
 
     def _skip_m_code(self) -> None:
-        """Add the M code of the present error to the codes that are left out, or clear these codes.
+        """Add the M code of the current error to the codes that are left out of the converted program.
 
-        An M code that is not a whole number cannot be left out.
+        If the current error is not about an M code, clear these codes. An M code that is not a whole number
+        cannot be left out.
         """
         conversion = self._result.conversion if self._result is not None else None
         error = next(iter(conversion.errors), None) if conversion is not None else None
@@ -254,14 +255,14 @@ class ConvertFunction(SpecialFunction):
 
 
 class RecognitionNotice:
-    """Watcher that proposes the conversion once after a program of another control is loaded."""
+    """Watcher that suggests the conversion once after a program of a different control is loaded."""
 
     def __init__(self, desk: Desk) -> None:
         self._desk = desk
         self._announced: ProgramSource | None = None
 
     def observe_frame(self, _snapshot: Snapshot) -> None:
-        """Show the proposal on the prompt line if the loaded program is of another control."""
+        """Show the suggestion on the prompt line if the loaded program is for a different control."""
         loaded: LoadedProgram = self._desk.program_loader.loaded_program
         if loaded.source is None or loaded.source is self._announced or loaded.is_busy:
             return

@@ -28,7 +28,7 @@ class ConvertExtra(OptionalFeature):
     def attach_models(
         self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
     ) -> None:
-        """Attach the notice that proposes the conversion of a loaded program of another control."""
+        """Attach the notice that suggests converting a loaded program that is for a different control."""
         from app.extras.convert.convert_function import RecognitionNotice
 
         if _runs_omniturn(machine):
@@ -39,7 +39,7 @@ class ConvertExtra(OptionalFeature):
     ) -> Sequence[tuple[SpecialFunction, str]]:
         """Return the special function CONVERT PROGRAM of an OmniTurn lathe.
 
-        It is listed after ACCESS LEVELS.
+        The function is paired with ACCESS LEVELS, after which it is listed.
         """
         from app.compose.machine.machine_setup import get_control_limits
         from app.extras.convert.convert_function import ConvertFunction
@@ -49,10 +49,7 @@ class ConvertExtra(OptionalFeature):
         return ((ConvertFunction(desk, machine, get_control_limits(machine), worker), "ACCESS LEVELS"),)
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the JSON outputs of ``turndesk convert``.
-
-        The reference lists them after ``access table --json``.
-        """
+        """Return the JSON outputs of ``turndesk convert`` for the reference page."""
         from app.extras.convert.convert_command import OUTPUTS
 
         return {"access table --json": OUTPUTS}

@@ -141,10 +141,10 @@ class FilledDrawingForm(ShapeInstance):
 class DrawingForm(ShapeForm):
     """Form that makes a program from a drawing.
 
-    - ``drawing_files`` are the available drawings, and ``preceding_lines`` are the program lines before the
-    form.
+    - ``drawing_files`` are the available drawings.
+    - ``preceding_lines`` are the program lines before the form.
     - ``pending_request`` is the request for a plan that is not complete yet.
-    - ``comparison`` is the comparison of the part with the drawing after the trial.
+    - ``comparison`` is the comparison between the drawing and the part from the trial run.
     - ``remarks`` lists what the program requires and which sections remain uncut.
     """
 
@@ -236,7 +236,7 @@ class DrawingForm(ShapeForm):
         )
 
     def show_trial_result(self, comparison: DrawingComparison | None, errors: tuple[str, ...]) -> None:
-        """Show the result of the trial: the errors of the proof, and the comparison with the drawing."""
+        """Show the result of the trial run: the errors of the proof, and the comparison with the drawing."""
         plan = self.drawing_plan
         if plan is None or plan.program is None or plan.profile is None:
             return
@@ -258,7 +258,7 @@ class DrawingForm(ShapeForm):
 
     @property
     def is_calculating(self) -> bool:
-        """Return whether a plan is pending."""
+        """Return whether the worker is still calculating a program plan."""
         return self.pending_request is not None
 
     def list_choices(self, field: ShapeField) -> tuple[str, ...]:
@@ -270,14 +270,11 @@ class DrawingForm(ShapeForm):
         return self.drawing_plan.field_choices.get(field.name, ())
 
     def is_translatable(self, field: ShapeField, choice: str) -> bool:
-        """Return whether a choice is a screen text that is translated.
-
-        Layer names are not translated.
-        """
+        """Return whether a choice is a screen text and must be translated. Layer names are not translated."""
         return choice in field.choices or choice in _WORDS.get(field.name, ())
 
     def get_dimension_text(self, word: str) -> str:
-        """Return the text of a dimension in the sketch. For a contour, this is its number."""
+        """Return the text of a dimension in the sketch. The text of a contour is its number."""
         return (
             word.removeprefix("CONTOUR ")
             if word.startswith("CONTOUR ")
@@ -285,7 +282,7 @@ class DrawingForm(ShapeForm):
         )
 
     def select_field_by_name(self, word: str) -> None:
-        """Select a field by its word, or a contour by its number in the drawing."""
+        """Select a field by its name, or a contour by its number in the drawing."""
         if word.startswith("CONTOUR "):
             self._set("CONTOUR", word.removeprefix("CONTOUR "))
             word = "CONTOUR"
@@ -332,9 +329,9 @@ TrialFunction = Callable[
 def skip_trial(
     _text: str, _plan: DrawingPlan, _watch: ProgressCallback
 ) -> tuple[DrawingComparison | None, tuple[str, ...]]:
-    """Return a trial result without comparison and errors.
+    """Return a trial result without a comparison and without errors.
 
-    This function replaces the trial if no machine data are available.
+    This function replaces the trial run if no machine data are available.
     """
     return None, ()
 
@@ -342,7 +339,8 @@ def skip_trial(
 class AdditionalDrawingForm(AdditionalForm):
     """Entry for the drawing form in the list of shapes.
 
-    ``find_drawing_files`` returns the available drawings, and ``run_trial`` tests a program.
+    ``find_drawing_files`` returns the available drawings. ``run_trial`` proves the program and compares its
+    part with the drawing.
     """
 
     key, shape = "X", DRAWING_SHAPE
@@ -374,7 +372,7 @@ class AdditionalDrawingForm(AdditionalForm):
         return has_drawing_suffix(name)
 
     def calculate(self, form: ShapeForm, show_form: ShowForm, show_message: Callable[[str], None]) -> None:
-        """Plan the program for the entries on a worker, and then test the program."""
+        """Plan the program for the form's entries on a worker, and then run the trial of the program."""
         if not isinstance(form, DrawingForm) or form.pending_request is None:
             return
         asked = form.pending_request
@@ -395,9 +393,9 @@ class AdditionalDrawingForm(AdditionalForm):
     def _try(
         self, form: DrawingForm, plan: DrawingPlan, text: str | None, failed: Callable[[str], None]
     ) -> None:
-        """Test the program ``text`` on a worker.
+        """Run the trial of the program ``text`` on a worker.
 
-        If the form has been closed, ``text`` is None and no test is run.
+        If the form has been closed, ``text`` is None and no trial is run.
         """
         if not form.program_lines or text is None:
             return
@@ -432,7 +430,7 @@ class AdditionalDrawingForm(AdditionalForm):
         )
 
     def prompt_text(self, form: ShapeForm) -> str:
-        """Return the reading progress, the error, or else the prompt that explains the keys."""
+        """Return the reading progress or the error, or else the prompt that explains the keys."""
         if not form.is_calculating:
             keys = tr("LEFT/RIGHT: CHANGE   TAP DRAWING: PICK CONTOUR OR AXIS")
             return tr(form.current_error or keys)
@@ -442,7 +440,7 @@ class AdditionalDrawingForm(AdditionalForm):
         return tr(Message(words, seconds=self.plan_worker.progress_count))
 
     def poll(self) -> None:
-        """Process the results of planning and of trials."""
+        """Process the results of the planning worker and of the trial worker."""
         self.plan_worker.deliver_results()
         self.trial_worker.deliver_results()
 

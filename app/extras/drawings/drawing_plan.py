@@ -1,6 +1,6 @@
-"""Plan of a program from a drawing, with proposals, choices, program lines and a sketch.
+"""Plan of a program from a drawing, which a worker calculates.
 
-A worker calculates the plan.
+The plan contains proposed values, choices, program lines and a sketch.
 """
 
 from __future__ import annotations
@@ -47,9 +47,10 @@ _NUMBERS = ("FROM", "STOCK", "HOLE", "ROUGH", "T", "BLADE", "COMP")
 
 @dataclass(frozen=True, slots=True)
 class PlanRequest:
-    """Request for a plan.
+    """Request for a program plan.
 
-    ``entered_values`` are the entries of the form, and ``preceding_lines`` are the program lines before it.
+    ``entered_values`` are the entries of the form. ``preceding_lines`` are the program lines before the
+    form.
     """
 
     drawing_path: Path
@@ -89,9 +90,9 @@ class DrawingPlan:
 
 
 class DrawingPlanner:
-    """Planner that caches the last drawing. Only one worker uses it.
+    """Planner of programs from drawings. It caches the last drawing, and only one worker uses it.
 
-    ``is_reading`` is True while a file is being read.
+    ``is_reading`` is True while a drawing file is being read.
     """
 
     def __init__(self, read_drawing: Callable[[Path, ProgressCallback], Drawing]) -> None:
@@ -100,7 +101,7 @@ class DrawingPlanner:
         self.is_reading = False
 
     def make_plan(self, request: PlanRequest, report_progress: ProgressCallback) -> DrawingPlan:
-        """Return the plan of a program, which contains the errors by form field.
+        """Return the plan of a program. Errors are returned in the plan, by form field.
 
         ``report_progress`` can raise an exception to cancel the work.
         """
@@ -265,7 +266,7 @@ class _PlanBuilder:
         return self.nets[int(number) - 1]
 
     def _check_unit(self, net: ElementGroup) -> None:
-        """Report an error if the contour fits the machine only in a unit other than that of the file."""
+        """Raise DrawingError if the contour fits the machine only in a unit other than the file's unit."""
         assert self.view is not None
         if "DUNIT" in self.request.entered_values:
             return
@@ -357,7 +358,7 @@ def make_plan_sketch(
 ) -> Sketch:
     """Return the sketch of the drawing with its axis of rotation and the selected contour.
 
-    Contour sections that the program does not cut, or cuts incorrectly, are red.
+    Sections of the contour that the program leaves uncut or cuts incorrectly are red.
     """
     drawn = [Outline(each.points, "part") for each in plan.placed_elements if each.line_number]
     outlines = [

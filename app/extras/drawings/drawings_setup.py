@@ -38,9 +38,9 @@ def run_drawing_trial(
     plan: DrawingPlan,
     report_progress: ProgressCallback,
 ) -> tuple[DrawingComparison | None, tuple[str, ...]]:
-    """Prove the program with the form's stock and the current tools.
+    """Prove the program with the form's stock and the current tools, and compare the part.
 
-    The result also contains the comparison of the part with the drawing.
+    Returns the comparison of the part with the drawing, which may be None, and the errors of the proof.
     """
     made, chosen, mm = plan.program, plan.profile, plan.request.settings.mm
     if made is None or chosen is None:

@@ -31,10 +31,7 @@ class DrawingsExtra(OptionalFeature):
             add_drawing_form(model, desk, machine)
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the JSON outputs of ``turndesk profile``.
-
-        The reference lists them after ``access table --json``.
-        """
+        """Return the JSON outputs of ``turndesk profile`` for the reference page."""
         from app.extras.drawings.profile_command import OUTPUTS
 
         return {"access table --json": OUTPUTS}

@@ -140,7 +140,7 @@ def _add_tool_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Write the program and report uncut parts of the drawing.
+    """Write the program and report the sections of the drawing that remain uncut.
 
     Returns exit status 1 if the program has errors.
     """
@@ -216,7 +216,7 @@ def _check_unit(drawing: Drawing, view: DrawingPlacement, net: ElementGroup, mac
 
 
 def _language(args: argparse.Namespace, machine: Machine) -> Dialect:
-    """Return the language of the program, from the output file name or else from the machine.
+    """Return the program language, which depends on the output file name or else on the machine.
 
     Raises CommandError if the language is Klartext.
     """

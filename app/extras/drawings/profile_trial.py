@@ -1,4 +1,4 @@
-"""Trial of a program from a drawing: the proof, and the comparison of the part with the drawing."""
+"""Trial run of a program from a drawing: its proof, and the comparison of part and drawing."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _HOME = ToolOffset(12.7, -76.2)
 
 @dataclass(frozen=True, slots=True)
 class TrialStock:
-    """Stock of a trial: bar diameter, face allowance and predrilled hole diameter, all in mm."""
+    """Stock of a trial run: bar diameter, face allowance and predrilled hole diameter, all in mm."""
 
     bar_diameter_mm: float
     face_stock_mm: float = 0.0
@@ -35,7 +35,7 @@ class TrialStock:
 
 @dataclass(frozen=True, slots=True)
 class TrialResult:
-    """Result of a trial.
+    """Result of a trial run.
 
     ``comparison`` is None if the program does not cut a part. ``errors`` are the errors of the proof.
     """
@@ -56,7 +56,8 @@ def run_profile_trial(
 ) -> TrialResult:
     """Prove the program and compare the simulated part with the contour profile.
 
-    The trial uses the same position for all tools, and ``nose_offset`` as the required tool nose offset.
+    The trial uses the same offsets for all tools, and ``nose_offset`` as the tool nose offset that the
+    program requires.
     """
     of_edge = nose_offset is not None and nose_offset.quadrant
     secondary = (

@@ -61,7 +61,7 @@ class JobsExtra(OptionalFeature):
         return ((JobsFunction(desk), "MEASURED PARTS"),)
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the JSON outputs of ``turndesk jobs``, which the reference lists after ``shift --json``."""
+        """Return the JSON outputs of ``turndesk jobs`` for the reference page."""
         from app.extras.jobs.jobs_command import OUTPUTS
 
         return OUTPUTS

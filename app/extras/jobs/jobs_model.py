@@ -44,8 +44,8 @@ _WIDE = 46  # characters of a cell
 class JobsModel:
     """Model of the JOBS page.
 
-    ``entry_kind`` is the kind of value that the operator is entering: a count or a note. The entry is for
-    the selected job or for a new job.
+    ``entry_kind`` is ``count`` or ``note`` while the operator enters such a value, and otherwise empty. The
+    entry is for the selected job or for a new job.
     """
 
     desk: Desk
@@ -71,7 +71,7 @@ class JobsModel:
 
     @property
     def storage_refusal_reason(self) -> str:
-        """Return the reason why jobs cannot be stored, or an empty string."""
+        """Return the reason why jobs cannot be stored, or an empty string if they can be stored."""
         book = self.job_watch.parts_watch.production_records
         return (
             ""
@@ -93,11 +93,11 @@ class JobsModel:
         )
 
     def find_proof(self, job: JobRow) -> ProvedJob | str | None:
-        """Return the proof of a job, the reason why it failed, or None while the proof is pending."""
+        """Return the proof of a job, the reason why proving failed, or None while the proof is pending."""
         return self.job_watch.proofs.find_proof(job.program, self.desk.offset_book.changes)
 
     def make_table(self, snapshot: Snapshot) -> TableContent:
-        """Return the table of the queue, with the pending question if there is one."""
+        """Return the table of the job queue, with the question that is pending, if any."""
         rows = tuple(self._row(number, job, snapshot) for number, job in enumerate(self.jobs, 1))
         question = ""
         if self.entry_kind == "count":
@@ -265,7 +265,7 @@ class JobsModel:
 
     @property
     def load_refusal_reason(self) -> str:
-        """Return the reason why the selected job cannot be loaded, or an empty string."""
+        """Return the reason why the selected job cannot be loaded, or an empty string if it can be loaded."""
         return (
             NO_JOBS_MESSAGE if self.selected_job is None else find_program_refusal(self.desk.read_snapshot())
         )
@@ -330,7 +330,7 @@ class JobsModel:
         self.selected_row = row
 
     def remove_job(self) -> None:
-        """Remove the selected job after confirmation.
+        """Remove the selected job after the operator confirms.
 
         The part count of the program is not changed.
         """
@@ -350,7 +350,7 @@ class JobsModel:
         )
 
     def clear_finished_jobs(self) -> None:
-        """Remove the jobs whose required number of parts has been made, after confirmation."""
+        """Remove all jobs whose required number of parts has been made, after the operator confirms."""
         done = sum(job.is_done for job in self.jobs)
         if not done:
             self.desk.show_success("NO FINISHED JOBS TO CLEAR")
@@ -453,7 +453,7 @@ class JobsModel:
         return True
 
     def on_close(self) -> None:
-        """Cancel the entry, and end the priority of the selected job's proof, when the page closes."""
+        """Cancel the entry when the page closes. The selected job's proof then no longer has priority."""
         self.entry_kind, self.job_watch.selected_program = "", ""
 
     def close(self) -> None:

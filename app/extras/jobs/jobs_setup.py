@@ -56,11 +56,11 @@ def _proved(
     program: str,
     watch: ProgressCallback,
 ) -> ProvedJob:
-    """Return the proof of a program with the current offsets and tool shapes, and its setup sheet.
+    """Return the proof and the setup sheet of a program with the current offsets and tool shapes.
 
-    The result also contains the time and the tools of the last start. This function runs on a worker.
-    Raises ValueError if the program is not in the list or cannot be read, and CommandError if the offsets
-    cannot be read.
+    The result also contains the time and the tools of the program's last start. This function runs on a
+    worker. Raises ValueError if the program is not in the program folders or cannot be read, and
+    CommandError if the offsets cannot be read.
     """
     from app.special.setup_sheet import make_setup_sheet
     from core.proving.program_tools import PartSettings

@@ -40,7 +40,7 @@ class JobsPage(ListPage):
         return super().find_disabled_keys() | ({"F2"} if self.model.load_refusal_reason else set())
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function keys of the model."""
+        """Return the function keys that the model provides."""
         return self.model.make_function_keys()
 
     def make_key_labels(self) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Monitoring of the job queue: the active job, the next job and its required setup.
+"""Monitoring of the job queue: the active job, the next job and the setup that it requires.
 
 A worker proves the next job while another job runs. The proof does not affect the running program.
 """
@@ -43,8 +43,8 @@ _TOLD = 3  # maximum number of displayed findings
 class ProvedJob:
     """Result of the proof of a queued program, with the offsets at the time of the proof.
 
-    ``tools_at_last_start`` contains the tools at the last start of the program. ``last_start_utc`` is the
-    UTC time of that start, or an empty string if the program has never run.
+    ``tools_at_last_start`` are the tools at the program's last start. ``last_start_utc`` is the UTC time of
+    that start, or an empty string if the program has never run.
     """
 
     setup_sheet: SetupSheet
@@ -79,7 +79,7 @@ def list_job_tools(
 def count_open_items(job: ProvedJob, tool_lives: Mapping[int, ToolLife], parts_to_make: int) -> int:
     """Return the number of items that the operator must resolve before the job can start.
 
-    These items are required tool actions and errors of the proof.
+    The items are the required tool actions and the errors of the proof.
     """
     return (
         sum(len(each.required_actions) for each in list_job_tools(job, tool_lives, parts_to_make))
@@ -199,7 +199,7 @@ MAX_PROOFS = 20
 
 @dataclass(slots=True)
 class JobProofs:
-    """Cache of job proofs by program and state of the offset tables.
+    """Cache of job proofs. The key is the program and the state of the offset tables.
 
     ``request_proofs`` and ``find_proof`` never block.
     """
@@ -224,7 +224,7 @@ class JobProofs:
         self.worker.request_work(partial(self.prove_program, wanted[0]), done, done)
 
     def find_proof(self, program: str, offset_revision: int) -> ProvedJob | str | None:
-        """Return the proof of a program, the reason why it failed, or None while the proof is pending."""
+        """Return the proof of a program, the reason why proving failed, or None if still pending."""
         return self._made.get((program, offset_revision))
 
     def clear_proofs(self) -> None:
@@ -346,7 +346,7 @@ class JobWatch:
     def _begin(self, loaded: LoadedProgram) -> None:
         """Make the job active after its program is loaded.
 
-        The operator can still cancel loading when asked about an interrupted job.
+        The operator can still cancel loading while the question about an interrupted job is open.
         """
         if self._loading is None:
             return
@@ -367,7 +367,7 @@ class JobWatch:
     # --- messages ------------------------------------------------------------------------------------
 
     def _report_finished(self, job: JobRow | None) -> None:
-        """Report a job once, when its required number of parts has been made.
+        """Report once that the required number of parts of a job has been made.
 
         Jobs that were complete before TurnDesk started are shown only in the notice.
         """
@@ -415,9 +415,9 @@ class JobWatch:
         )
 
     def make_notice(self, snapshot: Snapshot) -> NoticeRow | None:
-        """Return the notice for the Automatic page that the job is done and which job is next.
+        """Return the notice for the Automatic page that the active job is complete and which job is next.
 
-        The result is None unless the active job is done and no program runs or is interrupted.
+        The result is None if the active job is not complete, or while a program runs or is interrupted.
         """
         job = self.active_job
         if (

@@ -52,8 +52,8 @@ def start_headless_adapter(
 ) -> Callable[[], None] | None:
     """Start the MTConnect adapter for a run without a screen, and return a function that stops it.
 
-    A run that is faster than real time is not reported, because the reports would include parts that were
-    not made. Returns None if the adapter is not started.
+    A run that is faster than real time is not reported, because its parts are not made on a machine.
+    Returns None if the adapter is not started.
     """
 
     def report_adapter_error(why: str) -> None:

@@ -19,10 +19,10 @@ _FAULTS = frozenset({"ALARM", "E-STOP", "CONTROL SILENT"})
 
 @dataclass(frozen=True, slots=True)
 class Announcement:
-    """Announcement of an event.
+    """Announcement of an event to other systems.
 
     ``event_kind`` is part, stop, alarm, tool-life or runs. ``text`` describes the event in a sentence, and
-    ``status`` is the machine status at that time.
+    ``status`` is the machine status at the time of the event.
     """
 
     event_kind: str
@@ -30,15 +30,12 @@ class Announcement:
     status: StatusDocument
 
     def make_json(self) -> bytes:
-        """Return the announcement as JSON: the machine status, and the kind and text of the event."""
+        """Return the announcement as JSON with the machine status and with the kind and text of the event."""
         return json.dumps({"event": self.event_kind, "text": self.text, **self.status}).encode()
 
 
 def find_events(previous: Mapping[str, Any], current: StatusDocument) -> Iterator[Announcement]:
-    """Yield the events that happened between two machine statuses.
-
-    If there is no previous status, no events are yielded.
-    """
+    """Yield the events between two machine statuses, or no events without a previous status."""
     state, was = str(current["state"]), previous.get("state")
     if was is None:
         return
@@ -80,7 +77,7 @@ def _changed(was: str, state: str, now: StatusDocument) -> Iterator[Announcement
 class AnnouncementReceiver(Protocol):
     """Interface of a receiver, which forwards announcements to another system.
 
-    No method waits for a response of the other system.
+    No method waits for the other system to respond.
     """
 
     def send_status(self, status: StatusDocument) -> None:
@@ -94,7 +91,7 @@ class AnnouncementReceiver(Protocol):
 
 
 class Announcer:
-    """Announcer that polls the machine status twice per second, and sends changes to receivers.
+    """Service that polls the machine status twice per second and sends changes to the receivers.
 
     The status is polled in a separate thread.
     """

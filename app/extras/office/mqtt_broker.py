@@ -1,4 +1,4 @@
-"""MQTT receiver, which publishes the status and the announcements to a broker.
+"""Receiver that publishes the status and the announcements to an MQTT broker.
 
 The topics are TOPIC/state, TOPIC/event and TOPIC/available. The last will sets TOPIC/available to offline.
 """
@@ -93,7 +93,7 @@ class MqttReceiver:
             self._client.publish(f"{self._topic}/state", self._state, _SURE, retain=True)
 
     def send_announcement(self, announcement: Announcement) -> None:
-        """Publish an announcement as a message that is not retained.
+        """Publish an announcement as a message that the broker does not retain.
 
         While the broker is unavailable, the latest 100 announcements are stored and sent later.
         """
@@ -103,9 +103,9 @@ class MqttReceiver:
     def close(self) -> None:
         """Publish the offline status and disconnect.
 
-        The status must be published because the broker sends the last will only after a broken connection.
-        If the broker does not respond, the connection remains open until this process ends, and the broker
-        then publishes the last will. The thread of paho ends with the process.
+        The broker sends the last will only after a broken connection, so the offline status must be
+        published here. If the broker does not respond, the connection remains open until this process ends.
+        The thread of paho then also ends, and the broker publishes the last will.
         """
         if not self._client.is_connected():
             self._client.disconnect()
@@ -158,7 +158,7 @@ class MqttReceiver:
         reason: ReasonCode,
         _more: Properties | None,
     ) -> None:
-        """Report a lost connection, or a host that accepts the connection but does not respond."""
+        """Report a lost connection, or a host that accepts connections but never responds."""
         answered, refused = self._answered, self._refused
         self._answered = self._refused = False
         if refused or not reason.is_failure:  # the rejection has already reported the cause

@@ -87,10 +87,9 @@ _BITS, _RGBA = 8, 6  # bits per sample; the color type
 
 
 def encode_png(pixels: bytes, width: int, height: int) -> bytes:
-    """Return an image as the bytes of a PNG file.
+    """Return an image as the bytes of a PNG file. The first row of pixels is the top row.
 
-    Pixels have 32 bits: alpha, red, green and blue, from the highest bits to the lowest. The first row is
-    the top row.
+    Each pixel has 32 bits: alpha, red, green and blue, from the highest bits to the lowest.
     """
     argb = np.frombuffer(pixels, dtype=np.uint32).reshape(height, width)
     rgba = np.stack([argb >> 16, argb >> 8, argb, argb >> 24], axis=-1).astype(np.uint8)

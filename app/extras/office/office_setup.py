@@ -44,8 +44,8 @@ MAX_LISTED_STOPS = 6  # number of latest stops
 class StatusSource:
     """Source of the machine status for the status page and the announcements.
 
-    Any thread can read the status. ``calculate_remaining_time_s`` returns seconds, or inf while the machine
-    is stopped.
+    Any thread can read the status. ``calculate_remaining_time_s`` returns the remaining cycle time in
+    seconds, or inf while the machine is stopped.
     """
 
     machine_name: str

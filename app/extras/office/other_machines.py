@@ -1,4 +1,4 @@
-"""Status of other machines on the status page. They run TurnDesk or an MTConnect agent.
+"""Status of other machines for the status page. These machines run TurnDesk or an MTConnect agent.
 
 The status is read only while a browser views the page.
 """
@@ -43,9 +43,9 @@ def make_status_address(address: str) -> str:
 
 
 class MachineResponse(NamedTuple):
-    """Values from another machine's response that the status page shows.
+    """Data from the response of another machine, for display on the status page.
 
-    ``error_text`` is the reason why the machine is stopped, or the reason why no status is available.
+    ``error_text`` is the reason why the machine is stopped or why no status is available.
     """
 
     status_document: Mapping[str, object] | None
@@ -110,10 +110,10 @@ def _fits(key: str, value: object) -> bool:
 
 
 class OtherMachines:
-    """Reader of the status of other machines, with one thread per machine.
+    """Reader of the status of other machines, with one thread for each machine.
 
-    The threads read as long as ``read_machine_states`` is called. A machine with a slow response or no
-    response does not delay the others. An outdated status is not shown.
+    The threads read only as long as ``read_machine_states`` is called. A machine that responds slowly or
+    not at all does not delay the others. An outdated status is not shown.
     """
 
     def __init__(
@@ -153,7 +153,7 @@ class OtherMachines:
         return tuple(_if_fresh(desk, now - at) for at, desk in self._heard.values())
 
     def close(self) -> None:
-        """Stop the threads after their pending requests, but do not wait for that."""
+        """Tell the threads to stop after their pending requests, without waiting until they stop."""
         self._closing.set()
         self._looked.set()
 
@@ -238,7 +238,7 @@ def parse_mtconnect_streams(data: bytes) -> MachineResponse:
 def _state(device: Element, *, faulty: bool) -> str:
     """Return the state of a device, such as E-STOP or ALARM.
 
-    A state that has no name in TurnDesk is returned in the words of MTConnect.
+    If TurnDesk has no name for the state, the MTConnect term is returned.
     """
     if "TRIGGERED" in _values(device, "EmergencyStop"):
         return "E-STOP"

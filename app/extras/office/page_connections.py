@@ -24,7 +24,7 @@ _NO_HTTP = b"?\r\n\r\n"  # data that waitress rejects as a bad request
 class BrowserConnection(HTTPChannel):
     """Connection of a browser to the status page.
 
-    When a new connection exceeds the maximum number, the oldest connection without a request in progress is
+    If a new connection exceeds the maximum number, the oldest connection without a request in progress is
     closed. Incomplete requests therefore cannot block other browsers. ``last_activity_s`` is the time of
     the connection or of the last response.
     """

@@ -114,7 +114,7 @@ class StatusPage:
         return "text/html; charset=utf-8", page.encode()
 
     def make_live_content(self) -> tuple[str, bytes]:
-        """Return the content type and the HTML of the part of the page that the script refreshes."""
+        """Return the content type and the HTML of the live content, which the script refreshes."""
         return "text/html; charset=utf-8", self._now().encode()
 
     def get_style_sheet(self) -> tuple[str, bytes]:

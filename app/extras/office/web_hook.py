@@ -1,4 +1,4 @@
-"""Webhook receiver, which posts each announcement until the announcement is accepted or rejected."""
+"""Receiver that posts each announcement to a webhook until the webhook accepts or rejects it."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class WebhookReceiver:
         self._there.set()
 
     def close(self) -> None:
-        """Stop the thread after its current post, but do not wait for that."""
+        """Tell the thread to stop after its current post, without waiting until it stops."""
         self._closing.set()
         self._there.set()
 
@@ -75,7 +75,7 @@ class WebhookReceiver:
                 return
 
     def _settled(self, announcement: Announcement) -> bool:
-        """Post an announcement, and return whether it needs no further attempt."""
+        """Post an announcement, and return whether it was accepted or rejected and needs no retry."""
         try:
             self._post(self._address, announcement.make_json())
         except (URLError, HTTPException, OSError, ValueError) as error:

@@ -1,4 +1,4 @@
-"""Control charts and Cpk of features; trends of cycle time, load, tool wear, stops, availability."""
+"""Control charts and Cpk of part features; trends of cycle time, load, wear, stops, availability."""
 
 from __future__ import annotations
 
@@ -112,15 +112,9 @@ class TrendsSection(QualitySection):
         """Return the table with the current value of each trend."""
         self.limit_selection()
         minute = int(self._now().timestamp() // 60)
-        of = (
-            self.watch.production_records.load_count,
-            self.program_name,
-            self.control_length_unit,
-            minute,
-            self.shift_hours,
-        )
-        if self._rows[0] != of:
-            self._rows = of, tuple(TableRow((kind, self._figure(kind))) for kind in self.trend_names)
+        key = self.make_content_key(minute, self.shift_hours)
+        if self._rows[0] != key:
+            self._rows = key, tuple(TableRow((kind, self._figure(kind))) for kind in self.trend_names)
         question = tr("SHIFT HOURS, FOR EXAMPLE 6-14?") if self.selected_trend == "AVAILABILITY" else ""
         title = Message("TRENDS  ·  {program}", program=self.program_name) if self.program_name else "TRENDS"
         return TableContent(
@@ -238,14 +232,9 @@ class TrendsSection(QualitySection):
 
     def make_chart(self) -> ChartDrawing:
         """Return the chart of the selected trend."""
-        of = (
-            self.watch.production_records.load_count,
-            self.program_name,
-            self.selected_trend,
-            self.control_length_unit,
-        )
-        if self._made[0] != of:
-            self._made = of, ChartDrawing(self._plots(), of)
+        key = self.make_content_key(self.selected_trend)
+        if self._made[0] != key:
+            self._made = key, ChartDrawing(self._plots(), key)
         return self._made[1]
 
     def _plots(self) -> tuple[Plot, ...]:
@@ -291,16 +280,13 @@ class TrendsSection(QualitySection):
             curves[1].append(PlotCurve(parts, z, number, name=name, has_dots=False, is_stepped=True))
         if not curves[0]:
             return ()
-        titles = (
-            f"{tr('WEAR X')}, {self.control_length_unit.name}",
-            f"{tr('WEAR Z')}, {self.control_length_unit.name}",
-        )
+        unit_name = self.control_length_unit.name
+        titles = (f"{tr('WEAR X')}, {unit_name}", f"{tr('WEAR Z')}, {unit_name}")
         return tuple(Plot(title, tuple(each)) for title, each in zip(titles, curves, strict=True))
 
     def _stop_plots(self) -> tuple[Plot, ...]:
-        rows = analyze_stop_reasons(convert_stop_rows(self.watch.production_records.current_data.stops))[
-            :_MOST_BARS
-        ]
+        stops = convert_stop_rows(self.watch.production_records.current_data.stops)
+        rows = analyze_stop_reasons(stops)[:_MOST_BARS]
         if not rows:
             return ()
         bars = tuple(
@@ -414,9 +400,9 @@ class ChartsSection(QualitySection):
         """Return the table with the mean, the capability and the drift of each feature."""
         self.limit_selection()
         mode = self.control_length_unit
-        of = (self.watch.production_records.load_count, self.program_name, mode)
-        if self._rows[0] != of:
-            self._rows = of, tuple(self._row(each) for each in self.parts_data.features)
+        key = self.make_content_key()
+        if self._rows[0] != key:
+            self._rows = key, tuple(self._row(each) for each in self.parts_data.features)
         heads = ("FEATURE", "READINGS", Message("MEAN {mode}", mode=mode.name), "Cp", "Cpk", "DRIFT")
         title = (
             Message("CONTROL CHARTS  ·  {program}", program=self.program_name)
@@ -471,21 +457,16 @@ class ChartsSection(QualitySection):
 
         The charts are cached until the data change.
         """
-        row, mode = self.selected_feature, self.control_length_unit
-        of = (
-            self.watch.production_records.load_count,
-            self.program_name,
-            row.id if row is not None else 0,
-            mode,
-        )
-        if self._made[0] != of:
-            self._made = of, self._drawn(row, of)
+        row = self.selected_feature
+        key = self.make_content_key(row.id if row is not None else 0)
+        if self._made[0] != key:
+            self._made = key, self._drawn(row, key)
         return self._made[1]
 
-    def _drawn(self, row: FeatureRow | None, of: object) -> ChartDrawing:
+    def _drawn(self, row: FeatureRow | None, key: object) -> ChartDrawing:
         taken = self._newest(row) if row is not None else ()
         if row is None or not taken:
-            return ChartDrawing((), of)
+            return ChartDrawing((), key)
         parts = [each.part for each in taken]
         if any(after <= before for before, after in pairwise(parts)):
             # The count was reset or a part was measured twice, so readings are numbered in sequence.
@@ -493,19 +474,11 @@ class ChartsSection(QualitySection):
         try:
             pair = make_charts([each.value for each in taken], row.sample)
         except QualityError:
-            return ChartDrawing((), of)
+            return ChartDrawing((), key)
         names = (tr("INDIVIDUALS"), tr("MOVING RANGE")) if row.sample == 1 else (tr("AVERAGE"), tr("RANGE"))
         titled = (f"{row.name}  {names[0]}", names[1])
-        return ChartDrawing(
-            make_control_plots(
-                pair,
-                parts,
-                make_measured_feature(row).limits,
-                titled,
-                self.control_length_unit.unit_length_mm,
-            ),
-            of,
-        )
+        limits, unit_mm = make_measured_feature(row).limits, self.control_length_unit.unit_length_mm
+        return ChartDrawing(make_control_plots(pair, parts, limits, titled, unit_mm), key)
 
     def prompt_text(self) -> str:
         """Return the prompt that explains the lines in the chart, or the reason why no chart is available."""

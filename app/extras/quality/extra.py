@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class QualityExtra(OptionalFeature):
-    """Optional feature with the MEASURED PARTS page, the shift report, commands and table [gauge]."""
+    """Optional feature with the MEASURED PARTS page, the shift report, commands and the table [gauge]."""
 
     subcommands = {
         "parts": Subcommand(
@@ -64,7 +64,7 @@ class QualityExtra(OptionalFeature):
     def list_special_functions(
         self, desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker
     ) -> Sequence[tuple[SpecialFunction, str]]:
-        """Return the MEASURED PARTS function and the shift report function.
+        """Return the MEASURED PARTS function and the shift report function, each with its predecessor.
 
         In the F10 list, MEASURED PARTS follows SCOPE, and the shift report follows JOBS.
         """
@@ -77,10 +77,7 @@ class QualityExtra(OptionalFeature):
         return ((parts, "SCOPE"), (report, "JOBS"))
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the JSON outputs for parts and shifts.
-
-        The reference lists them after ``offsets history --json``.
-        """
+        """Return the JSON outputs of ``turndesk parts`` and ``turndesk shift`` for the reference page."""
         from app.extras.quality.quality_json_keys import OUTPUTS
 
         return OUTPUTS

@@ -1,4 +1,7 @@
-"""Section for the features of a part, with name, size, tolerance, offset to correct and sampling."""
+"""Section of MEASURED PARTS for the features of a part.
+
+Each feature has a name, a size, a tolerance, the offset that it corrects, and a sampling interval.
+"""
 
 from __future__ import annotations
 
@@ -141,7 +144,7 @@ class FeaturesSection(QualitySection):
 
     @property
     def field_names(self) -> tuple[str, ...]:
-        """Return the names of the fields of a feature, which depend on the programming language."""
+        """Return the names of the fields of a feature, which depend on the machine's program language."""
         absent = {"omniturn": set[str](), "sinumerik": _OF_OMNITURN, "klartext": _OF_OMNITURN | _OF_LATHES}
         return tuple(each for each in FIELD_NAMES if each not in absent[self.desk.machine.program_language])
 
@@ -255,7 +258,8 @@ class FeaturesSection(QualitySection):
     def accept_entry(self, text: str) -> bool:
         """Set the selected field to the typed text, and select the next field.
 
-        Returns whether the entry was accepted. Raises InvalidEntryError if the text is not valid.
+        Returns whether the text was accepted. Raises InvalidEntryError if the text is not valid for the
+        field.
         """
         draft = self.draft
         if draft is None:
@@ -329,7 +333,7 @@ class FeaturesSection(QualitySection):
         self.desk.show_success(tr(Message("{name} SAVED", name=name)))
 
     def remove_feature(self) -> None:
-        """Ask for confirmation, and then stop measuring the selected feature (F4)."""
+        """Remove the selected feature from the measured features after the operator confirms (F4)."""
         row = self.selected_feature
         if row is None:
             self.desk.say(self.find_unmet_precondition())

@@ -9,10 +9,7 @@ from core.table_schema import DriverDeclaration, DriverTable
 
 @make_key_table
 class GaugeModel:
-    """Settings of the serial port of a gauge.
-
-    ``unit`` applies to received lines that contain no unit.
-    """
+    """Settings of the serial port of a gauge. ``unit`` is the unit of received lines without a unit."""
 
     port: str = declare_key(meaning="Serial port of the gauge, such as `/dev/serial/by-id/…`.")
     name: str = declare_key(default="gauge", meaning="Name that is saved with each reading of the gauge.")

@@ -32,7 +32,7 @@ _DAYS = timedelta(days=2)
 
 @dataclass(frozen=True, slots=True)
 class PartsData:
-    """Stored data of the parts of one program. In all tables, the oldest rows are first.
+    """Stored data of the parts of one program. Every table lists its oldest rows first.
 
     ``last_change_numbers`` contains the number of the latest change of each offset axis.
     """
@@ -51,7 +51,7 @@ class PartsData:
     def complete_cycles(self) -> tuple[CycleRow, ...]:
         """Return the complete cycles with a representative cycle time.
 
-        A cycle that was finished by a restart has no such time and is excluded.
+        A cycle that was completed by a restart has no representative time and is excluded.
         """
         return tuple(row for row in self.cycles if row.outcome == COMPLETE and row.seconds > 0.0)
 
@@ -126,9 +126,9 @@ def read_parts_data(store: Store, program: str, max_rows: int = MAX_ROWS) -> Par
 
 
 def get_loaded_parts_data(book: ProductionRecords) -> PartsData:
-    """Return the data of the loaded program from the parts book.
+    """Return the stored part data of the loaded program.
 
-    The result is empty while the data are still being read.
+    The result has no rows while the data are still being read.
     """
     found = book.current_data.feature_data.get(BOOK_KEY)
     if isinstance(found, PartsData) and found.program_name == book.current_data.program_name:

@@ -31,7 +31,7 @@ _PLOTS = 2  # usual number of plots in a drawing
 class PlotsPane(QWidget):
     """Pane that shows the plots of one chart.
 
-    The plots are drawn again after a change of the chart, the size or the theme.
+    The plots are drawn again when the chart, the size or the theme changes.
     """
 
     accessible_name = "CHART"

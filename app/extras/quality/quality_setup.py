@@ -92,7 +92,7 @@ class QualitySectionList(SpecialFunctionsModel):
     def functions(self) -> Sequence[SpecialFunction]:
         """Return the sections of the MEASURED PARTS page.
 
-        They are created at the first access, so that TurnDesk starts faster.
+        They are created when this property is first read, so that TurnDesk starts faster.
         """
         if not self._made:
             self._made = tuple(self._make())
@@ -111,7 +111,7 @@ class QualitySectionList(SpecialFunctionsModel):
             section.process_device_input(is_displayed=section is self.shown_function)
 
     def on_open(self) -> None:
-        """Open the page and discard earlier gauge readings, because their parts are not known."""
+        """Open the page and discard earlier gauge readings, because their parts are unknown."""
         super().on_open()
         for section in self.functions:
             section.process_device_input(is_displayed=False)

@@ -1,4 +1,7 @@
-"""Section for readings, typed or received from a gauge, and for the wear correction they require."""
+"""Section of MEASURED PARTS for readings and the resulting wear correction.
+
+Readings are typed or received from a gauge.
+"""
 
 from __future__ import annotations
 
@@ -202,7 +205,7 @@ class ReadingsSection(QualitySection):
         return self._offer(NewReading(feature, self.part_number, value, mode.name, "typed"))
 
     def _offer(self, reading: NewReading) -> bool:
-        """Store a reading, after confirmation if its size is implausible.
+        """Store a reading. If its size is implausible, ask the operator to confirm the reading first.
 
         Raises InvalidEntryError if the size is 0 or less.
         """
@@ -360,9 +363,9 @@ class ReadingsSection(QualitySection):
         self.correction_effect.show_proposal(self.desk.prompt_notice, found, change, taken)
 
     def _settled(self) -> bool:
-        """Return whether all data are stored and loaded. If they are not, show a message.
+        """Return whether all data are stored and loaded, and show a message if they are not.
 
-        This prevents a second proposal while an earlier correction is still being stored.
+        This check prevents a second proposal while an earlier correction is still being stored.
         """
         settled = self.watch.production_records.is_up_to_date and not self.desk.offset_book.is_saving
         if not settled:
@@ -405,7 +408,7 @@ class ReadingsSection(QualitySection):
             self.desk.say(why)
 
     def _undo_barred(self) -> str:
-        """Return the reason why the last correction cannot be undone now, or an empty string."""
+        """Return the reason why the last correction cannot be undone now, or an empty string if it can."""
         if self._last is None:
             return tr("NO CORRECTION APPLIED ON THIS PAGE. HISTORY: MAIN MENU, F8/F9")
         kind, _number, reason = self._last

@@ -1,4 +1,4 @@
-"""Sampling plan: which features of which parts to measure, and whether the next part must wait."""
+"""Sampling plan: the features to measure on each part, and whether the next part must wait."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from core.store.store_errors import StoreError
 
 
 def find_due_parts(data: PartsData, parts_made: int) -> dict[str, int]:
-    """Return, for each feature that is due, the number of the part to measure.
+    """Return the number of the part to measure for each feature whose measurement is due.
 
-    A feature is due if neither its latest planned part nor a later part has a reading.
+    A measurement is due if neither the latest planned part nor a later part has a reading of the feature.
     """
     found = {}
     for row in data.features:
@@ -36,7 +36,7 @@ def make_due_notice(due_parts: dict[str, int]) -> str:
 
 
 def find_wait_reason(due_parts: dict[str, int]) -> str:
-    """Return the reason why the next part must wait for measurements, or an empty string."""
+    """Return the reason why the next part must wait for measurements, or else an empty string."""
     part, names = _newest(due_parts)
     return (
         Message("part {part} must be measured before the next part starts: {names}", part=part, names=names)
@@ -63,7 +63,7 @@ class SamplePlan:
     _waits: tuple[str, bool] = ("", False)  # program, and whether its parts wait for measurements
 
     def find_lock_reason(self, snapshot: Snapshot) -> str:
-        """Return the reason why the next part must wait for measurements, or an empty string.
+        """Return the reason why the next part must wait for measurements, or else an empty string.
 
         The part in progress counts as made.
         """
@@ -77,7 +77,7 @@ class SamplePlan:
         return make_due_notice(self._planned(self.desk.program_runs.part_counter.part_count))
 
     def _planned(self, made: int) -> dict[str, int]:
-        """Return the measurements that are due after a number of parts were made.
+        """Return the measurements that are due after ``made`` parts.
 
         The result is cached until the data change.
         """

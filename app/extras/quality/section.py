@@ -26,8 +26,9 @@ FloatArray = npt.NDArray[np.float64]
 class PlotCurve:
     """Curve in a plot whose horizontal axis is the part number.
 
-    ``color_index`` selects the color. ``has_dots`` draws a dot at each point. ``is_stepped`` draws the
-    curve as steps.
+    - ``color_index`` selects the color.
+    - ``has_dots`` means that each point is drawn as a dot.
+    - ``is_stepped`` means that the curve is drawn as steps.
     """
 
     part_sequence_numbers: FloatArray
@@ -74,7 +75,7 @@ class Plot:
 class ChartDrawing:
     """Chart with plots that are arranged vertically.
 
-    Charts with equal ``drawing_key`` are considered equal and are not drawn again.
+    Charts with the same ``drawing_key`` are equal, so a chart is not drawn again if its key is unchanged.
     """
 
     plots: tuple[Plot, ...] = ()
@@ -96,8 +97,9 @@ def make_control_plots(
 ) -> tuple[Plot, ...]:
     """Return the control plots of location and spread over the part numbers.
 
-    Lengths are in units of ``unit_mm`` mm. Each point is at the number of the last part of its sample. The
-    upper plot shows size limits only for samples of one part, because the limits do not apply to averages.
+    Lengths are in units of ``unit_mm`` mm. Each point is at the part number of the last part of its sample.
+    The upper plot shows size limits only for samples of one part, because size limits do not apply to
+    averages.
     """
     location = _plot(names[0], charts.location, _last_parts(part_numbers, charts.sample_size), unit_mm)
     if charts.sample_size == 1:
@@ -120,10 +122,10 @@ def make_correction_plot(
     names: tuple[str, str],
     unit_mm: float,
 ) -> Plot:
-    """Return the plot of measured sizes by part number.
+    """Return the plot of measured sizes by part number, for a proposed correction.
 
-    The plot also shows the mean and the expected size after a correction. Lengths are in units of
-    ``unit_mm`` mm. If a part was measured repeatedly, the points are drawn next to each other.
+    The plot also shows the mean size and the size expected after the correction. Lengths are in units of
+    ``unit_mm`` mm. If a part was measured repeatedly, its points are drawn next to each other.
     """
     parts = np.asarray([part for part, _ in readings], dtype=np.float64)
     if (np.diff(parts) <= 0.0).any():
@@ -172,7 +174,7 @@ NO_FEATURE_MESSAGE = "NO FEATURES YET. ADD A FEATURE IN SECTION 1 WITH F2"
 
 
 class QualitySection(NumericEntryFunction):
-    """Base class of the MEASURED PARTS sections, with stored data, program, unit and feature."""
+    """Base class of the MEASURED PARTS sections, which provides the data, program, unit and feature."""
 
     chart_share: float = 0.0  # ratio of the height for the chart below the table
 
@@ -187,7 +189,7 @@ class QualitySection(NumericEntryFunction):
 
     @property
     def program_name(self) -> str:
-        """Return the name of the loaded program, or an empty string."""
+        """Return the name of the loaded program, or an empty string if no program is loaded."""
         return self.watch.program_name
 
     @property
@@ -220,12 +222,20 @@ class QualitySection(NumericEntryFunction):
         """
         return self.move_selection(key) or super().handle_key(key)
 
+    def make_content_key(self, *more: object) -> tuple[object, ...]:
+        """Return the values on which a table or chart depends; ``more`` are those of one section."""
+        records = self.watch.production_records
+        return (records.load_count, self.program_name, self.control_length_unit, *more)
+
     def limit_selection(self) -> None:
         """Move the selection to the last row if the selected row no longer exists."""
         self.marked = max(0, min(self.marked, self.row_count - 1))
 
     def find_unmet_precondition(self) -> str:
-        """Return the reason why this section cannot be used, such as no program, or an empty string."""
+        """Return the reason why this section cannot be used, or an empty string if it can be used.
+
+        For example, no program is loaded or no feature exists.
+        """
         if not self.program_name:
             return NO_PROGRAM_MESSAGE
         return self.watch.production_records.lock_reason or (

@@ -1,7 +1,4 @@
-"""Gauge that is connected to a serial port.
-
-A thread receives readings in Digimatic format or as plain numbers.
-"""
+"""Gauge on a serial port. A thread receives readings in Digimatic format or as plain numbers."""
 
 from __future__ import annotations
 
@@ -70,9 +67,9 @@ class LineSplitter:
         self._text = ""
 
     def split_lines(self, data: bytes) -> list[str]:
-        """Add received bytes, and return the lines that are complete with these bytes.
+        """Add received bytes, and return the lines that they complete.
 
-        An incomplete line is buffered. An incomplete line that is too long is returned.
+        An incomplete line is buffered, but it is returned as it is if it is too long.
         """
         self._text += data.decode("ascii", "replace")
         *whole, self._text = re.split(r"[\r\n]+", self._text)
@@ -105,13 +102,13 @@ class Gauge(Protocol):
 
     @property
     def status_text(self) -> str:
-        """Return the reception status as text: whether it is on, and the number or age of the readings."""
+        """Return the reception status as text: on or off, and the number or age of the readings."""
         ...
 
     def toggle_receiving(self) -> str:
         """Start or stop receiving data.
 
-        Returns the reason if receiving is not possible, or else an empty string.
+        Returns an empty string, or the reason if receiving is not possible.
         """
         ...
 
@@ -186,7 +183,7 @@ class SerialGauge:
 
     @property
     def status_text(self) -> str:
-        """Return the reception status as text: whether it is on, and whether readings arrive."""
+        """Return the reception status as text: on or off, and whether readings arrive."""
         if not self.is_receiving:
             return tr("Not listening to the gauge. Press F5 to start.")
         silent = self._clock() - self._last

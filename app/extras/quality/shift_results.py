@@ -1,4 +1,4 @@
-"""Results of a shift that are calculated from stored data, and the period of the shift.
+"""Results of a shift, calculated from stored data, and the period of the shift.
 
 The results use the same stored rows as the trends and ``turndesk parts``, so all counts agree.
 """
@@ -42,8 +42,8 @@ _TIME_FORMATS = ("%Y-%m-%d %H:%M", "%Y-%m-%dT%H:%M", "%Y-%m-%d")
 class Shift(NamedTuple):
     """Period of a shift from ``start_s`` to ``end_s``, in seconds since the epoch (UTC).
 
-    If the local clock changes during the shift, for example for daylight saving time, the period is longer
-    or shorter.
+    If the local clock changes during the shift, as for daylight saving time, the period is longer or
+    shorter than usual.
     """
 
     start_s: float
@@ -57,9 +57,9 @@ class Shift(NamedTuple):
 
     @property
     def clock_change_s(self) -> float:
-        """Return the time in seconds by which the local clock was set forward during the shift.
+        """Return the time in seconds by which the local clock is set forward during the shift.
 
-        The value is negative if the clock was set back.
+        The value is negative if the clock is set back.
         """
         first, last = (datetime.fromtimestamp(each).astimezone().utcoffset() for each in self)
         return ((last or timedelta()) - (first or timedelta())).total_seconds()
@@ -135,8 +135,8 @@ _MIN_CLOCK_STEP_BACK_S = 1.0  # seconds of backward jump from which the clock co
 class ProgramResults(NamedTuple):
     """Results of one program in a shift.
 
-    ``part_count`` is the number of counted parts. ``incomplete_cycles`` contains the number of cycles
-    without a part for each outcome. ``cycle_times_s`` are the times of complete cycles in seconds.
+    ``part_count`` is the number of counted parts. ``incomplete_cycles`` is the number of cycles without a
+    part, by outcome. ``cycle_times_s`` are the times of complete cycles in seconds.
     """
 
     program_name: str
@@ -149,8 +149,8 @@ class ProgramResults(NamedTuple):
 class ShiftResults:
     """Results of a shift.
 
-    ``evaluated_until_s`` is the end of the shift, or the current time while the shift is still running, in
-    seconds since the epoch (UTC).
+    ``evaluated_until_s`` is the end of the shift, or the current time while the shift is still running. It
+    is in seconds since the epoch (UTC).
     """
 
     shift: Shift
@@ -175,12 +175,12 @@ class ShiftResults:
 
     @property
     def total_stop_time_s(self) -> float:
-        """Return the duration of all stops within the shift in seconds."""
+        """Return the total duration of all stops in the shift, in seconds."""
         return sum(each.seconds for each in self.stop_reasons)
 
     @property
     def unrecorded_time_s(self) -> float:
-        """Return the time in seconds with neither a recorded cycle nor a recorded stop.
+        """Return the time in seconds for which neither a cycle nor a stop is recorded.
 
         During this time, the control was off or no part was started.
         """
@@ -273,9 +273,9 @@ def _make_program_results(
 
 
 def _select_interrupted(cycles: Sequence[CycleRow], *, on: bool) -> list[CycleRow]:
-    """Return the cycles without a stored end, which were interrupted.
+    """Return the interrupted cycles, which are the cycles without a stored end.
 
-    If ``on`` is True, the shift is running. Its last cycle is omitted, because that cycle may still be
+    If ``on`` is True, the shift is running. Its last cycle is then omitted, because that cycle may still be
     running.
     """
     known = cycles[:-1] if on else cycles
@@ -283,7 +283,10 @@ def _select_interrupted(cycles: Sequence[CycleRow], *, on: bool) -> list[CycleRo
 
 
 def _limit_stops(stops: Iterable[ProductionStop], start: float, end: float) -> list[ProductionStop]:
-    """Return the stops of a period, shortened to the part within the period."""
+    """Return the stops between ``start`` and ``end``.
+
+    A stop that extends beyond this period is shortened to it.
+    """
     clipped = [
         (each.reason, max(each.start_s, start), min(each.start_s + each.duration_s, end)) for each in stops
     ]

@@ -1,4 +1,4 @@
-"""Wear correction that is proposed for a feature: its calculation, preview and application."""
+"""Calculation, preview and application of the wear correction that is proposed for a feature."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ CORRECTION_STEP_MM = {
 
 
 def make_correction_proposal(data: PartsData, row: FeatureRow, value_mode: UnitMode) -> CorrectionProposal:
-    """Return the correction that the readings since the last correction require.
+    """Return the correction that follows from the readings since the last correction.
 
     Raises QualityError if no correction can be calculated from these readings.
     """
@@ -57,7 +57,7 @@ def make_correction_proposal(data: PartsData, row: FeatureRow, value_mode: UnitM
 
 @dataclass(frozen=True, slots=True)
 class OffsetCorrection:
-    """Change of one value in the offset table, with the new value and the text for the operator."""
+    """Change of one value in the offset table, with the new value and the operator message."""
 
     offset_kind: OffsetKind
     offset_number: int
@@ -114,7 +114,7 @@ def _tool_value(
 ) -> FieldValue:
     """Return the new wear offset of a tool.
 
-    The correction is added like an F2 entry in the tool table.
+    The correction is added to the wear offset, as F2 does in the tool table.
     """
     if not isinstance(row, ToolOffsetRow):
         raise InvalidEntryError(tr(Message("NO OFFSETS SET FOR T{number}", number=number)))
@@ -146,7 +146,7 @@ CHART_READING_COUNT = 25  # number of latest readings in the chart
 
 @dataclass(slots=True)
 class CorrectionPreview:
-    """Preview of a proposed correction while the operator is asked to confirm it.
+    """Preview of a proposed correction, shown while the operator is asked to confirm it.
 
     The worker of the offset pages simulates the part with the old and the new offsets.
     """
@@ -159,7 +159,7 @@ class CorrectionPreview:
 
     @property
     def is_question_open(self) -> bool:
-        """Return whether the question about the correction is still displayed on the prompt line."""
+        """Return whether the prompt line still shows the question about the correction."""
         return bool(self.question) and self.desk.prompt_notice == self.question
 
     def show_proposal(

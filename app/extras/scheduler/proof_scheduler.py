@@ -21,7 +21,7 @@ _AHEAD = 256  # units that the scheduler has at once; workers can join during th
 class ProofScheduler:
     """Connection to a Dask scheduler and its workers.
 
-    Raises CommandError if the scheduler cannot be reached.
+    The constructor raises CommandError if the scheduler cannot be reached.
     """
 
     max_active_work_units = _AHEAD
@@ -63,7 +63,7 @@ class ProofScheduler:
         return executor
 
     def stop_workers(self, executor: Executor | None, *, is_done: bool) -> None:
-        """Cancel the remaining work units if the proof is not done, and disconnect from the scheduler."""
+        """Disconnect from the scheduler. If the proof is not done, also cancel the remaining work units."""
         if executor is not None:
             executor.shutdown(wait=is_done)
         self._client.close()

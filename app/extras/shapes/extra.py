@@ -34,10 +34,7 @@ class ShapesExtra(OptionalFeature):
         )
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the JSON outputs of ``turndesk shapes``.
-
-        The reference lists them after ``store verify --json``.
-        """
+        """Return the JSON outputs of ``turndesk shapes`` for the reference page."""
         from app.extras.shapes.shapes_command import OUTPUTS
 
         return {"store verify --json": OUTPUTS}

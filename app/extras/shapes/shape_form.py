@@ -1,6 +1,6 @@
-"""Form of one shape, with entries, calculated values and errors.
+"""Form of one shape with entries, calculated values and errors.
 
-The module also contains the base class for forms that other features add to the list of shapes.
+The module also contains the base class of the forms that other features add to the list of shapes.
 """
 
 from __future__ import annotations
@@ -50,13 +50,12 @@ class FormCell(NamedTuple):
 
 @dataclass(slots=True)
 class ShapeForm:
-    """Form of a shape, such as a contour or a thread, with the operator's entries.
+    """Form of a shape, such as a contour or a screw thread, with the operator's entries.
 
     - ``entered_texts`` contains the typed text by field.
     - ``point_texts`` contains one entry per point, with the typed text by column.
-    - ``selected_row`` is the index of the selected row. Rows of fields come before rows of points.
-    - ``replaced_piece`` contains the existing lines of the shape if the form was opened from the program
-    text.
+    - ``selected_row`` is the index of the selected row. Rows of fields precede rows of points.
+    - ``replaced_piece`` is the existing shape in the program text from which the form was opened, if any.
     """
 
     shape: Shape
@@ -87,7 +86,7 @@ class ShapeForm:
         self.calculate()
 
     def _enter_values(self, filled_shape: ShapeInstance) -> None:
-        """Enter the values of a shape in the program text as if they were typed."""
+        """Enter the values of a shape from the program text as if the operator had typed them."""
         for word, value in filled_shape.field_values.items():
             self.entered_texts[word] = value if isinstance(value, str) else format_short_number(value, 6)
         for row in filled_shape.contour_points:
@@ -160,7 +159,7 @@ class ShapeForm:
 
     @property
     def row_count(self) -> int:
-        """Return the number of fields and points, including the empty point at the end."""
+        """Return the number of rows for fields and points, including the empty point at the end."""
         return len(self.fields) + (len(self.point_texts) + 1 if self.shape.has_point_table else 0)
 
     @property
@@ -175,7 +174,7 @@ class ShapeForm:
 
     @property
     def selected_field_name(self) -> str:
-        """Return the word that identifies the selected field, or the label of the selected point."""
+        """Return the name that identifies the selected field, or the label of the selected point."""
         here = self.selected_field
         return here.name if here is not None else make_point_label(self.selected_point + 1)
 
@@ -208,7 +207,7 @@ class ShapeForm:
         return translate_choice(field, said) if self.is_translatable(field, said) else said
 
     def is_translatable(self, field: ShapeField, choice: str) -> bool:
-        """Return whether a choice is a screen text that is translated, and not a name or a size."""
+        """Return whether a choice is a screen text to translate. Names and sizes are not translated."""
         return choice in field.choices
 
     def get_dimension_text(self, word: str) -> str:
@@ -236,7 +235,7 @@ class ShapeForm:
 
     @property
     def current_sketch(self) -> Sketch:
-        """Return the sketch, whose dimensions are the fields of the form."""
+        """Return the sketch of the shape. The dimensions in the sketch are the fields of the form."""
         return self.shape.make_sketch(self.filled_shape)
 
     @property
@@ -255,7 +254,7 @@ class ShapeForm:
         self.selected_column, self.next_key_replaces_entry = column, True
 
     def select_field_by_name(self, word: str) -> None:
-        """Select the field with a given word, or the contour point with a given label."""
+        """Select the field with a given name, or the contour point with a given label."""
         if word.startswith("#"):
             self.select_row(len(self.fields) + int(word[1:]) - 1)
             return
@@ -436,7 +435,7 @@ class AdditionalForm(ABC):
 
     @abstractmethod
     def make_function_keys(self, form: ShapeForm, show_form: ShowForm) -> Mapping[int, FunctionKey]:
-        """Return the additional function keys of this form."""
+        """Return the function keys of this form, in addition to those of every shape form."""
 
     @abstractmethod
     def prompt_text(self, form: ShapeForm) -> str:
@@ -444,14 +443,11 @@ class AdditionalForm(ABC):
 
     @abstractmethod
     def poll(self) -> None:
-        """Process the results of the workers.
-
-        This method is called once per frame.
-        """
+        """Process the results of the form's workers. This method is called once per frame."""
 
     @abstractmethod
     def close(self) -> None:
-        """Stop the workers."""
+        """Stop the workers of the form."""
 
 
 def list_translatable_texts(shapes: Iterable[Shape]) -> list[str]:

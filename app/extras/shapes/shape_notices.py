@@ -12,7 +12,10 @@ from core.message import Message
 
 
 def describe_damaged_comment(program_lines: Sequence[str], line: int, dialect: Dialect) -> str:
-    """Return a notice if the form comment of the shape at a line is unreadable, or an empty string."""
+    """Return a notice if the form comment of the shape at a line is unreadable.
+
+    Otherwise, return an empty string.
+    """
     found = find_damaged_comment(program_lines, line, dialect)
     if found is None or line >= len(program_lines):
         return ""
@@ -22,7 +25,7 @@ def describe_damaged_comment(program_lines: Sequence[str], line: int, dialect: D
 
 
 def describe_manual_edits(piece: ProgramShape) -> str:
-    """Return a notice if the lines of a shape were edited by hand, or an empty string."""
+    """Return a notice if the lines of a shape were edited by hand, or else an empty string."""
     if piece.adopted_field_names:
         words = ", ".join(
             each.label
@@ -37,7 +40,7 @@ def describe_manual_edits(piece: ProgramShape) -> str:
 
 
 def describe_unchanged_shapes(count: int) -> str:
-    """Return the notice about hand-edited shapes that were not changed, or an empty string if none."""
+    """Return the notice that ``count`` hand-edited shapes are unchanged, or an empty string for 0."""
     if count == 1:
         return tr("1 SHAPE EDITED BY HAND WAS NOT CHANGED")
     return tr(Message("{count} SHAPES EDITED BY HAND WERE NOT CHANGED", count=count)) if count else ""

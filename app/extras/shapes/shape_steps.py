@@ -1,4 +1,4 @@
-"""Generation of a program from a file of steps. Each step contains the fields of one form.
+"""Generation of a program from a file of steps, each of which contains the fields of one form.
 
 The generated program is identical to the program that the editor's forms write.
 """
@@ -38,7 +38,7 @@ class InvalidStepError(Exception):
 class GeneratedProgram:
     """Program that was generated from steps.
 
-    ``step_kinds`` are the kinds of the steps. ``remarks`` are remarks about the program lines.
+    ``step_kinds`` are the kinds of the steps. ``remarks`` contains notes about the program lines.
     """
 
     program_lines: tuple[str, ...]
@@ -52,7 +52,7 @@ def get_shapes_by_kind(dialect: Dialect) -> dict[str, Shape]:
 
 
 def map_keys_to_fields(shape: Shape) -> dict[str, str]:
-    """Return the field words of a shape, by the key that a step uses."""
+    """Return the field names of a shape, by the key that a step uses."""
     return {_KEYS.get(each.name, each.name.lower()): each.name for each in shape.fields}
 
 
@@ -109,7 +109,7 @@ def _shape(number: int, step: ShapeStep, dialect: Dialect) -> Shape | str:
 
 
 def _strange(number: int, step: ShapeStep, shapes: Sequence[Shape | str]) -> list[str]:
-    """Return error messages about the unknown keys and invalid values of a step."""
+    """Return error messages about unknown keys and invalid values of a step."""
     shape = shapes[number - 1]
     if isinstance(shape, str):
         return []
@@ -133,7 +133,7 @@ def _strange(number: int, step: ShapeStep, shapes: Sequence[Shape | str]) -> lis
 
 
 def _form(number: int, step: ShapeStep, shape: Shape, settings: ProgramSettings) -> ShapeForm:
-    """Return the form with the values of a step.
+    """Return the form that is filled in with the values of a step.
 
     Raises InvalidStepError if the form rejects a value.
     """
@@ -172,9 +172,10 @@ def _form(number: int, step: ShapeStep, shape: Shape, settings: ProgramSettings)
 
 
 def _rows(where: str, points: object) -> list[dict[str, str]]:
-    """Return the entries of contour points as texts by column.
+    """Return the typed texts of each contour point, by column.
 
-    The keys are x, z, c (chamfer), r (radius) and a (arc). Raises InvalidStepError if the points are invalid.
+    The keys in ``points`` are x, z, c (chamfer), r (radius) and a (arc). Raises InvalidStepError if the
+    points are invalid.
     """
     if not isinstance(points, list) or not all(isinstance(each, dict) for each in points):
         raise InvalidStepError(

@@ -100,7 +100,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _language(out: str | None, machine: Machine) -> Dialect:
-    """Return the language of the program, from the output file name or else from the machine.
+    """Return the program language, which depends on the output file name or else on the machine.
 
     Raises CommandError if the language is Klartext.
     """

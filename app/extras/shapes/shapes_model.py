@@ -44,7 +44,8 @@ class ShapesModel(EditorPanelModel):
     """Model of the shapes panel.
 
     - ``read_shop_data`` reads machine and tool data from the store on a worker.
-    - ``text`` is the program with the lines of the form. ``text_number`` increases with each text to prove.
+    - ``text`` is the program including the lines of the open form.
+    - ``text_number`` increases with each text to prove.
     - ``cursor_line``, counted from 0, is the line before which a new shape is inserted.
     """
 
@@ -92,9 +93,11 @@ class ShapesModel(EditorPanelModel):
     ) -> str:
         """Open the shapes panel for a program text.
 
-        ``cursor_line`` is the cursor line, counted from 1. If ``lists_helpers`` is True, the list contains
-        calculators and templates instead of shapes, and the shape at the cursor is not opened. Returns the
-        reason if opening is not possible, or an empty string.
+        ``cursor_line`` is the line of the cursor, counted from 1.
+
+        If ``lists_helpers`` is True, the list contains calculators and templates instead of shapes, and the
+        shape at the cursor is not opened. Returns an empty string, or the reason if the panel cannot be
+        opened.
         """
         if not supports_shapes(name):
             return tr("SHAPES WORK ONLY IN OMNITURN AND SINUMERIK PROGRAMS")
@@ -119,7 +122,7 @@ class ShapesModel(EditorPanelModel):
 
     @property
     def is_listing_shapes(self) -> bool:
-        """Return whether the list contains shapes, and not calculators and templates."""
+        """Return whether the list contains shapes. Otherwise it contains calculators and templates."""
         return all(self.shape_table is not each for each in CALCULATORS_BY_DIALECT.values())
 
     @property
@@ -213,7 +216,7 @@ class ShapesModel(EditorPanelModel):
 
     @property
     def _adder(self) -> AdditionalForm | None:
-        """Return the added form that created the open form, or None if the open form is a shape."""
+        """Return the additional form to which the open form belongs, or None if the open form is a shape."""
         return self._adder_of(self.form.shape) if self.form is not None else None
 
     def _open_piece(self, piece: ProgramShape) -> None:
@@ -426,9 +429,9 @@ class ShapesModel(EditorPanelModel):
 
     @property
     def path_end_line(self) -> int:
-        """Return the number of the line up to which the tool path is shown, counted from 1.
+        """Return the line number up to which the tool path is shown, counted from 1.
 
-        This is the last line of the form, or the insertion line if no form is open.
+        This is the last line that the form writes, or the insertion line if no form is open.
         """
         form = self.form
         if form is None:

@@ -66,7 +66,8 @@ def _chuck(machine: Machine) -> tuple[int, int] | None:
 def _live(machine: Machine) -> tuple[int, int]:
     """Return the M codes that turn the live tool on and off.
 
-    The codes are found by the name of their output. If several codes match, the lowest are returned.
+    The codes are found by the name of the output that they switch. If several codes match, the lowest are
+    returned.
     """
     for code, (output, state) in sorted(machine.m_code_outputs.items()):
         if state and _LIVE.search(output):

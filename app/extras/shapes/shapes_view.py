@@ -43,9 +43,9 @@ _DRAWN = 12.0  # units: minimum useful height of the drawing
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    """Row of the shapes panel: a shape, a form field, or a contour point with its ``point_cells``.
+    """Row of the shapes panel: a shape, a form field, or a contour point.
 
-    ``text_tone`` is the color of the value.
+    ``point_cells`` are the values of a contour point. ``text_tone`` is the color of the value.
     """
 
     label: str
@@ -263,7 +263,7 @@ class ShapesView(EditorPanel):
     def open_for_text(self, key_name: str, program_name: str, text: str, line_number: int) -> str:
         """Open the list of shapes, or the list of calculators if ``key_name`` is Calculators.
 
-        Returns the reason if opening is not possible, or an empty string.
+        Returns an empty string, or the reason if the list cannot be opened.
         """
         return self.model.open_program_text(
             program_name, text, line_number, lists_helpers=key_name == "Calculators"
@@ -381,7 +381,7 @@ class ShapesView(EditorPanel):
         return QSize()
 
     def lay_out(self) -> None:
-        """Arrange all parts of the panel."""
+        """Arrange all areas of the shapes panel."""
         u = self.theme.unit_px
         gap, left = max(4, round(0.7 * u)), round(_SHARE * self.width())
         right, x = self.width() - left - gap, left + gap
@@ -402,7 +402,7 @@ class ShapesView(EditorPanel):
         return high if drawn else self.height()
 
     def resizeEvent(self, _event: object) -> None:
-        """Arrange the panel again after the size has changed."""
+        """Arrange the areas of the panel again after it is resized."""
         self.lay_out()
 
 

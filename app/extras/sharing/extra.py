@@ -67,10 +67,7 @@ class SharingExtra(OptionalFeature):
         return start_sharing(desk, journal)
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the JSON outputs of ``turndesk share``.
-
-        The key is the command after which the reference lists them.
-        """
+        """Return the JSON outputs of ``turndesk share`` for the reference page."""
         from app.extras.sharing.share_command import OUTPUTS, PRECEDING_COMMAND
 
         return {PRECEDING_COMMAND: OUTPUTS}

@@ -1,4 +1,4 @@
-"""Program files in the program folder of this machine, with their digests, for program sharing."""
+"""Files in the program folder of this machine and their digests, for program sharing."""
 
 from __future__ import annotations
 

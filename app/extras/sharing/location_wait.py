@@ -1,4 +1,4 @@
-"""Wait of a command for the shared location, which Ctrl+C can interrupt.
+"""Waiting of a command for the shared location, which the user can interrupt with Ctrl+C.
 
 A location on a failed network drive may never respond.
 """
@@ -46,8 +46,8 @@ def _wait_for_folder(location: SharedFolder, told_after: float) -> None:
     """Wait until a separate process has opened the marker file of the shared folder.
 
     A system call that blocks on a failed FUSE drive survives SIGKILL. In a thread, it would block the whole
-    command, but a separate process can be left running. The file is opened because file names can come from
-    a cache. Raises SharingError if the folder does not respond.
+    command, but a separate process can be left running. The process opens the file, because a list of file
+    names could come from a cache. Raises SharingError if the folder does not respond.
     """
     opening = subprocess.Popen(
         [sys.executable, "-I", "-S", "-c", _OPEN, str(location.marker_path)],

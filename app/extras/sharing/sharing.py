@@ -1,8 +1,8 @@
-"""Program sharing between machines, which publishes local versions and reads remote versions.
+"""Program sharing, which publishes local versions and reads the versions of other machines.
 
 Every local version is stored in the store of this machine before it is published. While the shared location
-is not available, versions wait in the store. Versions of other machines are copied to the program folder
-only on request.
+is not available, local versions wait in the store. Versions of other machines are copied to the program
+folder only on request.
 """
 
 from __future__ import annotations
@@ -75,10 +75,7 @@ class SharingThread:
         return self._now() - since if since >= 0.0 else 0.0
 
     def close(self) -> None:
-        """Stop the thread.
-
-        Work that is not complete is repeated after TurnDesk starts again.
-        """
+        """Stop the thread. Incomplete work is repeated when TurnDesk runs again."""
         self._closing.set()
         self._wake.set()
         if self._thread.is_alive():
@@ -109,7 +106,7 @@ class VersionCopyError(CodedError):
 class SharingResult:
     """Immutable result of a synchronization with the shared location.
 
-    ``error_text`` is the reason if the location could not be used, or else an empty string.
+    ``error_text`` is the reason why the location could not be used, or an empty string.
     """
 
     versions_by_program: Mapping[str, ProgramVersions] = field(default_factory=dict)
@@ -329,11 +326,12 @@ class ProgramSharing:
         """Copy a version into the program folder and return the file name.
 
         The previous text remains stored as a version. If both machines have changed the program, the copy
-        is stored as the successor of both versions, so that other machines detect the resolved conflict.
+        is stored as the successor of both versions, so that other machines see that the conflict is
+        resolved.
 
-        Raises VersionCopyError, SharingError or StoreError if the copy fails. The program is then
-        unchanged, unless the error occurs after the file was replaced: for example, the store may fail to
-        record the new local version. The next synchronization then recognizes the new text.
+        Raises VersionCopyError, SharingError or StoreError if the copy fails. The program is then usually
+        unchanged. If the store fails after the file was replaced, the next synchronization recognizes the
+        new text.
         """
         text = self.read_version_text(version)
         with self._lock:
@@ -366,12 +364,11 @@ class ProgramSharing:
             return name
 
     def resolve_with_local_version(self, program_key: str) -> None:
-        """Resolve a version conflict in favor of the local version.
+        """Resolve a version conflict in favor of the local version, by making it the newest version.
 
-        If another machine has a newer version but there is no conflict, the local version is made the
-        newest in the same manner. Raises VersionCopyError if this machine has no version, if it already has
-        all newest versions, or if the text of the local version cannot be read from the store. Raises
-        StoreError if the store fails.
+        The same applies if another machine has a newer version without a conflict. Raises VersionCopyError
+        if this machine has no version, if it already has all newest versions, or if the text of the local
+        version cannot be read from the store. Raises StoreError if the store fails.
         """
         with self._lock:
             store = self._store()
@@ -404,9 +401,9 @@ class ProgramSharing:
     def _free_name(self, version: SharedVersion) -> str:
         """Return the file name to which a version is copied.
 
-        This is the name of an existing local file that differs only in case, or else the name of the
-        version. Raises VersionCopyError if sharing does not accept a local file with that name, or if a new
-        file may not have it.
+        If a local file has the same name except for case, its name is used. Otherwise, the name of the
+        version is used. Raises VersionCopyError if sharing rejects the local file, or if the name is not
+        permitted for a new file.
         """
         names = [each for each in self._files.rejected_files if make_program_key(each) == version.program_key]
         if names:

@@ -1,6 +1,6 @@
 """Model of the SHARED PROGRAMS page, independent of Qt.
 
-The page shows newer versions on other machines, their authors, and the machines that have them.
+The page shows newer versions from other machines, their authors, and the machines on which they exist.
 """
 
 from __future__ import annotations
@@ -112,9 +112,9 @@ class RemoteVersionArchive:
 class SharingModel:
     """Model of the SHARED PROGRAMS page.
 
-    ``sharing`` is None if no shared location is configured. ``synchronize_now`` starts a synchronization on
-    the sharing thread. ``get_waiting_time_s`` returns how long the thread has waited for the location, in
-    seconds.
+    - ``sharing`` is None if no shared location is configured.
+    - ``synchronize_now`` starts a synchronization on the sharing thread.
+    - ``get_waiting_time_s`` returns how long this thread has been waiting for the location, in seconds.
     """
 
     desk: Desk
@@ -151,7 +151,8 @@ class SharingModel:
     def shared_programs(self) -> tuple[tuple[str, ProgramVersions], ...]:
         """Return the shared programs, each with its program key.
 
-        Programs that require a decision come first. Programs with the same state are sorted by name.
+        Programs for which the operator must make a decision come first. Programs with the same state are
+        sorted by name.
         """
         shared = self.last_result
         if shared is not self._of[0]:
@@ -171,7 +172,7 @@ class SharingModel:
 
     @property
     def selected_version(self) -> SharedVersion | None:
-        """Return the selected version of another machine, or None if no version is selected."""
+        """Return the selected version from another machine, or None if no version is selected."""
         here, number = self.selected_program, self.remote_versions.number
         if (
             here is None
@@ -230,7 +231,7 @@ class SharingModel:
         )
 
     def _silence(self) -> str:
-        """Return a message if the shared location has not responded for a long time, or an empty string."""
+        """Return a message if the shared location has not responded for long, or an empty string."""
         seconds = self.get_waiting_time_s()
         if self.program_sharing is None or seconds < _PATIENCE:
             return ""
@@ -261,7 +262,7 @@ class SharingModel:
     # --- keys ----------------------------------------------------------------------------------------
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function keys of the page. Keys without an effect now are disabled."""
+        """Return the function keys of the page. Keys that currently have no effect are disabled."""
         return {
             "F2": FunctionKey(
                 "USE",
@@ -319,7 +320,7 @@ class SharingModel:
         return here is not None and self.last_result.states_by_program.get(here[0]) == "both"
 
     def keep_local_version(self) -> None:
-        """Resolve the conflict in favor of the local version, after confirmation."""
+        """Resolve the version conflict in favor of the local version, after the operator confirms."""
         here = self.selected_program
         if here is None or not self._both:
             self.desk.say("NO DECISION NEEDED: NO OTHER CONTROL HAS CHANGED THIS PROGRAM")
@@ -357,9 +358,10 @@ class SharingModel:
         self.worker.enqueue_work(work, report_success, self.desk.show_refusal)
 
     def _find_use_refusal(self, key: str) -> str:
-        """Return the reason why a program in use must not be replaced now, or an empty string.
+        """Return the reason why a program must not be replaced now, or else an empty string.
 
-        A program is in use while it is running, also as a subprogram, or while its run is interrupted.
+        A program must not be replaced while it is running, also as a subprogram, or while its run is
+        interrupted.
         """
         snapshot, loaded = self.desk.read_snapshot(), self.desk.program_loader.loaded_program
         if snapshot.interrupted is not None and make_program_key(snapshot.interrupted.program) == key:
@@ -374,7 +376,7 @@ class SharingModel:
         return ""
 
     def select_next_version(self) -> None:
-        """Select the next remote version if more than one machine has changed the program."""
+        """Select the next version if several other machines have changed the program."""
         count = len(self.remote_versions.rows)
         if count:
             self.desk.clear_prompt_line()

@@ -100,9 +100,9 @@ def start_sharing(desk: Desk, journal: Journal) -> Callable[[], None] | None:
 
 @dataclass(slots=True)
 class SharingResultHandler:
-    """Handler of synchronization results, which runs on the sharing thread.
+    """Handler of synchronization results, called on the sharing thread.
 
-    Each message is reported only once.
+    It reports each message only once.
     """
 
     desk: Desk

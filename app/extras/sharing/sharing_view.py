@@ -1,4 +1,4 @@
-"""Page SHARED PROGRAMS (X), with the programs above and the changes in a version below."""
+"""Page SHARED PROGRAMS (X), with the programs above and the changes in the selected version below."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class SharedProgramsPage(ListPage):
         self.versions.show()
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function keys of the model."""
+        """Return the function keys that the model provides."""
         return self.model.make_function_keys()
 
     def make_key_labels(self) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Export of the tools to a table of another program."""
+"""Export of the stored tools to a tool table that another program can read."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from core.store.store_rows import OFFSET_NUMBERS, FieldValue, ToolOffsetRow, Too
 
 
 def export_table(args: argparse.Namespace) -> int:
-    """Write the tools to a new file, and report the values that its format cannot contain.
+    """Write the tools to a new file, and report the values that the file format cannot represent.
 
-    Raises CommandError if the file exists, the format cannot be written, or there are no tools.
+    Raises CommandError if the file exists, if TurnDesk cannot write the format, or if there are no tools.
     """
     path = Path(args.file)
     format_name = _find_format(args)
@@ -49,7 +49,7 @@ def export_table(args: argparse.Namespace) -> int:
 
 
 def make_entry(number: int, tool: ToolOffsetRow | None, shape: ToolShapeRow | None) -> ToolEntry:
-    """Return a tool of the store as an entry of a table, without wear and the master mark."""
+    """Return a stored tool as an entry of a tool table. Wear and the master mark are omitted."""
     offset: dict[str, FieldValue] = {}
     if tool is not None:
         offset = {name: getattr(tool, name) for name in OFFSET_FIELDS}
@@ -60,7 +60,10 @@ def make_entry(number: int, tool: ToolOffsetRow | None, shape: ToolShapeRow | No
 
 
 def _find_format(args: argparse.Namespace) -> str:
-    """Return the format of ``--to`` or of the file suffix. Raises CommandError if it cannot be written."""
+    """Return the file format from the option ``--to`` or from the file suffix.
+
+    Raises CommandError if TurnDesk cannot write this format.
+    """
     with convert_to_command_error(ToolTableError):
         found: str = args.format or find_table_format(Path(args.file).name)
     if FORMATS[found].exported_fields:
@@ -75,9 +78,9 @@ def _find_format(args: argparse.Namespace) -> str:
 
 
 def _read_columns(args: argparse.Namespace, format_name: str) -> dict[str, str]:
-    """Return the headings by field.
+    """Return the column headings of a CSV file, by field.
 
-    Raises CommandError if they are not for a CSV file, or if the tool number has no heading.
+    Raises CommandError if headings are specified for another format, or if the tool number has no heading.
     """
     columns = parse_columns(args.columns)
     if columns and format_name != "csv":
@@ -116,7 +119,7 @@ def _report(
     table_format: TableFormat,
     columns: Mapping[str, str],
 ) -> Iterator[str]:
-    """Yield the exported tools and everything that the file does not contain."""
+    """Yield lines that list the exported tools and the values that the file does not contain."""
     names = [f"T{each.tool_number}" for each in exported]
     yield Message("exported: {names}", names=", ".join(names))
     fields = csv_table.list_written_fields(columns) if columns else table_format.exported_fields

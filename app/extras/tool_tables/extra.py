@@ -19,10 +19,7 @@ class ToolTablesExtra(OptionalFeature):
     }
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the JSON output of the tool table import.
-
-        The reference lists it after ``offsets history --json``.
-        """
+        """Return the JSON output of the tool table import for the reference page."""
         from app.extras.tool_tables.import_command import IMPORT_OUTPUT
 
         return {"offsets history --json": (IMPORT_OUTPUT,)}

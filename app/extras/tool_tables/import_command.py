@@ -1,4 +1,4 @@
-"""Import of a tool table, with a preview of the changes and questions to confirm them.
+"""Import of a tool table, with a preview of the changes and questions for confirmation.
 
 The whole import is one step in the offset history.
 """
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 
 def import_tool_table(args: argparse.Namespace) -> int:
-    """Show the changes that a tool table would make, and import the table after confirmation.
+    """Show the changes that a tool table would make, and import the table after the user confirms.
 
     Raises CommandError if the table is invalid or cannot be imported.
     """

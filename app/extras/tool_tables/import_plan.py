@@ -30,7 +30,7 @@ class ImportStatus(StrEnum):
 
 
 class FieldChange(NamedTuple):
-    """Changed field with its old and its new value, in mm or degrees.
+    """Changed field of a tool, with its old and new value in mm or degrees.
 
     The old value is None if the field was not set.
     """

@@ -1,4 +1,4 @@
-"""Command ``turndesk tools``, which imports and exports the tool tables of other programs."""
+"""Command ``turndesk tools``, which imports tool tables from other programs and exports tools."""
 
 from __future__ import annotations
 

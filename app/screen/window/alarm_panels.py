@@ -28,7 +28,7 @@ _HIGH, _WHEN, _FOOT = 7.0, 17.0, 6.8
 
 
 class AlarmNotice(Panel):
-    """Notice that shows the active alarms, the first of them large, or the message of M00 or M01."""
+    """Notice that shows the active alarms, with the first one large, or the message of M00 or M01."""
 
     message, _go_on = RedrawingAttribute(""), RedrawingAttribute("")
     _alarms: RedrawingAttribute[tuple[Alarm, ...]] = RedrawingAttribute(())
@@ -143,7 +143,7 @@ class AlarmList(RowPanel):
         self.hide()
 
     def show_entries(self, logged_stops: Sequence[LoggedStop]) -> None:
-        """Show these entries, and select the newest entry if the list has changed."""
+        """Show the given log entries, and select the newest entry if the list has changed."""
         if logged_stops is not self.logged_stops:
             self.logged_stops = tuple(logged_stops)
             self.first_row = self.marked = 0
@@ -155,9 +155,9 @@ class AlarmList(RowPanel):
         self.mark(max(self.first_row, min(self.marked, self.first_row + self.rows - 1)))
 
     def mark(self, index: int) -> None:
-        """Select an entry by its index, counted from 0 for the newest.
+        """Select an entry by its index, where index 0 is the newest entry.
 
-        The index is limited to the list.
+        An index outside the list is limited to the nearest valid index.
         """
         self.marked = max(0, min(index, len(self.logged_stops) - 1))
 
@@ -230,9 +230,9 @@ class AlarmList(RowPanel):
             painter.draw_text_line(QRectF(left, row.y() + y * u, wide, 2.1 * u), text, 1.8, ink, bold=False)
 
     def _draw_pages(self, painter: ThemedPainter, foot: QRectF) -> None:
-        """Draw two touch keys that scroll to newer and older entries.
+        """Draw touch keys that scroll to newer and to older entries.
 
-        A key is drawn only if there are such entries.
+        Each key is drawn only if there are entries in its direction.
         """
         u = self.theme.unit_px
         for number, (label, by) in enumerate((("NEWER", -self.rows), ("OLDER", self.rows))):

@@ -47,7 +47,7 @@ class FileOpener(QObject):
         return True
 
     def open_files(self, files: list[Path]) -> None:
-        """Open the file if ``files`` contains exactly one, or show why no file can be opened."""
+        """Open the file if ``files`` contains exactly one, and otherwise show why nothing is opened."""
         frame = self._window.frame
         if frame is None or not files:
             return

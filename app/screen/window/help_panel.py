@@ -61,7 +61,7 @@ class HelpPanel(RowPanel):
         return "\n".join(f"{block.key} {block.text}".strip() for block in self._blocks)
 
     def open_help(self, blocks: Sequence[GuideBlock]) -> None:
-        """Show these blocks, and take the keyboard focus from an input field."""
+        """Show the given blocks of help, and take the keyboard focus from an input field."""
         self._blocks, self.first_row = tuple(blocks), 0
         self._previous_focus = QApplication.focusWidget()
         self.window().setFocus()
@@ -80,7 +80,7 @@ class HelpPanel(RowPanel):
             field.setFocus()
 
     def show_next_screenful(self) -> None:
-        """Scroll down by the visible rows, or close the panel if its last row is visible."""
+        """Scroll down by one screenful, or close the panel if its last row is already visible."""
         if self.first_row + self.rows >= len(self._rows):
             self.close_help()
         else:
@@ -121,7 +121,7 @@ class HelpPanel(RowPanel):
 
     @property
     def _text_size(self) -> float:
-        """Return the em height in units, which the reading distance requires on a small screen."""
+        """Return the em height in units. On a small screen, the reading distance determines it."""
         needed = self.theme.screen.find_min_em_px(TextRole.TABLE) / self.theme.unit_px
         return max(TEXT_SIZE, min(needed, MAX_TEXT_SIZE))
 
@@ -134,11 +134,11 @@ class HelpPanel(RowPanel):
 
     @property
     def _text_width(self) -> float:
-        """Return the width for the texts, next to the scroll keys."""
+        """Return the width that the scroll keys leave for the texts."""
         return self.inside().width() - self.scroll_key_size[0] - 2.4 * self.theme.unit_px
 
     def _wrap_blocks(self) -> None:
-        """Distribute the blocks over rows."""
+        """Divide the blocks of help into rows, with texts wrapped to the width of the panel."""
         wide, rows = self._text_width, list[HelpRow]()
         if wide <= 0 or not self._blocks:
             return
@@ -212,7 +212,7 @@ class HelpPanel(RowPanel):
         )
 
     def _draw_slice(self, painter: ThemedPainter, box: QRectF, row: HelpRow) -> None:
-        """Draw the part of a picture that belongs to this row."""
+        """Draw the slice of a picture that this row shows."""
         picture, high = self._load_picture(row.text), int(self._row_height_px)
         wide, whole = self._find_picture_size(row.text)
         top = row.slice_number * high

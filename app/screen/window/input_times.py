@@ -36,7 +36,7 @@ class InputTimes:
         return self._frames >= FRAMES_AFTER_STALL
 
     def frame(self) -> None:
-        """Record the time at which a frame is shown."""
+        """Record the time at which a frame of the screen is shown."""
         self._lives(self.clock())
         self._frames += 1
 
@@ -76,11 +76,14 @@ class InputTimes:
         return at <= self._behind or not self.has_seen_screen or self.clock() - at > STALL_TIME_S
 
     def record_dropped_answer(self, time_ms: int, event_source: str = "") -> None:
-        """Record that an answer was dropped, so that the presses that follow are also dropped."""
+        """Record a dropped answer to a question, so that the presses after it are dropped too."""
         self._dropped = max(self._dropped, self.find_event_time(time_ms, event_source))
 
     def follows_dropped_answer(self, time_ms: int, event_source: str = "") -> bool:
-        """Return whether a press follows a dropped answer in the same stall or without a pause of 1 s."""
+        """Return whether a press follows a dropped answer to a question.
+
+        It does if it is in the same stall, or if there was no pause of 1 s.
+        """
         at = self.find_event_time(time_ms, event_source)
         same_stall = self._behind - self.stall_duration_s < self._dropped and at <= self._behind
         return same_stall or at - self._dropped < PAUSE_TIME_S

@@ -96,7 +96,7 @@ class KeyboardTarget(Protocol):
         ...
 
     def accepts_text(self, key: str) -> bool:
-        """Return whether this character goes to an input field."""
+        """Return whether a character is passed to an input field."""
         ...
 
     def record_activity(self) -> None:
@@ -116,7 +116,7 @@ class KeyboardTarget(Protocol):
         ...
 
     def is_stop_control_at(self, event: QInputEvent) -> bool:
-        """Return whether a press is on a control that stops the machine."""
+        """Return whether a press at a position hits a control that stops the machine."""
         ...
 
 
@@ -164,7 +164,7 @@ class KeyboardFilter(QObject):
         self._late = False  # The event waited during a stall.
 
     def filter_window_events(self, window: QWindow) -> None:
-        """Filter the events of this window from now on."""
+        """Install this filter on a window, so that it receives the events of the window."""
         window.removeEventFilter(self)
         window.installEventFilter(self)
         if self._server is None:
@@ -192,7 +192,7 @@ class KeyboardFilter(QObject):
     # --- pressed keys --------------------------------------------------------------------------------
 
     def is_only_key(self, event: QKeyEvent) -> bool:
-        """Return whether no other key is down except modifiers."""
+        """Return whether no other key is down. Modifier keys are ignored."""
         return not {key for code, key in self._down.items() if code != find_scan_code(event)} - MODIFIER_KEYS
 
     def is_stop_key_held(self) -> bool:
@@ -216,9 +216,10 @@ class KeyboardFilter(QObject):
         self._dead = set(held)
 
     def update(self) -> None:
-        """Process stops of the key watcher and key releases that were lost.
+        """Process stops that the key watcher has sent, and key releases that were lost.
 
-        This is called once a frame. The X server reports which keys are physically down.
+        This is called once a frame. A release was lost if the X server reports that the key is physically
+        up.
         """
         self._stamp = 0
         windows = QGuiApplication.topLevelWindows()
@@ -247,7 +248,7 @@ class KeyboardFilter(QObject):
     # --- Qt's calls ----------------------------------------------------------------------------------
 
     def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
-        """Return whether an event is handled here and must not be passed on."""
+        """Handle an event, and return whether it must not be passed on."""
         kind = event.type()
         if kind in _PRESS_EVENTS or kind in _KEY_EVENTS:
             self._behind.record_activity()
@@ -270,7 +271,7 @@ class KeyboardFilter(QObject):
         self._behind.set_event_late(is_late=self._late)
 
     def _handle_screen_press(self, event: QInputEvent) -> bool:
-        """Return whether a mouse press or touch must not be passed on."""
+        """Handle a mouse press or touch, and return whether it must not be passed on."""
         if self._behind.is_stop_control_at(event):
             return False
         if self._relies_on_dropped():
@@ -314,7 +315,7 @@ class KeyboardFilter(QObject):
     def _is_repeat_overtaken(self, code: int) -> bool:
         """Return whether a press is older than the X server's report that its key is up.
 
-        Such a press is a repeat that arrived late.
+        Such a press is an auto-repeat that arrived late.
         """
         said = self._known_up.get(code)
         if said is None or not self._stamp:
@@ -325,9 +326,9 @@ class KeyboardFilter(QObject):
         return False
 
     def _is_shift_latched(self, event: QKeyEvent) -> bool:
-        """Return whether Shift is locked or sticky, but not pressed.
+        """Return whether Shift is active only because it is locked or sticky, and not pressed.
 
-        Keys without text ignore such a Shift.
+        Such a Shift is ignored for keys that produce no text.
         """
         shift = event.modifiers() & Qt.KeyboardModifier.ShiftModifier
         if self._server is None or not shift or event.text():
@@ -345,7 +346,7 @@ class KeyboardFilter(QObject):
         return dead and event.key() not in MODIFIER_KEYS
 
     def _is_repeat(self, event: QKeyEvent, code: int) -> bool:
-        """Record a press, and return whether it is only a repeat.
+        """Record a key press, and return whether it is an auto-repeat.
 
         Under X, Qt's repeat flag is not reliable.
         """
@@ -361,9 +362,9 @@ class KeyboardFilter(QObject):
         return False
 
     def _is_paired(self, code: int) -> bool:
-        """Return whether a press and the immediately preceding release form a repeat.
+        """Return whether a press and the release just before it are an auto-repeat of a key held down.
 
-        Some X servers send repeats in this form.
+        Some X servers send repeats as such pairs.
         """
         has_repeat_reports = self._server is not None and self._server.reports_repeats
         return (
@@ -389,14 +390,14 @@ class KeyboardFilter(QObject):
         return self._behind.start_feed_hold if holds else None
 
     def _was_sent(self, event: QKeyEvent) -> bool:
-        """Return whether the key watcher has sent this press to the control."""
+        """Return whether the key watcher has already sent this key press to the control."""
         press = make_press_number(find_scan_code(event), self._stamp)
         return self._watched is not None and self._watched.was_press_sent(press)
 
     def _stops_with(self, key_of_stop: bool) -> bool:
         """Return whether a character stops the machine.
 
-        If a caret is visible, every character is text.
+        While a caret is visible, no character does, because every character is text.
         """
         return key_of_stop and not self._behind.has_text_field()
 

@@ -197,7 +197,7 @@ class MainWindow(QWidget):
             self.refresh()
 
     def toggle_theme(self) -> None:
-        """Select the theme that follows the shown theme, which then no longer follows the system."""
+        """Select the next theme. The theme then no longer follows the operating system."""
         if self.frame is not None:
             names = tuple(PALETTES)
             following = names[(names.index(self.theme.palette.name) + 1) % len(names)]
@@ -237,7 +237,8 @@ class MainWindow(QWidget):
     def _handle_escape(self) -> None:
         """Handle Esc with the first of these actions that is possible.
 
-        Go back one step on the page, close a question, start feed hold, or open the Automatic page.
+        1. Go back one step on the page. 2. Close a question. 3. Start feed hold. 4. Open the Automatic
+        page.
         """
         frame = self.frame
         if frame is not None and not (frame.handle_escape() or frame.desk.handle_escape()):
@@ -309,9 +310,9 @@ class MainWindow(QWidget):
             self.frame.desk.window_state.late_presses.is_press_late = is_late
 
     def has_screen_changed_since(self, time_s: float) -> bool:
-        """Return whether the screen has changed after this time.
+        """Return whether the content of the screen has changed after a given time.
 
-        An earlier touch was meant for the previous screen content.
+        An earlier touch was meant for the previous content.
         """
         seen = [face for since, face in self._faces if since <= time_s]
         return bool(seen) and self.frame is not None and seen[-1] != self.frame.screen_context
@@ -445,7 +446,7 @@ class MainWindow(QWidget):
         return self._meant or frame.desk.can_close(self._close_window)
 
     def _close_window(self) -> None:
-        """Close the window even though data will be lost."""
+        """Close the window even if unsaved data is lost."""
         self._meant = True
         self.close()
 

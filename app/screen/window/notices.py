@@ -51,7 +51,10 @@ def make_notices(
 
 
 def _make_prompt_keys(desk: Desk, snapshot: Snapshot, loaded: LoadedProgram) -> tuple[tuple[str, str], ...]:
-    """Return the keys for an interrupted job. A start that would be rejected has no key."""
+    """Return the keys of the notice about an interrupted job.
+
+    A start that would be rejected gets no key.
+    """
     if snapshot.state is not MachineState.IDLE or not snapshot.interrupted_line:
         return ()
     searchto = (_SEARCHTO,) if can_restart_program(loaded) else ()

@@ -102,7 +102,7 @@ class PositionPanel(Panel):
             )
 
     def _find_row_share(self, row: QRectF) -> float:
-        """Return the text scale of the position values.
+        """Return the text scale of the position values, which depends on the space per row.
 
         A mill with five axes has less space per row than a lathe.
         """
@@ -387,7 +387,7 @@ class ReadoutRow(Panel):
             draw_x_symbol(painter, box, axis.diameter_mark, 2.4 * scale, 0.25)
 
     def _cells(self, view: MachineStatus) -> tuple[tuple[str, str, float], ...]:
-        """Return label, value and fraction of the width for feed, spindle and tool."""
+        """Return a label, a value and a fraction of the width for each of feed, spindle and tool."""
         feed, spindle = view.feed, view.spindle
         return (
             (
@@ -428,7 +428,7 @@ class ReadoutRow(Panel):
 
 
 def _before(axis: AxisReadout) -> float:
-    """Return the total width of an axis name and its symbol in theme units."""
+    """Return the width in theme units of an axis name with its symbol, to the left of the value."""
     return 6.8 if axis.diameter_mark else 3.2
 
 

@@ -63,7 +63,7 @@ class RunStatusRow(Panel):
         )
 
     def _draw_alarm(self, painter: ThemedPainter) -> None:
-        """Draw the alarm over the whole row, large enough to read from a position at the machine."""
+        """Draw the alarm over the whole row, large enough to read while standing at the machine."""
         look, u = self.theme, self.theme.unit_px
         painter.fill_rect(self.find_full_area(), self._tone)
         sign = QRectF(u, 0.3 * u, 2.2 * u, 2.2 * u)
@@ -91,7 +91,10 @@ class RunStatusRow(Panel):
 
 
 def describe_stop(status: MachineStatus) -> str:
-    """Return the number and text of the first alarm, the E-stop, or an unrequested feed hold."""
+    """Return the text of the most important stop.
+
+    This is the number and text of the first alarm, the E-stop, or an unrequested feed hold.
+    """
     first = status.alarms[0] if status.alarms else status.stop_cause
     if first is None:
         return ""

@@ -24,10 +24,7 @@ _MOST_PATH = 100  # bytes of a socket's path that every system accepts
 
 
 def find_socket_name() -> str:
-    """Return the name of the local socket of the data folder.
-
-    This is the socket's path, or a short name if the path is too long.
-    """
+    """Return the path of the data folder's local socket, or a short name if the path is too long."""
     path = os.fsencode(find_data_folder() / "screen.sock")
     if os.name == "posix" and len(path) <= _MOST_PATH:
         return os.fsdecode(path)
@@ -50,9 +47,9 @@ def hand_over_program(program_path: str) -> bool:
 
 
 class OpenProgramReceiver(QObject):
-    """Receiver of the programs that a second instance of TurnDesk passes on.
+    """Server that opens the programs that a second instance of TurnDesk passes on.
 
-    ``open_file`` is called with each path.
+    ``open_file`` is called with the path of each program.
     """
 
     def __init__(self, open_file: Callable[[Path], None], parent: QObject) -> None:

@@ -134,9 +134,9 @@ class StationDock(TouchPanel):
         self._twisting = self.touch_count == 1
 
     def _end_twist(self) -> None:
-        """Release the E-stop if a single touch pressed and released the twist field.
+        """Release the E-stop if a single touch began and ended on its twist field.
 
-        A hand that hits the button touches both fields and therefore releases nothing.
+        A hand that hits the button touches both the button and the field, and therefore releases nothing.
         """
         if self._twisting and not self.touch_count:
             self._desk.station_controls.estop(is_pressed=False)
@@ -238,7 +238,7 @@ class StationDock(TouchPanel):
 
     @property
     def _is_latching(self) -> bool:
-        """Return whether the palm buttons latch, so that one touch at a time can operate them.
+        """Return whether a touch latches a palm button, so that both can be pressed one after the other.
 
         They latch if this is selected with F10 7 and all axes are simulated.
         """

@@ -35,9 +35,9 @@ class TypedKeyHandler:
         self._rejected_text = ""  # Message about the last character that an input field rejected.
 
     def is_used_elsewhere(self, frame: WindowFrame, name: str) -> bool:
-        """Return whether a key works only on the Automatic page and another page is open.
+        """Return whether a key works only on the Automatic page while another page is open.
 
-        If so, show a message.
+        If so, also show a message.
         """
         if (
             name not in AUTOMATIC_KEYS
@@ -52,7 +52,7 @@ class TypedKeyHandler:
     def handle_answer(self, frame: WindowFrame, event: QKeyEvent) -> bool:
         """Return whether the key answered a question.
 
-        The answer yes is accepted only while all other keys are released.
+        Yes is accepted only while no other key is pressed.
         """
         typed = {find_letter(event), find_typed_text(event)} - {""}
         if not frame.desk.confirmation_key or not typed & {frame.desk.confirmation_key, "N"}:
@@ -64,9 +64,10 @@ class TypedKeyHandler:
         return True
 
     def is_character_rejected(self, frame: WindowFrame, event: QKeyEvent) -> bool:
-        """Return whether an input field rejects the character, which then has no other function.
+        """Return whether an input field rejects a character.
 
-        In an input field, Ctrl+H, Ctrl+Space and Ctrl+E do not stop the machine.
+        The character then has no other function. For example, Ctrl+H, Ctrl+Space and Ctrl+E do not stop the
+        machine while an input field is active.
         """
         text = event.text()
         if not text.isprintable() or not text or not frame.has_text_field():

@@ -381,7 +381,7 @@ class NoticeRows(Panel):
         return max(FINGERTIP_PX + 2, round(NOTICE_ROW * u) if fits else round(_THREE_LINE_HEIGHT * u) + 3)
 
     def _find_text_width(self, row: NoticeRow, wide: float) -> float:
-        """Return the width for the texts of a row, next to its keys."""
+        """Return the width that the keys of a row leave for its texts."""
         return wide - (len(row.keys) * NOTICE_KEY + 2.4) * self.theme.unit_px
 
     @property
@@ -390,7 +390,7 @@ class NoticeRows(Panel):
         return self.needed_height_px != self._stand_for
 
     def apply_needed_height(self) -> int:
-        """Return the height in pixels that the rows need, and treat it as their current height."""
+        """Accept the height that the rows need as their current height, and return it in pixels."""
         self._stand_for = self.needed_height_px
         return self.needed_height_px
 

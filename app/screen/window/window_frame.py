@@ -123,9 +123,9 @@ class WindowFrame(QWidget):
         return True
 
     def find_page(self, name: str) -> Page:
-        """Return the page with this name.
+        """Return the page with the given name.
 
-        The page is created on the first call, and hidden until it is opened.
+        The page is created on the first call, and remains hidden until it is opened.
         """
         page = self._pages.get(name) or make_page(name, self._host, self)
         self._pages[name] = page
@@ -230,7 +230,7 @@ class WindowFrame(QWidget):
         self.help_panel.setGeometry(*area)
 
     def handle_escape(self) -> bool:
-        """Close the alarm log or a part of the page, and return False if neither was open."""
+        """Close the alarm log or an open part of the page, and return whether one was open."""
         if self.alarm_list.isVisible():
             self.alarm_list.hide()
             return True
@@ -395,7 +395,7 @@ class WindowFrame(QWidget):
         )
 
     def _update_caret(self) -> None:
-        """Show the caret of the page's input field only while the field receives the characters."""
+        """Show the caret of the page's input field only while typed characters go to this field."""
         has_field = self.current_page.has_text_field()
         if has_field is not self.theme.is_caret_shown:
             self.theme.is_caret_shown = has_field
@@ -405,7 +405,7 @@ class WindowFrame(QWidget):
     def _is_dead(self, key: str) -> bool:
         """Return whether the key of a lamp has no function on the current page.
 
-        Touching the lamp has the same function on every page.
+        Touching the lamp itself has the same function on every page.
         """
         if key == HELP_KEY:
             return self.accepts_text(key)
@@ -440,7 +440,7 @@ class WindowFrame(QWidget):
         self.prompt_line.show_message(desk.prompt_line.message, kind=desk.prompt_line.notice_kind)
 
     def _show_readouts(self, snapshot: Snapshot, view: MachineStatus, loaded: LoadedProgram) -> None:
-        """Show the values of this instant in the large displays."""
+        """Show the current values in the large displays."""
         self.position_panel.position_readout, self.feed_panel.value, self.spindle_panel.value = (
             view.position,
             view.feed,
@@ -452,7 +452,7 @@ class WindowFrame(QWidget):
     def _make_times(
         self, snapshot: Snapshot, view: MachineStatus, loaded: LoadedProgram
     ) -> tuple[tuple[str, str], ...]:
-        """Return the part count and the times that the run line also shows."""
+        """Return the part count and the times, which the run line shows as well."""
         left = formats.format_duration(find_remaining_time_s(snapshot, loaded))
         return (
             ("PARTS", self.desk.program_runs.part_counter.part_count_text),
@@ -479,7 +479,7 @@ class WindowFrame(QWidget):
 
 
 def _find_area_below(area: Rect, rows: Rect) -> Rect:
-    """Return the part of a rectangle below the notice rows."""
+    """Return the part of a rectangle that is below the notice rows."""
     taken = rows.h + GAP_PX if rows.h else 0
     return Rect(area.x, area.y + taken, area.w, area.h - taken)
 

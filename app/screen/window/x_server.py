@@ -45,7 +45,7 @@ class XServer:
 
 
 def open_x_server() -> XServer | None:
-    """Return the X server of the windows, or None on another platform."""
+    """Return the X server that displays the windows, or None if Qt does not use X."""
     if QGuiApplication.platformName() != "xcb":
         return None
     app = QGuiApplication.instance()

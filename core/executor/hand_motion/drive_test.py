@@ -119,7 +119,7 @@ class DriveTestMotion:
     def compute_sine_travel_mm(self, frequency: float, limits: AxisTestLimits) -> float:
         """Return the signed peak-to-peak travel of the sine in mm.
 
-        The travel is limited to the distance that the axis can follow.
+        At high frequencies, it is reduced to what the axis can follow.
         """
         omega = 2.0 * math.pi * frequency
         able = min(2.0 * limits.max_speed_mm_s / omega, 2.0 * limits.max_acceleration_mm_s2 / omega**2)
@@ -164,8 +164,8 @@ def compute_duration_s(ramps: list[Ramp]) -> float:
 def compute_position_range(ramps: list[Ramp]) -> tuple[float, float]:
     """Return the lowest and the highest position relative to the start, in mm.
 
-    If the ramps are interrupted, the axis stops within this range, because it can always brake as hard as
-    the ramps do.
+    An axis that is interrupted also stops within this range, because it can always brake at least as hard
+    as the ramps do.
     """
     p, low, high = 0.0, 0.0, 0.0
     for dt, v, a in ramps:

@@ -37,7 +37,7 @@ _ROUNDING = 1e-9
 class ClickCounter:
     """Converter of encoder counts to handwheel clicks.
 
-    ``per`` is the number of counts per click; a negative number reverses the direction.
+    ``per`` is the number of encoder counts per click; a negative number reverses the direction.
     """
 
     def __init__(self, per: int) -> None:
@@ -134,7 +134,7 @@ class Handwheel:
         return self._follow(clicks)
 
     def find_jog_refusal_reason(self, state: MachineState) -> str:
-        """Return why a key cannot jog an axis while the handwheel is active, or an empty string."""
+        """Return why a key cannot jog while the handwheel is active, or an empty string if it can."""
         if self._jogger.target_position is not None:
             self._together("a key or the screen was pressed while the handwheel was turning", state)
         if self._context.now >= self._apart:
@@ -238,9 +238,9 @@ class Handwheel:
 
 
 class _TargetMove:
-    """A move to ``wanted``, or as far toward ``wanted`` as the axis can move in the available time.
+    """A move toward ``wanted``, which ends at ``goal``.
 
-    ``goal`` is the end of the move.
+    If the available time is too short to reach ``wanted``, ``goal`` is as far as the axis can move.
     """
 
     def __init__(self, axis: Axis, top: float, step: float, wanted: float) -> None:

@@ -37,8 +37,8 @@ def get_distance_to_limit(axis: Axis, position: float, direction: float) -> floa
 class JogLine:
     """A straight line of motion in the space of all axes.
 
-    ``unit_direction`` contains the distance of each axis per unit of distance along the line. A single axis
-    has the share 1.
+    ``unit_direction`` contains, for each axis, its travel per unit of distance along the line. For a single
+    axis, this share is 1.
     """
 
     axes: Sequence[Axis]
@@ -80,7 +80,7 @@ class JogLine:
         return min(axis.max_acceleration / abs(share) for _, axis, share in self.iter_moving_axes())
 
     def project_on_line(self, values: FloatArray) -> float:
-        """Return the component of a position or a velocity along the line."""
+        """Return the component along the line of a position or velocity that has a value per axis."""
         return float(sum(values[place] * share for place, _, share in self.iter_moving_axes()))
 
     def get_distance_to_limit(self, position: FloatArray | Sequence[float], sign: float) -> float:
@@ -112,5 +112,5 @@ class JogLine:
 
 
 def is_not_unit_vector(direction: Direction) -> bool:
-    """Return whether the direction is invalid because it is not a unit vector."""
+    """Return whether a direction is invalid because its length is not 1."""
     return not abs(math.hypot(*direction) - 1.0) <= _UNIT_TOLERANCE

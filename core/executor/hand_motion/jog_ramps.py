@@ -13,10 +13,11 @@ POSITION_TOLERANCE = 1e-9  # mm or degrees; closer positions count as equal
 def plan_jog_ramps(
     start_speed: float, end_speed: float, acceleration: float, duration_s: float, distance: float
 ) -> list[Ramp]:
-    """Return ramps to ``end_speed``, a cruise for the rest of ``duration_s``, and braking to rest.
+    """Return the ramps of a jog: a change to ``end_speed``, a cruise, and braking to rest.
 
-    The first ramp starts at ``start_speed``. If ``distance`` (mm) is too short, the jog is slower or ends
-    earlier. ``distance`` must not be shorter than the braking distance v0²/2a.
+    The first ramp starts at ``start_speed``, and the cruise lasts for the rest of ``duration_s``. If
+    ``distance`` (mm) is too short, the jog is slower or ends earlier. ``distance`` must not be shorter than
+    the braking distance v0²/2a.
     """
     if start_speed * end_speed < 0.0:
         first = abs(start_speed) / acceleration

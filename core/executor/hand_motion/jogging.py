@@ -89,7 +89,7 @@ class Jogger:
         return self._barred(name) or self._find_travel_refusal(name, distance, direction)
 
     def _find_direction_refusal(self, name: str, direction: Direction | None) -> str:
-        """Return why the axis cannot be jogged along this direction, or an empty string."""
+        """Return why the axis cannot be jogged along a direction, or an empty string if it can."""
         context = self._context
         if self.axis_name == name and not self._line_of(name, direction).has_same_direction(self._line):
             return Message("{axis} is still being jogged", axis=self.axis_name)
@@ -108,7 +108,7 @@ class Jogger:
         return JogLine.from_axis(axes, self._context.ports.axes.axes.index(name))
 
     def find_axis_refusal_reason(self, name: str) -> str:
-        """Return why this axis does not exist or cannot be jogged, or an empty string."""
+        """Return why an axis does not exist or cannot be jogged, or an empty string if it can be jogged."""
         machine = self._context.machine
         known = name in {axis.name for axis in machine.axes}
         there = known and (name != "C" or machine.is_c_enabled or machine.kind != "lathe")
@@ -134,7 +134,10 @@ class Jogger:
         return ""
 
     def request_c_axis_mode(self, name: str) -> str:
-        """Start the change to C-axis mode if necessary; return why C cannot move yet, or an empty string."""
+        """Start the change to C-axis mode if necessary; return why C cannot move yet.
+
+        The result is an empty string if C can move.
+        """
         spindle = self._context.spindle
         if (
             name != "C"
@@ -150,9 +153,9 @@ class Jogger:
         return "the spindle drive is switching to C-axis mode; release the key or button and jog again in 2 s"
 
     def _find_travel_refusal(self, name: str, distance: float, direction: Direction | None) -> str:
-        """Return why a step would exceed the travel limits and is refused, or an empty string.
+        """Return why a step is refused because of the travel limits, or an empty string if it is not.
 
-        A step is never shortened.
+        A step that would exceed the limits is never shortened.
         """
         line, sample = self._line_of(name, direction), self._context.axis_sample
         homed = all(sample.homed[place] for place, _, _ in line.iter_moving_axes())
@@ -307,15 +310,15 @@ class Jogger:
         self.target_position, self.is_stopping, self.button_input = None, False, ""
 
     def _splice_axis(self, index: int, ramps: Callable[[float, float, float], list[Ramp]]) -> bool:
-        """Queue the ramps of one axis, based on its own position and velocity."""
+        """Queue the ramps of one axis, starting from its current position and velocity."""
         line = JogLine.from_axis(self._context.machine.axes, index)
         return self._splice(line, lambda start, p, v: ramps(start, float(p[index]), float(v[index])))
 
     def _splice(self, line: JogLine, ramps: Callable[[float, FloatArray, FloatArray], list[Ramp]]) -> bool:
-        """Queue the ramps that ``ramps`` returns for (start time, positions, velocities).
+        """Queue the ramps that the function ``ramps`` returns for (start time, positions, velocities).
 
-        If the driver receives a splice too late, a later start time is tried. Returns False if there are no
-        ramps. Raises DriverError if the setpoints are rejected.
+        If the change reaches the driver too late, a later start time is tried. Returns False if there are
+        no ramps. Raises DriverError if the setpoints are rejected.
         """
         axes = self._context.ports.axes
         for margin in _MARGINS:
@@ -370,10 +373,10 @@ class _PendingJog(NamedTuple):
 
 
 class BlockJogger(Jogger):
-    """A jogger that uses the controller's jog function and refuses the same requests as ``Jogger``.
+    """A jogger that uses the jog function of a controller with its own planner.
 
-    The controller accepts a jog only after the previous one has ended. A jog requested before that starts
-    afterwards, but only if its key is still pressed.
+    It refuses the same requests as ``Jogger``. The controller accepts a jog only after the previous one has
+    ended. A jog requested before that starts afterwards, but only if its key is still pressed.
     """
 
     def __init__(self, context: MachineContext, controller: BlockController) -> None:
@@ -396,7 +399,7 @@ class BlockJogger(Jogger):
         return super().find_step_refusal_reason(name, distance, speed, direction) or self._unready()
 
     def _find_direction_refusal(self, name: str, direction: Direction | None) -> str:
-        """Return why the axis cannot be jogged along this direction, or an empty string."""
+        """Return why the axis cannot be jogged along a direction, or an empty string if it can."""
         return (
             ""
             if direction is None

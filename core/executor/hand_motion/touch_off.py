@@ -1,6 +1,6 @@
-"""Homing of the axes in their order, and touch-off of a tool on a tool setter or probe.
+"""Homing of the axes in their homing order, and touch-off of a tool on a tool setter or probe.
 
-The axis stops when the key is released, as in a jog. The touch-off reports the position of the second touch
+As in a jog, the axis stops when the key is released. The touch-off reports the position of the second touch
 with its uncertainty. This module does not change any offset.
 """
 
@@ -82,7 +82,7 @@ class TouchOff:
         """Check the machine state and the setter input; return True if a jog touches the tool setter.
 
         The function is called once per tick. A touch-off ends if the machine leaves the jog state. A jog
-        that touches the setter must stop; the next jog can move away from it.
+        that touches the setter must stop; a new jog can then move away from it.
         """
         before, self._was_made = self._was_made, self._made
         if self.phase is not None and state is not MachineState.JOG:
@@ -128,7 +128,7 @@ class TouchOff:
         return True
 
     def _find_refusal(self, command: TouchOffTool, state: MachineState, wheel: str) -> str:
-        """Return why a touch-off may not start now, or an empty string."""
+        """Return why a touch-off may not start now, or an empty string if it may."""
         axis, inputs = command.axis, self._context.inputs
         if self._model is None or PROBE_INPUT not in self._context.machine.inputs:
             return "this machine has no tool setter; add [setter] and the input probe to the machine file"
@@ -181,7 +181,7 @@ class TouchOff:
     def _find_travel_refusal(self, command: TouchOffTool) -> str:
         """Return why the search move would exceed the travel limits, or an empty string if it would not.
 
-        The full search distance must be available.
+        The axis must be able to travel the full search distance.
         """
         assert self._model is not None
         axis = self._context.machine.find_axis(command.axis)

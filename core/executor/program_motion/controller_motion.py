@@ -54,7 +54,10 @@ class BlockPart(NamedTuple):
 
 
 class SpindleSpeed(NamedTuple):
-    """Spindle speed for feeds per revolution: ratio of actual to programmed speed, and highest rpm."""
+    """Spindle speed for feeds per revolution.
+
+    It contains the ratio of the actual to the programmed speed, and the highest rpm.
+    """
 
     speed_ratio: float
     max_rpm: float
@@ -87,7 +90,7 @@ def _limit_operation_speed(
 ) -> BlockOperation:
     """Return the operation with its speed limited to ``fastest``.
 
-    The controller's own speed limits may be higher.
+    The controller also applies its own speed limits, which may be higher.
     """
     if isinstance(op, RapidOperation):
         return op._replace(rapid_rate=min(op.rapid_rate, fastest))
@@ -175,7 +178,7 @@ class _SentPart(NamedTuple):
 
 
 class _SurfaceSpeed(NamedTuple):
-    """A surface speed in mm/s with its direction of rotation and its lowest and highest rpm."""
+    """A surface speed in mm/s, with the direction of rotation and the lowest and highest spindle rpm."""
 
     surface_speed_mm_s: float
     is_forward: bool
@@ -184,7 +187,7 @@ class _SurfaceSpeed(NamedTuple):
 
     @classmethod
     def from_block(cls, block: Block) -> _SurfaceSpeed | None:
-        """Return the surface speed of a block, or None if the block has no surface speed or no rpm."""
+        """Return the surface speed of a block, or None if it has no surface speed or no spindle rpm."""
         if block.css is None or not block.rpm:
             return None
         return cls(block.css, block.rpm > 0.0, block.modal.min_css_rpm, block.modal.max_css_rpm)
@@ -358,7 +361,7 @@ class ControllerMotion:
         self._seconds, self._still, self._dry, self._laid, self._speed = 0.0, False, False, None, None
 
     def _poll_controller(self) -> BlockState:
-        """Return the state of the controller, and remove the blocks that it has completed."""
+        """Return the state of the controller, and remove the blocks that the controller has completed."""
         state = self._sink.state()
         while self._sent and self._sent[0].ticket_number <= state.last_completed_ticket:
             done = self._sent.popleft().block_part
@@ -468,10 +471,10 @@ class ControllerMotion:
         )
 
     def _may_send(self, piece: BlockPart) -> bool:
-        """Return whether this part may be sent to the controller now.
+        """Return whether a part of a block may be sent to the controller now.
 
-        Single block limits the number of parts sent. Another limit is the time for which the controller
-        could continue without TurnDesk.
+        Single block limits the number of parts. In addition, the controller must not receive more motion
+        than it may execute without TurnDesk.
         """
         if self._still or self._dry or not self._single(piece.block):
             return False

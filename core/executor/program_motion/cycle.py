@@ -122,9 +122,10 @@ class HoldController:
         return not self._retracting
 
     def resume(self, last_executed_block: Block | None, *, starts_spindle: bool) -> None:
-        """Resume after Cycle Start, once a requested spindle is at speed.
+        """Resume after Cycle Start, as soon as a requested spindle is at speed.
 
-        ``last_executed_block`` is the last block executed in single block, or None.
+        With single block, ``last_executed_block`` is the last block that was executed. Otherwise it is
+        None.
         """
         self.hold_reason = ""
         within = self.will_resume_in_section
@@ -230,11 +231,11 @@ class Cycle:
         *,
         stops_at_once: bool = False,
     ) -> None:
-        """Hold the cycle.
+        """Start a feed hold.
 
         The parameters ``reason``, ``source`` and ``code`` are described in ``HoldController.stop_motion``.
-        In a tapping cycle, the tap leaves its hole with the spindle turning before the hold. The axes stop
-        at once if the spindle is stopped or ``stops_at_once`` is True.
+        In a tapping cycle, the tap first leaves its hole with the spindle turning. The axes stop at once if
+        the spindle is stopped or ``stops_at_once`` is True.
         """
         if self._state in {MachineState.HOLD, MachineState.STOPPING}:
             self._hold.hold_reason = self._hold.hold_reason or reason
@@ -281,7 +282,7 @@ class Cycle:
             self._change(MachineState.STOPPING)
 
     def find_resume_refusal_reason(self) -> str:
-        """Return why a stopped cycle cannot resume now, or an empty string."""
+        """Return why a stopped cycle cannot resume now, or an empty string if it can."""
         spindle = self._context.spindle
         return (
             spindle.start_inhibit_reason.lower() if spindle.waiting_reason and self._needs_spindle() else ""
@@ -418,9 +419,12 @@ class Cycle:
     def _check_spindle(self, block: Block) -> None:
         """Check the spindle in a block that moves at feed rate.
 
-        If its speed is lost, retract immediately from a thread pass that has started. Hold the cycle if the
-        thread pass still waits, or in a block with feed per revolution if C is not locked. In other blocks,
-        hold the cycle only if the spindle is requested.
+        If the spindle loses its speed:
+
+        - A thread pass that has started is retracted immediately.
+        - The cycle is put in feed hold if the thread pass is still waiting.
+        - The same applies in a block with feed per revolution if C is not locked.
+        - In other blocks, the cycle is put in feed hold only if the spindle is requested.
         """
         spindle = self._context.spindle
         if (
@@ -441,7 +445,7 @@ class Cycle:
             self.start_feed_hold(spindle.spindle_stopped_reason or "SPINDLE BELOW HALF COMMANDED SPEED")
 
     def _show_block_at_rest(self, block: Block | None) -> None:
-        """Show the last block reached at rest, which may be an executed block without motion."""
+        """Show the block at which the axes are at rest, which may be an executed block without motion."""
         if block is not None and (self.current_block is None or block.n > self.current_block.n):
             self._show(block)
 

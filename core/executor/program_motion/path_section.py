@@ -58,7 +58,7 @@ class PathSection:
     def append_blocks(self, blocks: Iterable[Block], reached_distance: float = -np.inf) -> None:
         """Append blocks to the path section.
 
-        ``reached_distance`` has the same meaning as in ``PathBuilder.add_blocks``.
+        ``reached_distance`` is described in ``PathBuilder.add_blocks``.
         """
         new = list(blocks)
         self._builder.add_blocks(new, reached_distance)
@@ -151,9 +151,9 @@ class PathSection:
 
 
 class QueuedPlan(NamedTuple):
-    """A plan in the setpoint queue, executed from the time ``start_time_s`` on.
+    """A plan in the setpoint queue, which is executed from the time ``start_time_s`` on.
 
-    ``time_origin_s`` is the time that corresponds to zero in the plan's own time.
+    Times within the plan are relative to ``time_origin_s``.
     """
 
     start_time_s: float
@@ -193,7 +193,7 @@ class QueuedPlanList:
         return self._tracks[0] if self._tracks else None
 
     def replace_plans(self, time_s: float, plans: Sequence[QueuedPlan], now: float) -> None:
-        """Replace the plans from ``time_s`` on, and drop the plans that ended before ``now``."""
+        """Replace the plans from ``time_s`` on by new ones, and drop the plans that ended before ``now``."""
         kept = [track for track in self._tracks if track.start_time_s < time_s]
         over = max((i for i, track in enumerate(kept) if track.start_time_s <= now), default=0)
         self._tracks = [*kept[over:], *plans]
@@ -237,7 +237,7 @@ class PlanQueue:
         return now + self._axes.commit + 1.5 * self._cost
 
     def get_latest_splice_time(self, now: float) -> float:
-        """Return the splice time of the last attempt, if all earlier attempts fail."""
+        """Return the splice time of the last attempt, which is made if all earlier attempts fail."""
         return self.get_earliest_splice_time(now) + _MAX_ATTEMPTS * _SPLICE_DELAY_S
 
     def find_plan(self, time_s: float) -> QueuedPlan | None:
@@ -275,7 +275,7 @@ class PlanQueue:
             return
 
     def extend_queue(self, now: float) -> bool:
-        """Queue more of the current plan; return False if it is too late for this."""
+        """Queue more of the current plan; return False if the queue can no longer be extended in time."""
         if (
             self._profile is None
             or self._queued_to - now >= self._lateness.lookahead_s

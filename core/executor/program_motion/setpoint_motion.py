@@ -70,7 +70,7 @@ class SetpointMotion:
 
     @property
     def current_block(self) -> Block | None:
-        """Return the block being executed, which may be an earlier block than those already planned."""
+        """Return the block being executed. The plans in the queue can already be at a later block."""
         return self._block_at(self._context.now)
 
     @property
@@ -210,7 +210,7 @@ class SetpointMotion:
         self._section.append_blocks(blocks)
 
     def _begin_thread(self, blocks: list[Block]) -> None:
-        """Start a thread pass, by electronic gearing if the driver supports it, otherwise by setpoints.
+        """Start a thread pass by electronic gearing or, if the driver has none, by setpoints.
 
         Overrides, feed hold and single block take effect at the end of the pass.
         """
@@ -318,9 +318,9 @@ class SetpointMotion:
         return last
 
     def _stoppable(self, first: int | None, now: float) -> int | None:
-        """Return the number of the first block at whose end the axes can still stop, or None.
+        """Return the number of the first block at whose end the axes can still stop.
 
-        The search starts at block ``first``.
+        The search starts at block ``first``. The result is None if there is no such block.
         """
         if self._pass is not None:
             return self._pass.blocks[-1].n

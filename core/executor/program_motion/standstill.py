@@ -56,8 +56,8 @@ class StandstillWait:
     def is_over(self, now: float) -> bool:
         """Return whether the wait is over.
 
-        Raises AlarmError if the time limit has passed. The condition can operate the collet or a drive, and
-        may then raise DriverError or AlarmError.
+        Raises AlarmError if the time limit has passed. Checking the condition can operate the collet or a
+        drive, which may raise DriverError or AlarmError.
         """
         if self.is_condition_met(now - self.start_time_s):
             return True
@@ -138,7 +138,7 @@ def execute_block_action(block: Block, context: MachineContext) -> StandstillWai
 def _stop_spindle(
     action: SpindleStop | SpindleLock | SpindlePositioning, context: MachineContext
 ) -> StandstillWait | None:
-    """Stop the spindle, switch it to C-axis mode, or orient it."""
+    """Stop or orient the spindle, or switch it to C-axis mode."""
     match action:
         case SpindleLock(orient=orient):
             return _lock_spindle(context, orient=orient)
@@ -158,7 +158,7 @@ def _start_spindle(block: Block, context: MachineContext) -> None:
 def _make_spindle_stop_wait(context: MachineContext) -> StandstillWait:
     """Return a ``StandstillWait`` that ends when the spindle is stopped.
 
-    It ensures that a tool or the operator approaches only a stopped spindle.
+    A tool or the operator must approach the spindle only when it is stopped.
     """
     spindle, limit = context.spindle, context.machine.spindle.timeout_s
     return StandstillWait(

@@ -1,9 +1,9 @@
 """Curve of X and Z along a chain of thread blocks, over the parameter s.
 
 s is the number of spindle revolutions times the lead. In a thread of one block, Z is proportional to s. In
-a chain, the lead changes between blocks, and with G34 and G35 also within a block. An axis cannot change
-its speed at once. At each junction of two blocks, both axes therefore change to the next lead over several
-revolutions, which requires half of their acceleration at the commanded speed.
+a chain, the lead changes between blocks, and with G34 and G35 also within a block. No axis can change its
+speed instantly. Where two blocks meet, both axes therefore change to the next lead over several
+revolutions. At the commanded speed, this takes half of their permitted acceleration.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ _SAME_POINT_TOLERANCE = 1e-9
 
 
 class ThreadCurve(NamedTuple):
-    """Positions of X and Z in machine coordinates at the curve parameters ``curve_positions_mm``, all in mm.
+    """Table of X and Z in machine coordinates at values of the curve parameter s, all in mm.
 
-    The first ``curve_positions_mm`` is 0. The curve is linear between these points and continues linearly
-    after the last one.
+    ``curve_positions_mm`` are the values of s, of which the first is 0. The curve is linear between the
+    points and continues linearly after the last one.
     """
 
     curve_positions_mm: FloatArray
@@ -93,7 +93,10 @@ class ThreadCurve(NamedTuple):
 
 
 def calculate_spindle_revolutions(block: Block) -> float:
-    """Return the number of spindle revolutions of a thread block, whose feed is its mean lead."""
+    """Return the number of spindle revolutions of a thread block.
+
+    The feed of the block is its mean lead.
+    """
     return abs(block.z - block.z0) / block.feed
 
 
@@ -115,7 +118,7 @@ def build_thread_curve(blocks: Sequence[Block], limits: MotionLimits) -> ThreadC
 
 
 def _chord_points(block: Block) -> list[tuple[float, float]]:
-    """Return points along a block as (fraction of its length, revolutions since the previous point)."""
+    """Return points of a thread block as (fraction of its length, revolutions since the last point)."""
     whole = calculate_spindle_revolutions(block)
     if not block.growth:
         return [(1.0, whole)]
@@ -129,7 +132,7 @@ def _chord_points(block: Block) -> list[tuple[float, float]]:
 def _round_joints(
     raw: ThreadCurve, joints: Sequence[float], speed: float, limits: MotionLimits
 ) -> ThreadCurve:
-    """Return the curve with each junction of two blocks rounded where the axes cannot follow it.
+    """Return the curve with rounded transitions between blocks where the axes could not follow it.
 
     ``speed`` is the speed along s, in mm/s.
     """

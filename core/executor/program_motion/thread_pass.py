@@ -44,7 +44,7 @@ _START_ERROR_CODES = {"late", "broken-path"}  # error codes of a driver if the p
 
 
 class SynchronizedThreadPass:
-    """A thread pass that follows the spindle, and records the largest deviation from it."""
+    """A thread pass that follows the spindle, and records its largest deviation from synchronism."""
 
     def __init__(
         self,
@@ -77,7 +77,7 @@ class SynchronizedThreadPass:
         return not self._stopped
 
     def detect_lost_step(self) -> bool:
-        """Return whether the axis has lost step with the spindle, so that the thread may be bad.
+        """Return whether the axis has lost synchronism with the spindle, which may spoil the thread.
 
         The result is True only once per pass.
         """
@@ -222,8 +222,8 @@ class ThreadPass(SynchronizedThreadPass):
     def _plan_blend(self, t: float, s: float, v: float) -> Phases | None:
         """Return two phases that bring the axis back in step with the spindle without reversing.
 
-        The result is None if the phases do not fit before the end of the full depth, or if the acceleration
-        of the axis is not sufficient.
+        The result is None in two cases: the phases do not fit before the end of the full-depth thread, or
+        the axis cannot accelerate enough.
         """
         path, time = self._path, _BLEND
         while time <= _MAX_CORRECTION_S:
@@ -241,7 +241,7 @@ class ThreadPass(SynchronizedThreadPass):
         return None
 
     def _target(self, t: float) -> tuple[float, float, Phases]:
-        """Return the required s and speed at time ``t``, and the phases that remain of the run-up."""
+        """Return the required s and speed at time ``t``, and the remaining phases of the run-up."""
         starts, v = self._begins
         into = t - starts
         if into * self._ramp < v:
@@ -252,7 +252,7 @@ class ThreadPass(SynchronizedThreadPass):
         return self._lead * (turns - self._index), self._lead * speed, []
 
     def _find_start(self) -> tuple[float, float]:
-        """Return the start time of the run-up and its final speed.
+        """Return the start time of the run-up and the speed that the run-up reaches.
 
         The run-up starts half its duration before the index pulse. An axis that accelerates from rest lags
         an axis already in motion by v²/2a, so it must start v/2a earlier.
@@ -292,10 +292,10 @@ def _end(segments: MotionSegments) -> float:
 
 
 class GearedThreadPass(SynchronizedThreadPass):
-    """A thread pass that is planned as a cam, along which the driver's axes follow the spindle.
+    """A thread pass that is planned as an electronic cam, along which the axes follow the spindle.
 
     The axis is in step if s = lead · revolutions, counted from the index pulse that is selected at the
-    start. The cam also contains run-up, pull-out and stop; these depend on the spindle speed only because
+    start. The cam also contains run-up, pull-out and stop. Only these depend on the spindle speed, because
     of the axis limits. ``start_pass`` and ``restart_pass`` raise AlarmError if the spindle does not turn or
     has no encoder, and DriverError if the moves cannot be queued in time.
     """
@@ -399,7 +399,7 @@ class GearedThreadPass(SynchronizedThreadPass):
         return True
 
     def _run_up_revolutions(self, speed: float) -> float:
-        """Return the number of revolutions from rest to the index pulse.
+        """Return the number of revolutions from the start of the run-up to the index pulse.
 
         An axis that accelerates from rest lags an axis already in motion by v²/2a. It must therefore start
         v/2a earlier, which is half of its run-up.

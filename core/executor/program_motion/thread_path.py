@@ -134,7 +134,7 @@ class ThreadPath(NamedTuple):
         return (z - self.start_z) * self.z_direction, z_velocity * self.z_direction
 
     def find_full_depth_end(self, speed: float) -> float:
-        """Return the s up to which a pass at ``speed`` is within the thread, before it exits or brakes."""
+        """Return the s at which a pass at ``speed`` leaves the full depth or begins to brake."""
         return min(
             self.length_mm, self.length_mm + self.exit_length_mm - 0.5 * speed * speed / self.z_acceleration
         )
@@ -210,7 +210,7 @@ class ThreadPath(NamedTuple):
         return _axis_motion(self.start_z + along * s, along * v, [(dt, along * acc) for dt, acc in phases])
 
     def _join_axes(self, t: float, x: _AxisMotion, z: _AxisMotion) -> MotionSegments:
-        """Return the motion of both axes, divided into common phases of constant acceleration."""
+        """Return the motion of both axes with common phases, in which both accelerations are constant."""
         joints = np.unique(np.concatenate([x.times_s, z.times_s]).round(12))
         joints = joints[np.concatenate([[True], np.diff(joints) > _SHORT_TIME_S])]
         starts, dt = joints[:-1], np.diff(joints)
@@ -269,7 +269,7 @@ def _motion_before(track: _AxisMotion, end: float) -> _AxisMotion:
 
 
 def _map_to_curve(curve: ThreadCurve, s: float, v: float, phases: Phases) -> tuple[_AxisMotion, _AxisMotion]:
-    """Return the motions of X and Z along a curve that result from the given phases of s."""
+    """Return the motions of X and Z along a curve when s moves in the given phases."""
     t, tracks = 0.0, (list[tuple[float, ...]](), list[tuple[float, ...]]())
     for whole, acc in phases:
         for dt in _knot_durations(curve, s, v, whole, acc):
@@ -288,7 +288,7 @@ def _map_to_curve(curve: ThreadCurve, s: float, v: float, phases: Phases) -> tup
 
 
 def _knot_durations(curve: ThreadCurve, s: float, v: float, duration: float, acc: float) -> list[float]:
-    """Return the durations of the parts of a phase, which is divided at the points of the curve."""
+    """Return the durations of the parts into which the points of the curve divide a phase."""
     end = s + (v + 0.5 * acc * duration) * duration
     gone = (
         curve.curve_positions_mm[

@@ -27,7 +27,7 @@ class SafeStop:
     """The steps of a safe stop.
 
     ``run_steps`` runs all steps, and ``retry_failed_steps`` repeats the steps that failed. No exception
-    except KeyboardInterrupt is passed to the caller.
+    except KeyboardInterrupt reaches the caller.
     """
 
     def __init__(self, context: MachineContext) -> None:

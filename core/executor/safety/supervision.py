@@ -99,7 +99,7 @@ class _AxisWatch:
         self._stood: float | None = None  # position at which the axis came to rest
 
     def store_sample_time(self, t: float) -> bool:
-        """Store the time of a sample; return whether the sample is newer than the previous one."""
+        """Store the time of a sample; return whether the sample is newer than the one before it."""
         self._dt, self._t = t - self._t, t
         return self._dt > 0.0
 
@@ -122,7 +122,7 @@ class _AxisWatch:
             self._at_standstill(error, rest)
 
     def _at_standstill(self, error: float, rest: float) -> None:
-        """Raise AlarmError if the axis does not settle at its target.
+        """Raise AlarmError if an axis at standstill does not settle at its target position.
 
         A small error is permitted for a longer time than a large error.
         """
@@ -198,7 +198,7 @@ class _AxisWatch:
             )
 
     def _lasts(self, what: str, holds: bool) -> float:
-        """Return for how many seconds the condition ``what`` has been true without interruption."""
+        """Return for how many seconds the condition named ``what`` has been true without interruption."""
         if not holds:
             self._since.pop(what, None)
             return 0.0
@@ -259,7 +259,8 @@ class Supervisor:
     def _check_numbers(self, sample: AxisSample) -> None:
         """Raise AlarmError if a setpoint, a position or a following error is NaN or infinite.
 
-        Comparisons with NaN detect nothing.
+        This check is necessary because every comparison with NaN is false, so that no other check would
+        react.
         """
         each = zip(
             self._context.machine.axes, sample.demand, sample.actual, sample.following_error, strict=True
@@ -272,7 +273,7 @@ class Supervisor:
                 )
 
     def _check_collet(self) -> None:
-        """Raise AlarmError if the collet switch remains off for longer than contact bounce lasts."""
+        """Raise AlarmError if the collet switch is off for too long to be contact bounce."""
         now = self._context.now
         self._open_since = now if self._open_since is None else self._open_since
         if now - self._open_since > 2.0 * self._context.machine.collet.close_time_s:
@@ -297,7 +298,7 @@ class OutputMonitor:
         self._known_off: frozenset[str] = frozenset()  # outputs known to differ from their commanded states
 
     def check_outputs(self) -> None:
-        """Hold the cycle if an output changed without a command.
+        """Start a feed hold if an output has changed without a command.
 
         Raises DriverError or AlarmError on failure.
         """
@@ -325,7 +326,7 @@ class OutputMonitor:
             self._disturbed("switched-off", " AND ".join(each.description for each in new))
 
     def iter_output_announcements(self) -> Iterator[AnnouncedFunction]:
-        """Yield announcements of the outputs that a resume would switch back to their commanded states."""
+        """Yield an announcement for each output that a resume would switch back to its commanded state."""
         if self._program_run.status.state in STOPPED_STATES:
             for name, wanted in self._context.commanded_outputs.find_mismatches():
                 words = Message("{output} TURNS ON" if wanted else "{output} TURNS OFF", output=name.upper())
@@ -333,7 +334,7 @@ class OutputMonitor:
                 yield AnnouncedFunction(Message("output {name}", name=name), words, begin)
 
     def _handle_trip(self, trip: DriverHostTrip) -> None:
-        """Hold the cycle if the driver host has switched off outputs or the spindle.
+        """Start a feed hold if the driver host has switched off outputs or the spindle.
 
         Lamps are ignored, because they are not outputs of the program and are turned on again.
         """

@@ -100,7 +100,10 @@ def is_python_thread_alive(name: str) -> bool:
 
 
 class MachineHalter:
-    """Helper that halts the machine through the drivers on a separate thread, because a driver may block."""
+    """Helper that halts the machine through the drivers.
+
+    It uses a separate thread, because a driver may block.
+    """
 
     def __init__(self, halt: HaltFunction | None) -> None:
         self._halt = halt
@@ -207,7 +210,7 @@ class Watchdog:
 
     @property
     def is_closing(self) -> bool:
-        """Return whether the end of the watchdog has been requested."""
+        """Return whether the watchdog has been requested to end."""
         return self._closing.is_set()
 
     def start(self) -> None:
@@ -220,7 +223,10 @@ class Watchdog:
         self._others.watch_thread(name)
 
     def stop_checks(self) -> None:
-        """Stop the checks, because TurnDesk is closing and threads now end normally. Do not wait."""
+        """Stop the checks without waiting.
+
+        This is called when TurnDesk closes, because threads then end normally.
+        """
         self._closing.set()
         self._others.stop_reporting()
 
@@ -287,7 +293,8 @@ class WatchdogSupervisor:
     def check_watchdog(self, now: float) -> None:
         """Check the watchdog once after each tick.
 
-        A long gap between ticks counts as a short one, because the watchdog was probably delayed too.
+        After a long gap between two ticks, only a short time is counted, because the watchdog was probably
+        delayed too.
         """
         looks, last = self._watchdog.check_count, self._last
         self._last = now

@@ -132,5 +132,5 @@ class WrongPinCounter:
         self.wrong_pin_count, self.last_attempt_s = self.wrong_pin_count + 1, now
 
     def reset_count(self) -> None:
-        """Reset the count after a correct PIN."""
+        """Reset the count of wrong PINs after a correct PIN."""
         self.wrong_pin_count = 0

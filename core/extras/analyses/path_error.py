@@ -26,10 +26,10 @@ _TELL = 30.0  # largest condition number at which the values can be separated
 
 @dataclass(frozen=True, slots=True)
 class BallBarResult:
-    """Result of a ball-bar analysis of one arc, with NaN where the arc is too short.
+    """Result of a ball-bar analysis of one arc. A value is NaN if the arc is too short for it.
 
-    - ``angles_deg`` (m,): angles of the samples; ``deviations_mm`` (m,): their distances outside the
-      programmed arc
+    - ``angles_deg`` (m,): angles of the samples
+    - ``deviations_mm`` (m,): radial distances of the samples from the programmed arc, outside positive
     - ``backlash_mm`` and ``reversal_spike_mm``: pairs for the axes (u, v)
     - ``squareness_error_mm_m``: tilt of v toward u in mm per meter
     - ``scale_error_mm_m``: excess length of u over v in mm per meter
@@ -120,11 +120,12 @@ def analyze_ball_bar(setpoints: FloatArray, actual: FloatArray) -> BallBarResult
 
 
 def _fitted(theta: FloatArray, turned: FloatArray, deviation: FloatArray) -> tuple[list[float], FloatArray]:
-    """Return the fitted coefficients and the residual of the radial deviation.
+    """Return the fitted coefficients of the radial deviation, and the residual.
 
-    The coefficients are the size error, the backlash of u and v, and those of sin 2θ and cos 2θ. A backlash
-    b of u leaves the axis b/2 short of its setpoint, which changes the radius by −(b/2)·sign(u′)·cos θ. A
-    tilt φ gives φR/2·sin 2θ, and a scale error e between u and v gives eR/2·cos 2θ.
+    The coefficients are the size error, the backlash of u and v, and the factors of sin 2θ and cos 2θ. A
+    backlash b of u leaves the axis b/2 short of its setpoint, which changes the radius by
+    −(b/2)·sign(u′)·cos θ. A tilt φ contributes φR/2·sin 2θ. A scale error e between u and v contributes
+    eR/2·cos 2θ.
     """
     rotation_sign = 1.0 if turned[-1] > turned[0] else -1.0
     towards_u, towards_v = -rotation_sign * np.sign(np.sin(theta)), rotation_sign * np.sign(np.cos(theta))
@@ -148,7 +149,7 @@ def _fitted(theta: FloatArray, turned: FloatArray, deviation: FloatArray) -> tup
 
 
 def _spike(position: FloatArray, turned: FloatArray, rest: FloatArray) -> float:
-    """Return the largest residual shortly after a reversal of this axis, or NaN without a reversal."""
+    """Return the largest residual shortly after this axis reverses, or NaN if it does not reverse."""
     step = np.sign(np.diff(position))
     moving = np.flatnonzero(step)
     if not len(moving):
@@ -164,7 +165,7 @@ def _spike(position: FloatArray, turned: FloatArray, rest: FloatArray) -> float:
 
 
 def find_arcs(setpoints: FloatArray, lines: FloatArray) -> tuple[tuple[int, slice], ...]:
-    """Return the program lines whose setpoints (m, 2) form a sufficiently long arc.
+    """Return the program lines whose setpoints (m, 2) form an arc that is long enough to analyze.
 
     Each line is returned with the range of its samples.
     """
@@ -242,10 +243,10 @@ def calculate_path_error(
 ) -> PathError:
     """Return the deviations of measured positions (m, k) from a polyline (n, k) of 2 or 3 axes.
 
-    ``lines`` (n,) are the source lines of the points of ``programmed``. ``expected_point_indices`` (m,) is
-    the index of the point that each sample should have reached. Only ``search_point_count`` points on
-    either side of it are searched, because the path may cross itself. Raises AnalysisError if the samples
-    are unusable.
+    ``lines`` (n,) are the source lines of the points of ``programmed``. ``expected_point_indices`` (m,) are
+    the indices of the points that the samples should have reached. For each sample, only
+    ``search_point_count`` points on either side are searched, because the path may cross itself. Raises
+    AnalysisError if the samples are unusable.
     """
     _check(programmed, lines, measured, expected_point_indices)
     n = len(programmed)

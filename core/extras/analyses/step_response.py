@@ -25,9 +25,9 @@ class StepResponse:
     """Response to a step, with times in seconds and lengths in mm.
 
     - ``rise_time_s``: time from 10 to 90 % of the step
-    - ``overshoot_fraction``: overshoot as a fraction of the step, or 0
+    - ``overshoot_fraction``: overshoot as a fraction of the step; 0 if there is no overshoot
     - ``settling_time_s``: time from the end of the command until the axis stays within
-      ``settling_band_mm``, or NaN if it does not settle
+      ``settling_band_mm``; NaN if it does not settle
     - ``delay_s``: delay at half of the step
     - ``final_error_mm``: error at the end of the record
     """
@@ -42,9 +42,10 @@ class StepResponse:
 
 
 def analyze_step(times: FloatArray, request: FloatArray, response: FloatArray, band: float) -> StepResponse:
-    """Analyze the response to a step, in samples (n,) that begin before it and end after it.
+    """Analyze the response to a step.
 
-    ``band`` is the in-position window in mm. Raises AnalysisError if the step is too small for ``band``.
+    The samples (n,) begin before the step and end after it. ``band`` is the in-position window in mm.
+    Raises AnalysisError if the step is too small for ``band``.
     """
     _check(times, request, response)
     step_size = float(request[-1] - request[0])
@@ -121,7 +122,7 @@ def analyze_sine(
 def _wave(times: FloatArray, values: FloatArray, frequency: float) -> complex:
     """Return the amplitude and phase of the sine in the samples as a complex number.
 
-    The sine is fitted together with an offset and a slope.
+    The fit also includes a constant and a slope, so that an offset or a drift does not affect the result.
     """
     t = times - times[0]
     turn = 2.0 * math.pi * frequency * t
@@ -227,7 +228,7 @@ def calculate_bandwidth(responses: Sequence[SineResponse]) -> Bandwidth:
 
 
 def find_trip_time(times: FloatArray, error: FloatArray, limit_mm: float, duration_s: float) -> float | None:
-    """Return the time at which the error would cause a trip, or None if it would not.
+    """Return the time at which the following error would trip the drive, or None if it would not.
 
     A trip occurs if the error exceeds ``limit_mm`` for ``duration_s`` seconds.
     """

@@ -136,7 +136,7 @@ SampleRange = tuple[int, int, float, int]
 
 
 def _runs(turns: FloatArray, along: FloatArray) -> list[SampleRange]:
-    """Return the periods with a constant travel per revolution."""
+    """Return the periods of the record with a constant travel per revolution."""
     direction = 1.0 if turns[-1] >= turns[0] else -1.0
     t = np.maximum.accumulate(direction * turns)
     grid = np.arange(t[0], t[-1], 1.0 / _POINTS)
@@ -163,9 +163,9 @@ def _runs(turns: FloatArray, along: FloatArray) -> list[SampleRange]:
 def _joined(
     runs: list[SampleRange], turns: FloatArray, along: FloatArray, direction: float
 ) -> list[SampleRange]:
-    """Return the periods, with adjacent periods of the same threading pass joined.
+    """Return the periods, with adjacent periods of the same threading pass joined into one.
 
-    A period belongs to the same pass if it continues the best-fit line of the previous period.
+    A period belongs to the same pass if it continues the best-fit line of the preceding period.
     """
     found: list[SampleRange] = []
     for run in runs:
@@ -181,7 +181,7 @@ def _joined(
 
 
 def _alike(runs: list[SampleRange]) -> list[SampleRange]:
-    """Return the passes with the coarsest lead that occurs more than once.
+    """Return the passes with the same lead: the coarsest lead that occurs more than once.
 
     If no lead occurs more than once, return the passes with the coarsest lead.
     """

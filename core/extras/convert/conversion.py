@@ -19,7 +19,8 @@ from core.language.diagnostics import Diagnostic, ProgramError, Severity
 class Conversion:
     """A converted program with its findings and its proof.
 
-    ``findings`` refer to lines of the source. If they include an error, ``lines`` must not be used.
+    ``findings`` refer to lines of the source. If they include an error, the converted ``lines`` must not be
+    used.
     """
 
     lines: tuple[WrittenLine, ...]
@@ -38,7 +39,7 @@ class Conversion:
 
 
 def group_findings(findings: Sequence[Diagnostic]) -> list[tuple[Diagnostic, str]]:
-    """Return the first finding of each text, and the numbers of the further lines with this text."""
+    """Return each different finding once, with the numbers of the other lines with the same text."""
     first: dict[tuple[str, str], tuple[Diagnostic, list[int]]] = {}
     for each in findings:
         _, lines = first.setdefault((each.code, each.message), (each, []))

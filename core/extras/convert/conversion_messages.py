@@ -251,19 +251,19 @@ PROOF_ERRORS: Mapping[str, tuple[str, str]] = {
 
 
 def make_error(line: int, column: int, code: str, /, **values: object) -> ProgramError:
-    """Return the error that ends the conversion at this position in the source."""
+    """Return the error that ends the conversion at a position in the source program."""
     text, hint = ERRORS.get(code) or PROOF_ERRORS[code]
     return ProgramError(_finding(line, column, Severity.ERROR, code, text, hint, values))
 
 
 def make_warning(line: int, column: int, code: str, /, **values: object) -> Diagnostic:
-    """Return a warning for a source line that is converted, but not identically."""
+    """Return a warning for a source line whose conversion does not have exactly the same effect."""
     text, hint = WARNINGS[code]
     return _finding(line, column, Severity.WARNING, code, text, hint, values)
 
 
 def make_note(line: int, column: int, code: str, /, **values: object) -> Diagnostic:
-    """Return the note that a word of the source is not needed in the converted program."""
+    """Return a note that the converted program does not need a word of the source program."""
     text, hint = NOTES[code]
     return _finding(line, column, Severity.NOTE, code, text, hint, values)
 

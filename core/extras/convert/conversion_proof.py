@@ -68,7 +68,7 @@ def prove(
 
 
 def _of_target(found: Diagnostic, text: str, sources: Sequence[int]) -> Diagnostic:
-    """Convert a finding about the converted program to a finding about the corresponding source line."""
+    """Convert a finding about the converted program to a finding about the source line it comes from."""
     line = sources[found.line - 1] if found.line else 0
     made = text.splitlines()[found.line - 1] if found.line else ""
     error = make_error(line, 0, "target", made=made, message=found.message, hint=found.hint)
@@ -162,7 +162,10 @@ class _Comparison:
             self._action(step, block.action)
 
     def _home(self, step: PathStep) -> None:
-        """Compare a move to machine home. The block may be missing if the axes are already at home."""
+        """Compare a move to machine home.
+
+        The converted program may omit this block if the axes are already at home.
+        """
         at = self._at
         if (
             at < len(self._blocks)
@@ -252,7 +255,8 @@ class _Comparison:
     def _zone(self, steps: Sequence[PathStep], blocks: Sequence[Block]) -> None:
         """Compare the steps and blocks of a thread.
 
-        Thread cuts are compared exactly, and rapids only as far as the retract of the cycle permits.
+        Thread cuts are compared exactly. Rapids may differ as far as the retract of the threading cycle
+        permits.
         """
         made = iter(blocks)
         for step in steps:
@@ -306,7 +310,7 @@ def _known(steps: Sequence[PathStep]) -> Iterator[PathStep]:
 
 
 def _action_of(step: PathStep, *, metric: bool) -> actions.Action | None:
-    """Return the block action that corresponds to a step, or None if there is no such action."""
+    """Return the block action that corresponds to a step, or None if no action corresponds to it."""
     if step.kind is StepKind.SPINDLE:
         return _spindle_of(step, metric=metric)
     if step.kind is StepKind.DWELL:

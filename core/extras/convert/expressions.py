@@ -119,17 +119,17 @@ class ExpressionReader:
         return self.text[self.at : self.at + 1]
 
     def skip_text(self, sign: str) -> bool:
-        """Skip ``sign`` if the text at the reading position starts with it; return whether it does."""
+        """Skip the text ``sign`` if it is next in the line; return whether it was."""
         self.skip_blanks()
         found = self.text[self.at : self.at + len(sign)].upper() == sign
         self.at += len(sign) * found
         return found
 
     def read_value(self) -> tuple[float, bool]:
-        """Return the value of a word, and whether the decimal point rule does not apply to it.
+        """Return the value of a word, and whether the decimal point rule does not apply to the word.
 
-        The rule applies only to a literal number without a decimal point. Raises ProgramError if the value
-        is invalid.
+        The rule (a number without a decimal point may be in least increments) applies only to literal
+        numbers. Raises ProgramError if the value is invalid.
         """
         begin = self.at
         negative = False
@@ -217,7 +217,10 @@ class ExpressionReader:
         return sign * self._atom()
 
     def _finite(self, begin: int, value: float) -> float:
-        """Return a value. Raises ProgramError if it is infinite, or if a variable has no value."""
+        """Return the value of an expression.
+
+        Raises ProgramError if it is infinite, or if a variable in it has no value.
+        """
         if math.isnan(value):
             raise make_error(self.line, begin + 1, "variable", word=self.text[begin : self.at].strip())
         if math.isinf(value):

@@ -69,7 +69,7 @@ class OmniTurnWriter:
         return letter + number(value, places)
 
     def append_line(self, text: str, step: PathStep) -> None:
-        """Append a line for a step, with the source in a comment."""
+        """Append a line for a step of the source program, with a comment that refers to the source."""
         self.lines.append(WrittenLine(text + self.make_comment(step), step.line))
 
     def make_comment(self, step: PathStep) -> str:
@@ -254,11 +254,12 @@ _NEAR = 1e-6  # mm
 def _write_thread(writer: OmniTurnWriter, step: PathStep, after: Sequence[PathStep]) -> int:
     """Write one thread pass; return how many steps it covers: thread, pull-out and return.
 
-    The tool must already be at the start of the thread, and a rapid out in X must follow. If this rapid
-    also moves Z, a warning is added and only the thread step is covered. The cycle needs a start point
-    outside the thread; its retract is then the X of the pull-out. Raises ProgramError if the position
-    before the pass is unknown, if no such rapid follows, or if the pull-out does not end far enough outside
-    the start of the thread.
+    - The tool must already be at the start of the thread, and a rapid out in X must follow.
+    - If this rapid also moves Z, a warning is added and only the thread step is covered.
+    - The cycle starts at a point outside the thread, and retracts to the X of the pull-out.
+    - Raises ProgramError if the position before the pass is unknown, if no such rapid follows, or if
+      the
+      pull-out does not end far enough outside the start of the thread.
     """
     assert step.x is not None
     assert step.z is not None
@@ -307,7 +308,7 @@ def _is_pull_out(step: PathStep, out: PathStep | None) -> bool:
 
 
 def _returns(out: PathStep, after: Sequence[PathStep], start_z: float) -> int:
-    """Return 1 if the next step returns to the start Z at the pull-out's X, otherwise 0."""
+    """Return 1 if the next step returns to the start Z at the X of the pull-out, and otherwise 0."""
     back = after[0] if after else None
     if back is None or back.kind is not StepKind.RAPID or back.x is None or back.z is None:
         return 0
@@ -316,7 +317,7 @@ def _returns(out: PathStep, after: Sequence[PathStep], start_z: float) -> int:
 
 
 def _drop_infeed(writer: OmniTurnWriter, start_z: float) -> None:
-    """Remove the last rapid if it is the infeed to the pass depth, because the cycle makes this move."""
+    """Remove the last rapid if it moves to the pass depth, because the cycle makes this move."""
     if writer.last_rapid_move is None:
         return
     count, x, z, was_rapid = writer.last_rapid_move

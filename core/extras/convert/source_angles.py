@@ -17,10 +17,10 @@ def is_angle_word(state: SourceState, word: SourceWord) -> bool:
 
 
 def find_angle_target(state: SourceState, statement: SourceStatement) -> tuple[float, float] | None:
-    """Return the end point of a straight cut with an angle, or None without an angle.
+    """Return the end point of a straight cut with an angle, or None if no angle is programmed.
 
     The angle is in degrees from the direction of Z+ toward X+. Raises ProgramError unless the line contains
-    either X or Z, because the end point is otherwise the intersection with the next line.
+    either X or Z. With neither, the end point would depend on the next line.
     """
     word = next((each for each in statement.words if is_angle_word(state, each)), None)
     if word is None:

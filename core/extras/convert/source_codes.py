@@ -34,7 +34,7 @@ def execute_mode(state: SourceState, statement: SourceStatement, word: SourceWor
 
 
 def is_mode(state: SourceState, code: float) -> bool:
-    """Return whether ``execute_mode`` executes or reports this G code."""
+    """Return whether ``execute_mode`` handles this G code, by executing it or by reporting it."""
     fanuc, system_a = state.source_control.is_fanuc, state.source_control.uses_code_system_a
     return (
         code in _ALWAYS_ACTIVE | _LEFT_OUT | {17, 19, 20, 21, 40, 41, 42, 43, 49, 80, 96, 97}
@@ -104,7 +104,7 @@ def _select_other_mode(state: SourceState, statement: SourceStatement, word: Sou
 
 
 def get_left_out_letters(statement: SourceStatement) -> str:
-    """Return the letters of the words that belong to the left-out codes of a line."""
+    """Return the letters of the words that belong to codes of a line that are not converted."""
     return "".join(_WITH_WORDS.get(each.value, "") for each in statement.find_words("G"))
 
 
@@ -163,7 +163,7 @@ def execute_stop_codes(state: SourceState, statement: SourceStatement) -> bool:
 
 
 def check_repeated_words(statement: SourceStatement) -> None:
-    """Raise ProgramError if two words of a line contradict each other, because only one has an effect."""
+    """Raise ProgramError if two words of a line contradict each other, so that only one could act."""
     seen: dict[str, SourceWord] = {}
     for word in statement.words:
         key = _get_group(word)
@@ -175,7 +175,10 @@ def check_repeated_words(statement: SourceStatement) -> None:
 
 
 def _get_group(word: SourceWord) -> str:
-    """Return a key that only contradictory words share, or an empty string."""
+    """Return the key of the group in which two words contradict each other, or an empty string.
+
+    The result is an empty string for a word that contradicts no other word.
+    """
     if word.letter == "G":
         return "motion" if word.value in {0, 1, 2, 3, 32, 33} else ""
     if word.letter == "M":

@@ -83,7 +83,7 @@ class ProgramFlow:
             yield from self._statement(line)
 
     def read_subprogram(self, word: SourceWord) -> list[SourceStatement]:
-        """Return the statements of the LinuxCNC subprogram whose number is in ``word``, as executed.
+        """Return the executed statements of the LinuxCNC subprogram whose number is in ``word``.
 
         Raises ProgramError if the file does not contain this subprogram.
         """
@@ -261,7 +261,7 @@ class ProgramFlow:
         )
 
     def _require_line_end(self, reader: ExpressionReader) -> None:
-        """Raise ProgramError if the line contains more text, because it would have no effect."""
+        """Raise ProgramError if more text follows in the line, because this text would have no effect."""
         if reader.peek_character():
             raise make_error(reader.line, reader.at + 1, "bad-word", text=reader.text[reader.at :].strip())
 
@@ -311,7 +311,10 @@ class ProgramFlow:
             self.at = self._find(line, ("endwhile",)) + 1
 
     def _if(self, line: SourceLine, reader: ExpressionReader) -> None:
-        """Execute IF: continue after the first true IF or ELSEIF, or else after ELSE or ENDIF."""
+        """Execute IF: continue after the first IF or ELSEIF that is true.
+
+        If none is true, continue after ELSE, or after ENDIF if there is no ELSE.
+        """
         while not self._read_condition(reader):
             index = self._find(line, ("elseif", "else", "endif"))
             self.at = index + 1

@@ -38,10 +38,10 @@ class SourceControl(StrEnum):
 class ConversionOptions:
     """Options of a conversion, mainly facts that the text of the source program does not contain.
 
-    - ``no_point``: the value of 1 without a decimal point. 0 means not specified, 1 a whole unit, and
-      0.001 the least increment (0.001 mm or 0.0001 in).
-    - ``metric`` and ``diameter``: the unit, and the meaning of X, of a program that does not select them.
-      None means not specified.
+    - ``no_point``: meaning of the number 1 without a decimal point: 0 if not specified, 1 for a whole
+      unit, or 0.001 for the least increment (0.001 mm or 0.0001 in)
+    - ``metric`` and ``diameter``: unit and meaning of X if the program does not select them; None
+      means not specified
     - ``front``: whether G02 and G03 are seen with X+ toward the operator
     - ``skipped_m_codes``: M codes to omit
     """

@@ -9,7 +9,10 @@ from core.extras.convert.source_state import SourceState
 
 
 def add_preset_shift(state: SourceState, before: tuple[float | None, float | None]) -> None:
-    """Add the shift of a preset to the shift that G92.1 cancels; it becomes unknown with the position."""
+    """Add the shift of a preset to the total shift that G92.1 cancels.
+
+    If the position is unknown, the total shift becomes unknown too.
+    """
     if None in {*before, state.x, state.z} or state.preset_shift is None:
         state.preset_shift = None
         return
@@ -22,7 +25,7 @@ def add_preset_shift(state: SourceState, before: tuple[float | None, float | Non
 
 
 def cancel_preset(state: SourceState, word: SourceWord) -> None:
-    """Execute G92.1 or G92.2: preset the position to its value without the earlier presets.
+    """Execute G92.1 or G92.2, which set the position to its value without the earlier presets.
 
     If the shift of these presets is unknown, the next move raises ProgramError.
     """

@@ -135,9 +135,9 @@ class SourceReader:
             state.feed = most
 
     def _is_lead(self, statement: SourceStatement) -> bool:
-        """Return whether F of this line is the lead of a thread, which Fanuc programs in F.
+        """Return whether F of this line is a thread lead, which Fanuc controls program with F.
 
-        It is the lead on a line with a thread code, and on a line that continues an active thread code.
+        F is the lead on a line with a thread code, and on a line that continues an active thread code.
         """
         if not self.state.source_control.is_fanuc:
             return False
@@ -282,7 +282,7 @@ class SourceReader:
             raise make_error(word.line_number, word.column, code, word=word.text)
 
     def _belongs_to_code(self, statement: SourceStatement, word: SourceWord) -> bool:
-        """Return whether a word belongs to a code of its line that is executed or reported elsewhere."""
+        """Return whether a word belongs to a code of the same line that other functions handle."""
         letter = word.letter
         if letter == "D" and statement.has_g_code(41, 42):
             if word.value != self.state.tool_number:
@@ -332,7 +332,10 @@ class SourceReader:
     def _leave_out_axes(
         self, statement: SourceStatement, word: SourceWord, motion: Sequence[SourceWord]
     ) -> None:
-        """Check the words of a code that is left out. Raises ProgramError if they may be a move."""
+        """Check the axis words of a code that is not converted.
+
+        Raises ProgramError if these words may be a move.
+        """
         self._only(statement, f"GMSTFN{get_left_out_letters(statement)}")
         if motion and any(each.letter in "XZ" for each in statement.words):
             raise make_error(
@@ -415,7 +418,7 @@ class SourceReader:
 
 
 def read_source(texts: Sequence[str], options: ConversionOptions) -> tuple[SourceState, list[Diagnostic]]:
-    """Return the state after reading the source program, and the findings in order.
+    """Read the source program; return the final state and the findings in order.
 
     If an error has ended the reading, it is the last finding.
     """

@@ -155,7 +155,8 @@ class SourceState:
     def append_step(self, step: PathStep) -> None:
         """Append a step, and attach the comment that precedes it.
 
-        Raises ProgramError if the program makes too many steps, or if it needs a speed that is missing.
+        Raises ProgramError if the program makes too many steps, or if a step needs a spindle speed that is
+        missing.
         """
         if len(self.steps) >= MAX_STEP_COUNT:
             raise make_error(step.line, 1, "too-many-moves", most=MAX_STEP_COUNT)

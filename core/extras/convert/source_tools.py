@@ -40,14 +40,14 @@ def execute_tool_words(state: SourceState, statement: SourceStatement) -> None:
 
 
 def report_unused_tool(state: SourceState) -> None:
-    """Report a T that no M06 follows."""
+    """Add a warning about a T word that no M06 follows."""
     word = state.prepared_tool
     if word is not None:
         state.add_warning(word, "left-out", word=word.text)
 
 
 def _check_offset_number(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
-    """Execute G43. The offset H selects the tool, as the offset of T does."""
+    """Execute G43, whose offset number H selects the tool like the offset number of T."""
     word = statement.find_word("H")
     if word is None or word.value == state.tool_number:
         state.add_note(code, "no-change", word=code.text)

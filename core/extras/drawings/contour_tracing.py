@@ -26,7 +26,10 @@ _AHEAD = 0.05
 
 
 def _above_axis(drawn: Iterable[tuple[Element, BoundingBox]], gap: float) -> Iterator[Element]:
-    """Yield the sections of elements at r > 0, cut at the axis. Lines on the axis are omitted."""
+    """Yield the parts of elements at r > 0. Elements that cross the axis are cut there.
+
+    Lines on the axis are omitted.
+    """
     for each, box in drawn:
         if isinstance(each, Line) and abs(each.start[0]) <= gap and abs(each.end[0]) <= gap:
             continue
@@ -155,7 +158,7 @@ def _on_axis(net: ElementGroup, gap: float) -> bool:
 
 
 def _moved(element: Element, a: Point, b: Point) -> Element:
-    """Return the element with its ends moved to ``a`` and ``b``, the positions of their nodes."""
+    """Return the element with its ends moved to ``a`` and ``b``, the positions of its nodes."""
     if isinstance(element, Line):
         return Line(a, b)
     return make_arc(a, b, element.center, is_clockwise=element.clockwise)
@@ -204,7 +207,7 @@ def _split_at_touching_ends(elements: list[Element], gap: float) -> list[Element
 
 
 def _touch(element: Element, point: Point, gap: float) -> Point | None:
-    """Return where a point touches the inside of an element, or None if it does not touch it there."""
+    """Return where a point touches an element, or None if it touches only an end or nothing."""
     along = element.get_distance_from_start(point)
     if not gap < along < element.length - gap:
         return None
@@ -289,7 +292,8 @@ def _walk(
 ) -> list[Element]:
     """Return the elements along one side of the contour, starting at the node ``start``.
 
-    At each node, the trace follows the first element next to the empty side. It returns from dead ends.
+    At each node, the trace continues with the first element next to the empty side. At a dead end, the
+    trace goes back.
     """
     at_node: dict[int, list[int]] = {}
     for number, ends in enumerate(group.element_end_nodes):
@@ -331,9 +335,9 @@ def _next(
     back: float,
     hand: float,
 ) -> int | None:
-    """Return the number of the next element at a node, or None if there is none.
+    """Return the number of the next element at a node, or None if no element continues there.
 
-    This is the first element in the direction of rotation ``hand``, starting from the incoming direction.
+    This is the first element found when rotating in the direction ``hand`` from the incoming direction.
     """
     if path_steps:
         last = path_steps[-1][0]

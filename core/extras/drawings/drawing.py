@@ -99,7 +99,10 @@ def make_arc(center: Point, radius: float, start_angle: float, sweep_angle: floa
 
 
 def make_bulged_segment(start: Point, end: Point, bulge: float) -> Iterator[Element]:
-    """Yield a line or arc of a polyline. ``bulge`` is the tangent of a quarter of the arc's angle."""
+    """Yield a line or an arc of a polyline.
+
+    ``bulge`` is the tangent of a quarter of the angle of the arc, or 0 for a line.
+    """
     if abs(bulge) < 1e-9:
         yield from make_line(start, end)
         return
@@ -241,7 +244,7 @@ def limit_processor_time(
 
 
 def check_processor_time() -> None:
-    """Check the work limit; to be called inside loops over elements.
+    """Check the limit of processor time. Loops over elements must call this function.
 
     Raises DrawingError if the limit is exceeded, or the exception that ``report_time`` raises.
     """

@@ -23,7 +23,7 @@ def has_drawing_suffix(name: str) -> bool:
 def read_drawing(path: Path) -> Drawing:
     """Return the lines and arcs of a drawing.
 
-    Raises no errors other than DrawingError. Its text is written by TurnDesk, not by a library.
+    The only exception raised is DrawingError. Its text is written by TurnDesk, not by a library.
     """
     if not has_drawing_suffix(path.name):
         raise DrawingError(

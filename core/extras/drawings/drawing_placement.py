@@ -48,9 +48,9 @@ class ContourSide(StrEnum):
 
 
 class DrawingAxis(NamedTuple):
-    """Candidate for the spindle axis in a drawing.
+    """Line that may be the spindle axis of a drawing; the drawing need not contain this line.
 
-    It contains a name, a point and a direction; point and direction are (y, x).
+    It contains a name, a point and a direction. The point and the direction are (y, x).
     """
 
     name: str
@@ -80,7 +80,7 @@ class DrawingPlacement:
 def find_axes(drawing: Drawing, layer: str = "") -> list[DrawingAxis]:
     """Return the lines that could be the spindle axis, with the most likely first.
 
-    They include lines that are not drawn, such as Y 0 and the middle of the drawing.
+    They include lines that the file does not contain, such as Y 0 and the middle of the drawing.
     """
     there = _contour_lines(drawing, layer)
     if not there:

@@ -93,7 +93,7 @@ def _read_output(process: subprocess.Popen[bytes]) -> bytes | None:
 
 
 def _ended(path: Path, status: int, limits: ReadingLimits) -> DrawingError:
-    """Return the error to raise if the process has ended without a result."""
+    """Return the error that reports that the process has ended without a result."""
     if -status == getattr(signal, "SIGXCPU", 0):
         return _too_long(path, limits.processor_time_s)
     most = limits.memory_bytes // 1024**2

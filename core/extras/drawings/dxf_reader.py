@@ -97,7 +97,7 @@ def _nothing(name: str, left_out: Counter[str]) -> DrawingError:
 def _content(document: Document, block: str) -> BlockContent:
     """Return the content of a block, or of the model space if ``block`` is an empty string.
 
-    The count for the model space does not include its own entities.
+    Entities directly in the model space are not included in its count.
     """
     entities: list[Any] = list(document.blocks.get(block) or ()) if block else list(document.modelspace())
     own = 1 + len(entities) if block else 0

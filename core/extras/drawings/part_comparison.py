@@ -73,7 +73,7 @@ def compare_part_with_drawing(
 def _find_drawing_radii(
     elements: Iterable[Element], z: FloatArray, side: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the smallest and the largest radius of the outermost drawing line near each Z.
+    """Return the smallest and the largest radius of the outermost line of the drawing near each Z.
 
     At a shoulder these two radii differ.
     """

@@ -59,7 +59,7 @@ class NoseOffset(NamedTuple):
 class ProfileProgram:
     """Program for a profile: its shapes, its lines, and the ranges that remain uncut.
 
-    With each shape, the settings that are active before it are stored.
+    Each shape is stored with the settings that are active before it.
     """
 
     shapes: tuple[tuple[ShapeInstance, ProgramSettings], ...]
@@ -105,11 +105,9 @@ def make_profile_program(
     if _number(entered_values, "COMP"):
         reached = add_nose_fillets(contour.elements, find_nose_radius(tool), is_inside=not outside)
         contour = replace(contour, elements=reached)
-    past = (
-        _number(entered_values, "PAST") * mm
-        if "PAST" in entered_values
-        else calculate_contour_extension(tool)
-    )
+    past = calculate_contour_extension(tool)
+    if "PAST" in entered_values:
+        past = _number(entered_values, "PAST") * mm
     beyond = [*_add_face_approach(contour.elements, outside=outside)]
     contour = replace(contour, elements=tuple(join_elements(_past(beyond, past, find_nose_radius(tool)))))
     if outside and _number(entered_values, "STOCK"):
@@ -211,7 +209,8 @@ def _calculate_allowance(
     """Return the finishing allowance that the nose radius requires.
 
     The result is empty unless it is larger than the usual allowance. G75 has no nose compensation. Where
-    the contour falls at the angle a, a nose of radius R cuts R (1 + sin a - cos a) too deep.
+    the contour falls toward the axis at the angle a, a nose of radius R cuts R (1 + sin a - cos a) too
+    deep.
     """
     if settings.dialect is Dialect.SINUMERIK:
         return {}  # CYCLE95 compensates the nose radius
@@ -251,10 +250,10 @@ def find_nose_radius(tool: ToolShape | None) -> float:
 
 
 def make_nose_offset(tool: ToolShape | None, number: int, dialect: Dialect) -> NoseOffset | None:
-    """Return the offset with which a touched-off tip cuts to size, or None without compensation.
+    """Return the offset with which a touched-off tip cuts to size.
 
-    The result is also None without a tool. On a SINUMERIK control, the cutting edge also contains the nose
-    radius and the tip quadrant.
+    Return None without nose compensation or without a tool. On a SINUMERIK control, the cutting edge also
+    contains the nose radius and the tip quadrant.
     """
     if not number or tool is None:
         return None
@@ -276,9 +275,8 @@ def calculate_contour_extension(tool: ToolShape | None) -> float:
 def _add_face_approach(elements: Sequence[Element], *, outside: bool) -> Iterator[Element]:
     """Yield the contour, preceded by a move along X if the contour starts into the material.
 
-    Into the material means toward the axis for an outside contour, and away from the axis in a bore.
-    Roughing rejects a contour that starts in this direction, because the return path would cross the
-    contour.
+    The material is toward the axis for an outside contour, and away from the axis in a bore. Roughing
+    rejects a contour that starts in this direction, because the return path would cross the contour.
     """
     side = 1.0 if outside else -1.0
     r, z = elements[0].start
@@ -291,8 +289,8 @@ def _add_face_approach(elements: Sequence[Element], *, outside: bool) -> Iterato
 def _past(elements: Sequence[Element], distance: float, nose_radius: float) -> Iterator[Element]:
     """Yield the contour, extended along Z by ``distance`` unless it ends in a wall.
 
-    After a slope of angle a, a tool with the nose radius R leaves the contour R tan (a / 2) later. Nose
-    compensation needs this travel.
+    After a slope of angle a, a tool with the nose radius R leaves the contour only after a further travel
+    of R tan (a / 2). Nose compensation needs this travel.
     """
     yield from elements
     (r, z), (dr, dz) = elements[-1].end, elements[-1].end_direction
@@ -344,7 +342,7 @@ def _row(point: tuple[float, float], mm: float, arc: float) -> ContourPoint:
 
 
 def _find_blade_clearance(elements: Iterable[Element], groove: OmittedGroove, side: float) -> float:
-    """Return the radius in mm that the blade must clear on its move from the face, or 0 if none."""
+    """Return the radius in mm of an obstacle between the face and the groove, or 0 if there is none."""
     before = [
         p[0] for each in elements for p in (each.start, each.end) if p[1] > groove.front_edge[1] - _SAME
     ]
@@ -407,7 +405,7 @@ class _SlopedGroove(NamedTuple):
 
 
 def _leaning(groove: OmittedGroove, width: float) -> _SlopedGroove | None:
-    """Return a groove with straight sloped walls, or None if the groove does not have this form.
+    """Return a groove with straight sloped walls, or None if the groove is of another kind.
 
     It is None if the walls are square or curved, or if the bottom is narrower than the blade.
     """

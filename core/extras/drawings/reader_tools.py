@@ -66,7 +66,7 @@ def _between(begin: float, end: float) -> Iterator[float]:
 
 
 def _is_point(curve: CurveFunction, begin: float, end: float, at: Point, tolerance: float) -> bool:
-    """Return whether a piece stays within the tolerance of its start, so that it is only a point.
+    """Return whether a piece of a curve is so short that it is only a point within the tolerance.
 
     CAD programs write splines with coincident control points, whose spans have neither length nor
     direction.
@@ -156,10 +156,10 @@ BlockKey = TypeVar("BlockKey", bound=Hashable)
 
 
 class BlockContent(NamedTuple):
-    """Content of a block or group.
+    """Content of a block or group of a drawing.
 
-    ``entity_count`` is the number of entities without those of other blocks. ``block_references`` contains
-    the other blocks with their counts.
+    ``entity_count`` is the number of entities directly in the block. ``block_references`` contains the
+    other blocks that it uses, with the number of uses.
     """
 
     entity_count: int
@@ -169,10 +169,9 @@ class BlockContent(NamedTuple):
 def check_block_expansion(
     name: str, root: BlockKey, content: Callable[[BlockKey], BlockContent], remaining_count: int = 0
 ) -> None:
-    """Reject a file whose blocks contain themselves or expand to more than ``MAX_ELEMENTS`` entities.
+    """Raise DrawingError if the blocks of a file contain themselves or expand to too many entities.
 
-    ``remaining_count`` more entities are permitted for the file itself. Raises DrawingError if the file is
-    rejected.
+    The limit is ``MAX_ELEMENTS``. ``remaining_count`` more entities are permitted for the file itself.
     """
     if _count(name, root, content) > MAX_ELEMENTS + remaining_count:
         raise DrawingError(
@@ -187,7 +186,10 @@ def check_block_expansion(
 
 
 def _count(name: str, root: BlockKey, content: Callable[[BlockKey], BlockContent]) -> int:
-    """Count the entities depth first, without recursion because blocks may be nested deeply."""
+    """Count the entities of nested blocks depth first.
+
+    The count is not recursive, because blocks may be nested deeply.
+    """
     known: dict[Hashable, int] = {}
     waiting: dict[Hashable, BlockContent] = {}
     stack: list[Hashable] = [root]

@@ -1,4 +1,4 @@
-"""Spans of a spline between its knots, and a fit of two arcs to all spans at once.
+"""Spans of a spline between its knots, and a fit of two arcs (a biarc) to every span at once.
 
 A spline in a drawing of 2 MB has tens of thousands of spans, most of which are so short that two arcs fit.
 ``reader_tools.fit_arcs`` uses the same fit, and halves spans that two arcs do not fit.
@@ -148,7 +148,7 @@ def _points(control: FloatArray, u: float) -> FloatArray:
 
 
 def _ends(spans: SplineSpans, u: float) -> tuple[FloatArray, FloatArray]:
-    """Return the points of all spans at ``u``, and the directions measured just inside the spans."""
+    """Return the points of all spans at ``u``, and the tangent directions just inside the spans."""
     held = min(max(u, _INSIDE), 1.0 - _INSIDE)
     pair = _levels(spans.control_points, held, 2)
     p, q = pair[:, 0], pair[:, 1]
@@ -160,7 +160,7 @@ def _ends(spans: SplineSpans, u: float) -> tuple[FloatArray, FloatArray]:
 def _joints(
     a: FloatArray, start_tangents: FloatArray, b: FloatArray, end_tangents: FloatArray
 ) -> tuple[FloatArray, BoolArray]:
-    """Return the points at which both arcs meet, and whether each of these points exists."""
+    """Return the points at which the two arcs of each span meet, and whether each point exists."""
     sizes = np.array([np.hypot(*start_tangents.T), np.hypot(*end_tangents.T)])
     one, other, v = start_tangents / sizes[0][:, None], end_tangents / sizes[1][:, None], b - a
     vt, vv = (v * (one + other)).sum(axis=1), (v * v).sum(axis=1)

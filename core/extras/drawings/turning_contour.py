@@ -76,7 +76,7 @@ class ToolAngleLimits:
 
 
 def calculate_tool_angle_limits(shape: ToolShape | None, side: ContourSide) -> ToolAngleLimits:
-    """Return the reach of a tool, calculated from its outline.
+    """Return the slope angles that the edges of a tool can follow, calculated from its outline.
 
     A tool without tool data can turn only cylinders, faces and shoulders.
     """
@@ -133,7 +133,7 @@ def _turned_back(made: TurningContour) -> TurningContour:
 
 
 def _monotone(elements: Iterable[Element]) -> list[Element]:
-    """Return the elements, with arcs split where Z or r has an extreme value."""
+    """Return the elements, with arcs split so that Z and r are monotonic in each part."""
     found: list[Element] = []
     for each in elements:
         if isinstance(each, Arc):
@@ -230,7 +230,7 @@ def _without_face(elements: list[Element]) -> list[Element]:
 
 
 def _fall(element: Element) -> float:
-    """Return the largest slope angle of a contour element toward the axis and chuck, in radians.
+    """Return the largest slope angle at which an element falls toward the axis and chuck, in radians.
 
     The angle is negative if the radius of the element increases toward the chuck.
     """
@@ -267,7 +267,7 @@ def _bridged(
 ) -> tuple[list[Element], list[OmittedGroove]]:
     """Return the contour without the ranges that are too steep, and these ranges as grooves.
 
-    A range is too steep if its slope toward the axis exceeds ``fall``, which the tool edge permits.
+    A range is too steep if its slope angle toward the axis exceeds ``fall``, the limit of the tool edge.
     """
     most = fall - _SPARE if fall > _LEVEL else 0.0
     kept: list[Element] = []
@@ -309,7 +309,7 @@ def _level(a: Point, b: Point) -> list[Element]:
 
 
 def _recess(elements: Sequence[Element], at: int) -> tuple[int, Point | None]:
-    """Return the element and the point at which the contour, after a recess, reaches its edge radius.
+    """Return the element and point at which the contour, after a recess, is back at its edge radius.
 
     If the contour does not return to this radius, the result is the number of elements and None.
     """
@@ -325,7 +325,7 @@ def _recess(elements: Sequence[Element], at: int) -> tuple[int, Point | None]:
 
 
 def _gently(elements: list[Element], at: int, most: float, kept: list[Element]) -> int:
-    """Add the elements whose slope toward the axis the tool can follow.
+    """Add the elements whose slope toward the axis is within the limit of the tool.
 
     Return the number of the next element.
     """
@@ -422,7 +422,7 @@ def add_nose_fillets(
 
 
 def _without_slivers(contour: Sequence[Element]) -> Iterator[Element]:
-    """Yield the contour without arcs that are too short for rounded coordinates."""
+    """Yield the contour without arcs that are too short to be programmed with rounded coordinates."""
     for number, each in enumerate(contour):
         short = isinstance(each, Arc) and each.length < _SLIVER and abs(each.sweep_rad) < _STRAIGHT
         if not short or number in {0, len(contour) - 1}:
@@ -434,7 +434,7 @@ def _reversed(elements: Sequence[Element]) -> list[Element]:
 
 
 def _follows(contour: Sequence[Element], nose_radius: float) -> bool:
-    """Return whether the control's calculation of nose compensation can follow the contour."""
+    """Return whether the nose compensation of the control can follow the contour."""
     try:
         offset_known_contour(contour, nose_radius)
     except GougeError:

@@ -16,7 +16,7 @@ UNIT_SIZES_MM = {"MM": 1.0, "INCH": 25.4}
 def detect_wrong_unit(
     group: ElementGroup, unit_mm: float, travel: tuple[float, float]
 ) -> tuple[str, str] | None:
-    """Return the excessive size, and a smaller unit in which the contour would fit, or None.
+    """Return the size that exceeds the travel, and a smaller unit in which the contour would fit.
 
     ``unit_mm`` is the size of the drawing's unit in mm. ``travel`` is the travel of X (as a radius) and Z
     in mm, or 0 if unknown. The result is None if the contour fits, or if it does not fit in any smaller

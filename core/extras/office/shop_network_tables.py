@@ -19,8 +19,9 @@ _WEB = ("http://", "https://")
 class StatusPageTable:
     """Settings of the office page, including the other machines that it shows.
 
-    The other machines are office pages of other TurnDesk installations, and devices of MTConnect agents.
-    ``token`` is the password for browsers. It may be empty only if no other computer can connect.
+    The other machines are shown from the office pages of other TurnDesk installations, or are devices of
+    MTConnect agents. ``token`` is the password for browsers. It may be empty only if no other computer can
+    connect.
     """
 
     enabled: bool = declare_key(default=False, meaning="true: TurnDesk serves the office page.")

@@ -86,10 +86,10 @@ def calculate_capability(
 def _indices(
     mean: float, sigma: float, lower: float | None, upper: float | None
 ) -> tuple[float | None, float | None]:
-    """Return two capability indices: first without, then with the position of the mean.
+    """Return two capability indices, such as Cp and Cpk.
 
-    The first index is the tolerance divided by six standard deviations. The second is the distance from the
-    mean to the nearer limit, divided by three standard deviations.
+    The first is the tolerance divided by six standard deviations. The second also considers the position of
+    the mean: it is the distance from the mean to the nearer limit, divided by three standard deviations.
     """
     if sigma <= 1e-12:
         return None, None  # the resolution of the gauge is too coarse to show the variation
@@ -288,7 +288,10 @@ def _beyond(zones: ZoneArray) -> Iterator[int]:
 
 
 def _runs(zones: ZoneArray, length: int, whole: Callable[[ZoneArray], bool]) -> Iterator[int]:
-    """Yield the last point of each run of ``length`` points for which ``whole`` is true."""
+    """Yield the last point of each sequence of ``length`` points for which ``whole`` is true.
+
+    ``whole`` receives the zones of all points of the sequence.
+    """
     for end in range(length, len(zones) + 1):
         if whole(zones[end - length : end]):
             yield end - 1

@@ -171,9 +171,9 @@ _FAR = 3.0  # tolerance widths; a larger deviation cannot be wear
 class CorrectionRule:
     """Rule for corrections, with a dead band and a step.
 
-    Within ``dead_band_fraction`` of the tolerance, nothing is corrected. ``reading_count`` newest readings
-    are averaged, and ``step_fraction`` of their deviation is corrected. A step of one half also halves the
-    effect of the variation between parts.
+    A deviation within ``dead_band_fraction`` of the tolerance is not corrected. The ``reading_count``
+    newest readings are averaged, and the fraction ``step_fraction`` of their deviation is corrected. A step
+    of one half also halves the effect of the variation between parts.
     """
 
     dead_band_fraction: float = 0.1

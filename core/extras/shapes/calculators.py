@@ -126,7 +126,7 @@ TAPER_CALCULATOR = Shape(
 
 
 def _around(values: FieldValues, settings: ProgramSettings) -> float:
-    """Return the rpm for a surface speed of 1, or 0 if the diameter is unknown."""
+    """Return the spindle speed in rpm for a surface speed of 1, or 0 if the diameter is unknown."""
     across = number(values, "DIA")
     return (_MILLIMETRES if settings.metric else _INCHES) / (math.pi * across) if across else 0.0
 

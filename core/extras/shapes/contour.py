@@ -192,7 +192,7 @@ def _corner(
 
 
 def _set_back(row: ContourPoint, before: Point, here: Point, next_point: Point) -> float:
-    """Return the length that a corner removes from each of its two lines."""
+    """Return the length by which a corner (chamfer or radius) shortens each of its two lines."""
     if row.chamfer:
         return row.chamfer
     a, b = _direction(before, here), _direction(here, next_point)

@@ -172,9 +172,9 @@ def make_shape_instance(
 
 
 def read_comment(shape: Shape, words: list[str]) -> dict[str, FieldValue] | None:
-    """Return the field values from the words of a comment, or None if they are invalid.
+    """Return the field values that a comment contains, or None if they are invalid.
 
-    ``words`` are the words after the name of the shape.
+    ``words`` are the words of the comment after the name of the shape.
     """
     if len(words) % 2:
         return None

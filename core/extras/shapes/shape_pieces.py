@@ -1,7 +1,8 @@
-"""Shapes in the text of a program, which are found by their comments, compared and rewritten.
+"""Search, comparison and rewriting of the shapes in the text of a program.
 
-A shape is intact if its fields produce the lines in the text. If a value was changed by hand and one field
-explains the change, the field adopts the new value. Otherwise the shape is reported as changed.
+A shape is found by its comment. It is intact if its fields produce the lines in the text. If a value was
+changed by hand and one field explains the change, the field adopts the value. Otherwise the shape is
+reported as changed.
 """
 
 from __future__ import annotations
@@ -252,7 +253,7 @@ def _piece(
 def _compare_with_text(
     filled_shape: ShapeInstance, there: list[str], at: int, settings: ProgramSettings
 ) -> ProgramShape:
-    """Return a piece with these fields, after comparing the lines they produce with the text."""
+    """Return the shape as a piece, after comparing the lines that its fields produce with the text."""
     wanted = make_code_lines(filled_shape, settings)
     if wanted and there[: len(wanted)] == wanted:
         return ProgramShape(at, len(wanted), filled_shape, settings)
@@ -306,9 +307,9 @@ def _contours(
 
 
 def _sinumerik_contours(there: list[str], settings: ProgramSettings) -> Iterator[tuple[ContourPoint, ...]]:
-    """Yield the possible contours, each from the first cut to the retract move.
+    """Yield the possible contours of a SINUMERIK shape, from the first cut to the retract move.
 
-    The retract move is the last line or the line after it.
+    The retract move may be the last line of the contour or the line after the contour, so both are tried.
     """
     labels = [n for n, line in enumerate(there) if _LABEL.fullmatch(line)]
     begin = next((n for n, line in enumerate(there) if _FIRST_CUT.fullmatch(line)), len(there))
@@ -320,9 +321,10 @@ def _sinumerik_contours(there: list[str], settings: ProgramSettings) -> Iterator
 
 
 def _bare_contours(there: list[str], settings: ProgramSettings) -> Iterator[tuple[ContourPoint, ...]]:
-    """Yield the possible contours without roughing, each from the approach to the retract move.
+    """Yield the possible contours of a shape without roughing, from the approach to the retract move.
 
-    The retract move is the last line or the line before it.
+    The retract move may be the next rapid after the contour or the line before this rapid, so both are
+    tried.
     """
     began = [
         n
@@ -347,7 +349,7 @@ def _bare_contours(there: list[str], settings: ProgramSettings) -> Iterator[tupl
 def _adopt_fields(
     filled_shape: ShapeInstance, there: list[str], settings: ProgramSettings, left: int
 ) -> ShapeInstance | None:
-    """Return the shape with field values that produce the lines in the text, or None if impossible."""
+    """Return the shape with field values that produce the lines in the text, or None if none do."""
     wanted = make_code_lines(filled_shape, settings)
     if wanted == there:
         return filled_shape
@@ -368,7 +370,7 @@ def _adopt_fields(
 
 
 def _agreeing(wanted: list[str], there: list[str]) -> int:
-    """Return the number of words before the first difference between both lists."""
+    """Return the number of equal words before the first difference between the two lists of lines."""
     count = 0
     for a, b in zip(wanted, there, strict=False):
         for this, that in zip(_WORD.findall(a), _WORD.findall(b), strict=False):
@@ -470,9 +472,9 @@ def _scaled(row: ContourPoint, scale: float) -> ContourPoint:
 def rewrite_program_shapes(
     lines: Sequence[str], shop: ShopData, pieces: Sequence[ProgramShape]
 ) -> tuple[list[str], int]:
-    """Rewrite the pieces after the program head was changed.
+    """Rewrite the shapes of a program after its head was changed, for example to another unit.
 
-    Return the new text and the number of pieces that were not rewritten because they were edited by hand.
+    Return the new text, and the number of shapes that were not rewritten because they were edited by hand.
     """
     text, stay = list(lines), 0
     shift = 0

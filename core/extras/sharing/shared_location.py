@@ -146,7 +146,7 @@ class SharingErrorCause(Enum):
 
 
 class SharingError(CodedError):
-    """An error raised if a sharing operation fails. The shared contents are unchanged."""
+    """An error raised if a sharing operation fails. Versions already shared remain unchanged."""
 
     cause: SharingErrorCause
 

@@ -56,7 +56,11 @@ def read_tools(table: TableReader, text: str) -> None:
 
 
 def _columns(table: TableReader, line: int, headings: Sequence[str]) -> tuple[TableColumn, ...]:
-    """Return the columns with a known field, and add a mistake for each unknown heading."""
+    """Return the columns with a known field, and add a note that lists the other headings.
+
+    A mistake is reported if two columns have the same field, if no column has the tool number, or if it is
+    not specified whether X is a radius or a diameter.
+    """
     place = Message("line {line}", line=line)
     assigned = _assigned(table, place, headings)
     found = [
@@ -108,7 +112,7 @@ def _assigned(table: TableReader, place: str, headings: Sequence[str]) -> dict[i
 
 
 def _check_x(table: TableReader, place: str, columns: Iterable[TableColumn]) -> None:
-    """Add a mistake if the file and the options do not specify whether X is a radius or a diameter."""
+    """Report a mistake if it is not specified whether X is a radius or a diameter."""
     for each in columns:
         if each.field_name == "x" and not (each.is_radius or table.options.x_meaning):
             text = Message(
@@ -156,7 +160,7 @@ def _convert_diameters(table: TableReader, values: dict[str, FieldValue]) -> Non
 def _value(table: TableReader, place: str, column: TableColumn, cell: str) -> FieldValue | None:
     """Return the value of a cell, with lengths in mm.
 
-    If the value is invalid, a mistake is added and the result is None.
+    If the value is invalid, a mistake of the file is reported and the result is None.
     """
     where = Message("{place}, column {column}", place=place, column=column.heading)
     field = _field(column.field_name)
@@ -221,12 +225,15 @@ _RADIUS_OF = {X_DIAMETER: "x", NOSE_DIAMETER: "nose_radius"}
 
 
 def list_written_fields(columns: Iterable[str]) -> frozenset[str]:
-    """Return the stored fields that columns of these fields contain."""
+    """Return the fields in which TurnDesk stores the values of these CSV columns.
+
+    A diameter is stored as a radius.
+    """
     return frozenset(_RADIUS_OF.get(each, each) for each in columns)
 
 
 def format_columns(tools: Iterable[ToolEntry], unit: str, columns: Mapping[str, str]) -> str:
-    """Return the tools as a CSV table with these headings by field, in this order."""
+    """Return the tools as a CSV table; ``columns`` maps each field to its heading, in column order."""
     out = io.StringIO()
     table = csv.writer(out, lineterminator="\n")
     table.writerow(columns.values())

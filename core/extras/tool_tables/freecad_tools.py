@@ -74,10 +74,10 @@ def _read_library(table: TableReader, tools: list[object]) -> None:
 
 
 def _load_bit(table: TableReader, entry: JsonFields) -> JsonFields | None:
-    """Return the tool bit that an entry of a library names.
+    """Return the tool bit to which an entry of a library refers.
 
-    If the file is not in the folder of the library or in the folder Bit next to it, a mistake is added and
-    the result is None.
+    If the file is neither in the folder of the library nor in the folder Bit next to it, a mistake of the
+    library is reported and the result is None.
     """
     name = entry.get_text("path").replace("\\", "/")
     path = PurePosixPath(name)
@@ -106,7 +106,7 @@ def _load_bit(table: TableReader, entry: JsonFields) -> JsonFields | None:
 
 
 def _read_only_tool(table: TableReader, bit: JsonFields) -> None:
-    """Add the tool of a ``.fctb`` file, whose number is in the options."""
+    """Add the tool of a ``.fctb`` file, whose tool number is specified by the option --number."""
     if not table.options.default_tool_number:
         table.add_mistake("file", "no-number", "a tool bit has no tool number; add --number")
         return
@@ -165,7 +165,7 @@ def _read_parameters(parameters: JsonFields, kind: str) -> dict[str, FieldValue]
 
 
 def _read_quantity(parameters: JsonFields, key: str, units: Mapping[str, float]) -> float:
-    """Return a quantity in mm, degrees or as a number; 0 if it is missing or invalid."""
+    """Return a quantity in mm or degrees, or a plain number; 0 if the value is missing or invalid."""
     value = parameters.values.get(key)
     if not isinstance(value, str):
         return parameters.get_number(key)

@@ -1,4 +1,4 @@
-"""Writer of tool libraries for Fusion (JSON). ``fusion_library`` explains the symbols."""
+"""Writer of tool libraries for Fusion (JSON). ``fusion_library`` explains the geometry symbols."""
 
 from __future__ import annotations
 
@@ -38,7 +38,10 @@ def can_export(tool: ToolEntry) -> bool:
 
 
 def format_library(tools: Iterable[ToolEntry], unit: str) -> str:
-    """Return the tools that Fusion has a type for as a library, with lengths in ``unit``."""
+    """Return the tools as a Fusion library, except tools of a kind for which Fusion has no type.
+
+    Lengths are in ``unit``.
+    """
     data = [_format_tool(each, unit) for each in tools if can_export(each)]
     return json.dumps({"data": data, "version": 1}, indent=1) + "\n"
 

@@ -57,7 +57,7 @@ _SAME_SIZE_MM = 0.05  # more than the difference between 1/64 in and 0.4 mm
 
 
 def unpack(name: str, data: bytes, max_bytes: int) -> bytes:
-    """Return the JSON text of a library, from the archive if the data is one.
+    """Return the JSON text of a library, which may be packed in a ``.tools`` archive.
 
     Raises ToolTableError if the archive is damaged, does not contain a library or is too large.
     """
@@ -133,7 +133,7 @@ def _read_tool(table: TableReader, tool: JsonFields) -> None:
 
 
 def _read_number(table: TableReader, tool: JsonFields) -> int | None:
-    """Return the tool number, or None if the tool is not to be read or its number is invalid."""
+    """Return the tool number, or None if an option excludes the tool or its number is invalid."""
     settings = tool.get_fields("post-process")
     if settings.values.get("number") is None:
         tool.add_mistake("post-process", "no-number", "the tool has no number; add it in Fusion")
@@ -144,7 +144,7 @@ def _read_number(table: TableReader, tool: JsonFields) -> int | None:
 
 
 def _read_unit(table: TableReader, tool: JsonFields) -> float:
-    """Return the unit of a tool in mm; a unit in the file precedes the option."""
+    """Return the size of the tool's length unit in mm; a unit in the file overrides the option."""
     unit = tool.get_text("unit").strip().lower()
     if not unit:
         return table.get_unit_mm(tool.position_text)
@@ -212,7 +212,7 @@ def _read_insert_and_holder(
 
 
 def _read_insert_code(geometry: JsonFields, shape: str, clearance: float, factor: float) -> str:
-    """Return the ISO code that the sizes of the insert specify, or an empty string."""
+    """Return the ISO code of the insert with these dimensions, or an empty string if it has no code."""
     is_circle = geometry.get_text("SIZE_SPECIFICATION_MODE").strip().upper() in {"IC", ""}
     sizes = InsertSizes(
         shape,
@@ -228,7 +228,11 @@ def _read_insert_code(geometry: JsonFields, shape: str, clearance: float, factor
 
 
 def _choose_insert(shape: str, code: str, recognized: str, values: dict[str, FieldValue]) -> list[str]:
-    """Set the insert to the code of the text or, if the sizes contradict it, of the sizes; return notes."""
+    """Set the insert in ``values`` to the recognized code or to the code of the sizes; return notes.
+
+    ``recognized`` is the code in the descriptions of the tool, and ``code`` is the code of the sizes. The
+    code of the sizes is used if no code was recognized or if the two codes contradict each other.
+    """
     values["insert"] = recognized or code
     if not code and not recognized and shape:
         return [Message("insert {shape}: its sizes have no ISO code; enter the insert", shape=shape[:20])]

@@ -29,8 +29,9 @@ _SIXTEENTH_MM = MM_PER_INCH / 16.0
 class InsertSizes(NamedTuple):
     """Properties of an insert, in mm and degrees.
 
-    ``shape``, ``tolerance_class`` and ``insert_type`` are the letters 1, 3 and 4 of ISO 1832. ``size`` is
-    the inscribed circle or, with ``is_edge_length``, the length of the cutting edge.
+    ``shape``, ``tolerance_class`` and ``insert_type`` are the first, third and fourth letter of the ISO
+    1832 code. ``size`` is the inscribed circle or, if ``is_edge_length`` is True, the length of the cutting
+    edge.
     """
 
     shape: str
@@ -93,14 +94,15 @@ def _find_size_digits(sizes: InsertSizes) -> str:
 
 
 def _find_nearest(table: Mapping[str, float], value: float, tolerance: float = _TOLERANCE_MM) -> str:
-    """Return the key of the value in a table that is nearest to ``value``, or an empty string."""
+    """Return the key with the nearest value, or an empty string if no value is within tolerance."""
     key = min(table, key=lambda each: abs(table[each] - value))
     return key if abs(table[key] - value) <= tolerance else ""
 
 
 def format_holder_code(holder: HolderSizes, insert_code: str) -> str:
-    """Return the code of a holder, or else the size of its shank, or an empty string if it has no size.
+    """Return the ISO code of a holder.
 
+    If the holder has no code, return the size of its shank, or an empty string if the size is unknown.
     ``insert_code`` is the ISO code of the insert, whose size is part of most codes; it may be empty.
     """
     return next((code for code in _list_codes(holder, insert_code) if parse_holder(code)), "")
@@ -130,7 +132,7 @@ def _is_whole(value: float) -> bool:
 
 
 def _count_eighths(shape: str, edge: str) -> int:
-    """Return the inscribed circle in eighths of an inch for the digits of an edge length, or 0."""
+    """Return the inscribed circle in eighths of an inch for an edge length code, or 0 if unknown."""
     if shape not in CORNER_ANGLES:
         return 0
     eighths = list_metric_circle_sizes(shape).get(edge, 0.0) / MM_PER_INCH * 8.0

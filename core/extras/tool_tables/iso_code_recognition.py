@@ -45,7 +45,7 @@ def recognize_shape_fields(text: str) -> dict[str, str]:
 
 
 def recognize_tool_kind(text: str) -> str:
-    """Return the kind of tool that the words of a remark specify, or an empty string if none."""
+    """Return the kind of tool that a remark mentions, or an empty string if it mentions none."""
     return next((kind for words, kind in _KINDS if words.search(text)), "")
 
 

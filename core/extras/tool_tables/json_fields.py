@@ -15,9 +15,9 @@ _MOST_KEYS_SHOWN = 12
 
 @dataclass(slots=True)
 class JsonFields:
-    """An object of a JSON file, with its position for mistakes.
+    """An object of a JSON file. Its position in the file is used in messages about mistakes.
 
-    A key that was read is in ``used_keys``.
+    ``used_keys`` contains the keys that were read.
     """
 
     table: TableReader
@@ -46,7 +46,7 @@ class JsonFields:
     def get_number(self, key: str) -> float:
         """Return the number with this key, or 0 if the key is missing.
 
-        If the value is not a finite number, a mistake is added and the result is 0.
+        If the value is not a finite number, a mistake of the file is reported and the result is 0.
         """
         value = self._get(key)
         if value is None or value == "":
@@ -63,7 +63,7 @@ class JsonFields:
         return 0.0
 
     def add_mistake(self, key: str, code: str, text: str) -> None:
-        """Add a mistake in the value of a key."""
+        """Report a mistake in the value of a key."""
         self.table.add_mistake(Message("{place}, {key}", place=self.position_text, key=key), code, text)
 
     def list_unused_keys(self) -> Iterator[str]:
@@ -88,7 +88,7 @@ def format_unused_keys(*fields: JsonFields) -> list[str]:
 def parse_object(table: TableReader, position: str, text: str) -> JsonFields | None:
     """Return the object that a JSON text contains.
 
-    If the text is not a JSON object, a mistake is added and the result is None.
+    If the text is not a JSON object, a mistake of the file is reported and the result is None.
     """
     try:
         value: object = json.loads(text)

@@ -66,7 +66,7 @@ def _read_line(table: TableReader, count: int, line: str, remark: str) -> None:
 def _words(table: TableReader, count: int, line: str) -> dict[str, float]:
     """Return the numbers of a line by letter.
 
-    A mistake with its column is added for each invalid word.
+    Each invalid word is reported as a mistake with its line and column.
     """
     found: dict[str, float] = {}
     for match in _WORD.finditer(line):

@@ -1,4 +1,4 @@
-"""Tools read from a table of another program, and a reader that collects the tools and the mistakes.
+"""Reader that collects the tools and the mistakes in a tool table of another program.
 
 Lengths are in mm with X as a radius, and angles are in degrees. Values use the field names of the offset
 tables. All mistakes of a file are reported together in one error.
@@ -89,9 +89,9 @@ class ToolTable(NamedTuple):
 
 @dataclass(slots=True)
 class TableReader:
-    """Collector of the tools in a file, and of the mistakes that it reports under ``file_name``.
+    """Collector of the tools and mistakes in a file; mistakes are reported under ``file_name``.
 
-    ``folder`` is the folder of the file, in which a library finds the files that it names.
+    ``folder`` is the folder of the file. If the file is a library, the files to which it refers are there.
     """
 
     file_name: str
@@ -102,13 +102,13 @@ class TableReader:
     mistakes: list[CodedError] = field(default_factory=list)
 
     def add_mistake(self, place: str, code: str, text: str) -> None:
-        """Add a mistake at this position in the file."""
+        """Report a mistake at this position in the file."""
         self.mistakes.append(CodedError(Message("{place}: {text}", place=place, text=text), code))
 
     def parse_number(self, place: str, text: str) -> float | None:
         """Return the number in a text.
 
-        If the text is not a finite number, a mistake is added and the result is None.
+        If the text is not a finite number, a mistake of the file is reported and the result is None.
         """
         words = text.strip()
         if len(words) <= _LONGEST_NUMBER and _NUMBER.fullmatch(words) and isfinite(value := float(words)):
@@ -151,7 +151,7 @@ class TableReader:
     def get_unit_mm(self, place: str) -> float:
         """Return the size of the file's length unit in mm.
 
-        If the unit is not specified, this mistake is added to ``mistakes``, and the result is 1.
+        If the unit is not specified, a mistake of the file is reported and the result is 1.
         """
         if self.options.unit:
             return MM_PER_UNIT[self.options.unit]
@@ -252,7 +252,7 @@ def _unmeasured(values: Mapping[str, FieldValue], found: dict[str, FieldValue]) 
 
 
 def _diameter(found: dict[str, FieldValue]) -> list[str]:
-    """Replace the pseudo field D with the field that it represents for this kind of tool.
+    """Replace the pseudo field D with the diameter or nose radius that D means for this kind of tool.
 
     Return notes about the replacement.
     """

@@ -1,9 +1,9 @@
 """Suppression of errors that are only consequences of an earlier error.
 
 The control stops at its first error. The interpreter continues, so that one pass reports all independent
-errors. After a rejected TOOL CALL, however, the tool axis and the speed are unknown, and after a rejected
-block, the start of an arc is unknown. Errors that may be consequences of such a block are reported only after
-the block is corrected.
+errors. After a rejected TOOL CALL, however, the tool axis and the speed are unknown. After any rejected
+block, the start of a following arc is unknown. An error that may be a consequence of a rejected block is
+reported only when that block has been corrected.
 """
 
 from __future__ import annotations
@@ -168,7 +168,8 @@ def _runs_a_cycle(node: nodes.Node | None) -> bool:
 def remove_repeated_errors(lines: list[KlartextLine]) -> None:
     """Remove syntax errors that repeat an earlier error.
 
-    An error is a repetition if it names the same missing function or is in a later line of the same cycle.
+    An error repeats an earlier one if it names the same missing function, or if it is in a later line of
+    the same cycle.
     """
     said: set[str] = set()
     cycle = ""

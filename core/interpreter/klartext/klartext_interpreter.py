@@ -198,7 +198,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
     def _coordinates(self, node: nodes.Node) -> Iterator[Block]:
         """Yield the blocks of tool calls, cycles and coordinate transformations.
 
-        The buffer must not contain any path elements when these blocks are generated.
+        All buffered path elements must have been executed before.
         """
         state = self._state
         match node:

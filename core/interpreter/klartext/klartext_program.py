@@ -156,7 +156,10 @@ def _lines(source: ProgramSource) -> list[KlartextLine]:
 
 
 def _join_lines(texts: Sequence[str], number: int) -> Iterator[KlartextLine]:
-    """Yield the lines of one block, with an error on the line where it occurs."""
+    """Yield one entry per line of a block; the first entry contains the whole block and any error.
+
+    The error has the number of the line on which it occurs. The other entries are empty.
+    """
     pieces = [text[: find_comment_start(text)].rstrip().removesuffix(CONTINUATION_SIGN) for text in texts]
     if not pieces[0].strip().strip("/").strip().strip("0123456789"):
         pieces[1:] = [""] * (len(pieces) - 1)  # The control splits long comments into continued lines.
@@ -298,7 +301,7 @@ class _Level(FlowFrame[Program]):
 
 
 class Flow(ControlFlow[_Level]):
-    """The current position in a program, including its label calls, repeats and called programs."""
+    """Execution position in a program, including its label calls, repeats and called programs."""
 
     def __init__(self, program: Program) -> None:
         super().__init__(_Level(program, 0, program.end_index))
@@ -307,7 +310,7 @@ class Flow(ControlFlow[_Level]):
 
     @property
     def program(self) -> Program:
-        """Return the program that contains the line read last."""
+        """Return the program to which the most recently read line belongs."""
         return self.active_frame.routine
 
     @property
@@ -327,10 +330,7 @@ class Flow(ControlFlow[_Level]):
         return self.active_frame.routine.lines[self.next_index - 1]
 
     def make_subprogram_flow(self, label: int | str) -> Flow | None:
-        """Return a flow through one subprogram of the active program.
-
-        Returns None if the subprogram does not exist.
-        """
+        """Return a flow through one subprogram of the active program, or None if it does not exist."""
         program = self.program
         at = program.labels.get(label)
         if at is None or program.find_subprogram_end(at) is None:
@@ -392,7 +392,7 @@ class Flow(ControlFlow[_Level]):
             self.return_to_caller()
 
     def jump_to_label(self, node: ConditionalJump) -> None:
-        """Continue with the line after a label."""
+        """Continue with the line after the label to which a jump refers."""
         target = self.active_frame.routine.labels.get(node.name)
         if target is not None:  # otherwise, the error was already reported when the program was read
             self.next_index = target + 1

@@ -152,7 +152,7 @@ class State:
         return self.transformation.convert_to_program(self.tip_in_plane)
 
     def convert_to_machine_position(self, program_point: Vector) -> Vector:
-        """Return the machine positions X, Y and Z that place the tip at a program point, in mm."""
+        """Return the machine positions of X, Y and Z in mm at which the tip is at a program point."""
         return self.plane_transform.convert_to_machine_position(
             self.transformation.convert_to_plane(program_point)
         )
@@ -276,14 +276,15 @@ class State:
     def check_condition(
         self, condition: object, column: int, code: str, text: str, hint: str, /, **values: object
     ) -> None:
-        """Raise the error of ``make_error`` unless ``condition`` is true."""
+        """Raise the ProgramError that ``make_error`` returns, unless ``condition`` is true."""
         if not condition:
             raise self.make_error(column, code, text, hint, **values)
 
     def record_position_read(self) -> None:
         """Record that the program reads an axis position.
 
-        After a program stop, this position is only an assumption while the program is proved.
+        After a program stop, the operator may have jogged the axes. The position is then only an
+        assumption, and errors that depend on it are marked as uncertain.
         """
         self.is_position_assumed = self.is_position_assumed or self.is_after_program_stop
 
@@ -307,7 +308,7 @@ class State:
             )
 
     def log_ignored_function(self, function: str, column: int) -> None:
-        """Log a single note that a function has no effect on this control."""
+        """Log a note, only once, that a function has no effect on this control."""
         self.log_finding_once(
             column, Severity.NOTE, "unheeded", Message("{what} has no effect on this control.", what=function)
         )

@@ -63,8 +63,8 @@ _SHORT_END = r"M2\b"
 def remove_consequent_findings(findings: Sequence[Diagnostic], lines: Sequence[str]) -> list[Diagnostic]:
     """Return the findings without those that are consequences of another finding.
 
-    An arc whose center words are on the next line is one mistake. After a rejected M2, no line counts as a
-    line after the program end.
+    An arc whose center words are on the next line counts as one error. After a rejected M2, no line is
+    reported as a line after the program end.
     """
     ends = any(each.code == "m-digits" and re.match(_SHORT_END, each.message) for each in findings)
     rest = [each for each in findings if not (ends and each.code == "after-end")]
@@ -72,10 +72,7 @@ def remove_consequent_findings(findings: Sequence[Diagnostic], lines: Sequence[s
 
 
 def _divided_arc(finding: Diagnostic, lines: Sequence[str]) -> Diagnostic | None:
-    """Return the finding for an arc that is divided into two lines, or None for any other line.
-
-    Such an arc has its center words on the next line.
-    """
+    """Return the finding for an arc with its center words on the next line, or None otherwise."""
     if finding.code != "word-unused" or finding.line < 2:
         return None
     arc, center = re.match(_BARE_ARC, lines[finding.line - 2]), re.match(_CENTER, lines[finding.line - 1])

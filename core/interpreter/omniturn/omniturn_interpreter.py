@@ -267,7 +267,7 @@ class Interpreter(InterpreterPass):
         return [each for each in found if each is not None]
 
     def _nose(self, statement: Statement) -> Iterator[Block]:
-        """Execute G41, G42 or G40, and yield the buffered blocks that can no longer change."""
+        """Execute G41, G42 or G40, and yield the buffered blocks that later lines can no longer change."""
         found = execute_compensation_code(
             self._state,
             statement,
@@ -278,10 +278,10 @@ class Interpreter(InterpreterPass):
             yield from self._released(self._modifier.switch_compensation(found))
 
     def _apply_stages(self, block: Block) -> Iterator[Block]:
-        """Yield the block after corners and nose compensation are applied.
+        """Yield the block after corners and nose compensation have been applied.
 
-        While a corner or nose compensation is active, the block is buffered, and the blocks that no later
-        line can change are yielded.
+        While a corner or nose compensation is active, the block is buffered. Instead, the buffered blocks
+        that no later line can change are yielded.
         """
         if self._state.contour.is_buffering:
             yield from self._released(self._modifier.accept_block(block))
@@ -349,7 +349,7 @@ class Interpreter(InterpreterPass):
 class StoppablePass(Interpreter):
     """An interpreter pass that can stop before any line and then continue.
 
-    It can stop in a certain loop pass or subroutine call.
+    The pass can also stop in a particular execution of a loop or subroutine.
     """
 
     def run_to_line(self, line: int) -> Iterator[Block]:
@@ -376,7 +376,7 @@ class StoppablePass(Interpreter):
 
     @property
     def is_at_line(self) -> bool:
-        """Return whether the next line is the line at which the pass was requested to stop."""
+        """Return whether the pass has stopped before the line at which it was requested to stop."""
         return self._flow.is_at_stop_line and not self._stopped
 
     @property

@@ -199,9 +199,9 @@ class _Reader:
         return statement
 
     def _suspect_plane(self, number: int, text: str) -> None:
-        """Report a plane code such as (PLXC) without the required ~.
+        """Report a plane code such as (PLXC) that lacks the required ~.
 
-        Without ~, the whole section would be treated as comments.
+        Without ~, all lines up to (END) would be treated as comments.
         """
         following = islice(self.source.lines, number, number + _NEAR)
         lacks = is_missing_tilde(text, following) if "(" in text else None
@@ -219,7 +219,7 @@ class _Reader:
             )
 
     def _in_plane(self, number: int, text: str, entry: PlaneSwitchingLine | None) -> Statement:
-        """Parse one line of a plane switching section, including its first line and (END)."""
+        """Parse one line within coordinate transformation (plane switching), from its start to (END)."""
         statement = Statement(number, text.strip(), flow_code=PLANE_FLOW)
         try:
             statement.plane_switching_line = (
@@ -244,10 +244,10 @@ class _Reader:
 
 
 def read_program(source: ProgramSource, is_strict: bool = False) -> Program:
-    """Parse all lines of a program, find loops, subroutines and the end, and collect the errors.
+    """Parse all lines of a program, find its loops, subroutines and end, and collect its errors.
 
-    The function does not raise exceptions. If ``is_strict`` is True, style deviations that the manual of
-    the original control forbids are errors.
+    The function does not raise exceptions. If ``is_strict`` is True, deviations from the style that the
+    manual of the original control requires are errors.
     """
     reader = _Reader(source, strict=is_strict)
     ready = reader.read_lines()

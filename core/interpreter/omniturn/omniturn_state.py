@@ -53,7 +53,7 @@ StageItem = Block | CompensationSwitch
 
 @dataclass(slots=True)
 class ContourState:
-    """State of the corner that waits for its second move, and of the active nose compensation."""
+    """State of a corner whose second move is still missing, and of the active nose compensation."""
 
     is_buffering: bool = False  # blocks are buffered, so each block must pass through the contour modifier
     pending_corner: Corner | None = None  # corner after the present move
@@ -168,7 +168,7 @@ class State:
         return value * self.mm_per_z_unit / (1 if self.modal.per_rev else 60)
 
     def stay(self, modal: ModalState) -> None:
-        """Set a modal state with another program frame, without changing the machine position."""
+        """Set a modal state with other offsets, without changing the machine position."""
         x, z = self.x + self.offset_x, self.z + self.offset_z
         self.set_modal(modal)
         self.x, self.z = x - self.offset_x, z - self.offset_z

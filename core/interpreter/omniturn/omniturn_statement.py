@@ -107,7 +107,7 @@ class Statement:
         /,
         **values: object,
     ) -> None:
-        """Raise the error of ``make_error`` unless ``condition`` is true."""
+        """Raise the ProgramError that ``make_error`` returns, unless ``condition`` is true."""
         if not condition:
             raise self.make_error(location, code, text, hint, **values)
 
@@ -138,8 +138,8 @@ _MOTIONS = frozenset({ActionKind.MOTION, ActionKind.CYCLE, ActionKind.CONTOUR})
 def make_statement(line: LexedLine) -> Statement:
     """Return the statement of a line.
 
-    Raises ProgramError for an unknown G code, if words of the line exclude each other, if a word is
-    missing, or if no code on the line uses a word.
+    Raises ProgramError if the line has an unknown G code, words that exclude each other, or a word that
+    none of its codes uses, or if a required word is missing.
     """
     if line.errors:
         return make_unreadable_statement(line)
@@ -332,7 +332,10 @@ def _check_flow(statement: Statement, line: LexedLine) -> None:
 
 
 def _name_parts(statement: Statement, line: LexedLine) -> None:
-    """Assign a text to each block of the line: its own words, or the whole line for a single block."""
+    """Assign to each block of the line the text of the block's words.
+
+    If the line has only one block, nothing is assigned, and the block has the text of the whole line.
+    """
     groups: dict[str, str] = {}
     for word in line.words:
         name = _group(statement, word)

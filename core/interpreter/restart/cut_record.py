@@ -40,7 +40,7 @@ _PROGRESS_INTERVAL = 2000  # number of blocks between two calls of ``report_prog
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CutRecord:
-    """All moves of a program as rows (m,), and the known limits of the material.
+    """All moves of a program as arrays (m,), one row per segment, and the limits of the material.
 
     - ``block_number``: number of the elementary block.
     - ``bar_sections``: how often the collet was opened; earlier cuts are on another section of the bar.
@@ -92,11 +92,11 @@ class CutRecord:
         )
 
     def compute_front_z(self, tool: int) -> float:
-        """Return the tip Z from which this tool is in front of all material, in mm."""
+        """Return the Z from which on the tip of this tool is in front of all material, in mm."""
         return self.face_z_by_tool.get(tool, self.face_z)
 
     def is_clear_after_rapid(self, x: float, z: float) -> bool:
-        """Return whether the end of a rapid is clear of the part, radially or axially."""
+        """Return whether a tool is clear of the part, radially or axially, where a rapid ends."""
         return abs(x) >= self.max_feed_radius - SAME_POINT_MM or z >= self.max_cut_start_z - SAME_POINT_MM
 
     def is_outside_material(self, x: float, z: float, tool: int) -> bool:
@@ -232,10 +232,10 @@ def _record(rows: _Rows, blocks: int) -> CutRecord:
 def _faces(
     feeds: BoolArray, x0: FloatArray, x: FloatArray, z: FloatArray, tool: IntArray, radius: float
 ) -> dict[int, float]:
-    """Return, by tool, the smallest Z of its rapids along X that pass in front of all cuts.
+    """Return, by tool, the smallest Z at which a rapid along X passes in front of all cuts.
 
-    Only rapids that end inside the radius of the cuts count. The comparison uses the ends of the cuts,
-    because the start of a cut may be in air.
+    Only rapids that end inside the radius of the cuts are considered. The comparison uses the ends of the
+    cuts, because the start of a cut may be in air.
     """
     cut = _greatest(z[feeds], inf)
     within = max(radius - SAME_POINT_MM, _CENTERLINE_TOLERANCE_MM)
@@ -256,7 +256,7 @@ def _farthest(feeds: BoolArray, z0: FloatArray, z: FloatArray, tool: IntArray) -
 def _retract_radius(
     feeds: BoolArray, x0: FloatArray, z0: FloatArray, x: FloatArray, z: FloatArray, radius: float
 ) -> float:
-    """Return the minimum radius to which rapids retract between cuts, outside all cuts.
+    """Return the minimum radius outside all cuts to which the tools retract at rapid between cuts.
 
     A boring bar retracts toward the center, so its rapids end at a smaller radius than its cuts.
     """
@@ -315,6 +315,6 @@ def _points(block: Block) -> list[tuple[float, float]]:
 
 
 def _step(radius: float) -> float:
-    """Return the angle in radians of the longest chord within the tolerance of an arc."""
+    """Return the angle in radians of the longest chord that is within tolerance of an arc."""
     share = min(1.0, _CHORD / radius) if radius > 0.0 else 1.0
     return min(pi / 2, 2.0 * sqrt(2.0 * share))

@@ -1,4 +1,4 @@
-"""Visits of a program line: its executions in the passes of loops and in subroutine calls."""
+"""Executions of one program line (visits) in the repetitions of loops and in subroutine calls."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ def _foot(x0: float, z0: float, x1: float, z1: float, x: float, z: float) -> tup
 
 
 def remove_detours(points: list[RetractLeg]) -> list[RetractLeg]:
-    """Return the path without detours, which are sections that leave the path and return to it."""
+    """Return the path without detours. A detour leaves the path and later returns to it."""
     kept, at = [points[0]], 0
     while at < len(points) - 1:
         start, end = points[at], points[at + 1]

@@ -1,9 +1,9 @@
 """Block search with calculation for Klartext and SINUMERIK programs.
 
 All blocks before the restart line are interpreted as in a run. The tool, spindle, datum, plane, parameters,
-loops and calls are therefore the same as in the run. A second pass starts at other axis positions. If an
-axis then ends at a different position, the program has not positioned it. The line is then rejected, unless
-the axis has never moved.
+loops and calls are therefore the same as in the run. A second pass starts at other axis positions. If the
+two passes end with an axis at different positions, the program has not positioned this axis. The line is
+then rejected, unless the axis has never moved.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _PROGRESS_INTERVAL = 2000  # number of blocks between two calls of ``report_prog
 
 @dataclass(slots=True)
 class _RunVisits:
-    """Executions of all lines in a complete run, with the number of blocks before each execution."""
+    """All executions of all lines in a complete run, each with the number of blocks before it."""
 
     visits: dict[int, list[int]] = field(default_factory=dict)
     blocking_reasons: dict[int, str] = field(
@@ -70,10 +70,10 @@ class RestartLineSearch:
     def find_restart_point(
         self, line: int, visit: int = 0, interruption: Interruption | None = None
     ) -> RestartPoint | RestartRejection:
-        """Return the restart point of a line at its ``visit``-th execution, or the reason for refusal.
+        """Return the restart point of a line at its ``visit``-th execution, or the rejection.
 
-        A ``visit`` of 0 selects the interrupted pass, or the first pass if the program was not interrupted.
-        ``interruption`` describes where the program was interrupted.
+        A ``visit`` of 0 selects the interrupted execution, or the first execution if the program was not
+        interrupted. ``interruption`` describes where the program was interrupted.
         """
         found = self._search(line, visit, interruption)
         if isinstance(found, RestartPoint):
@@ -275,7 +275,7 @@ class _PassState:
     def process_block(self, block: Block, *, uncut: bool) -> None:
         """Update the state with the next block.
 
-        ``uncut`` means that the block's cut was not made or not completed before the interruption.
+        ``uncut`` means that the interruption prevented the block's cut or left it incomplete.
         """
         if block.swivel is not None:
             self.tool_length_mm = block.swivel.system.tool_length_mm
@@ -293,7 +293,10 @@ class _PassState:
                 self.max_skipped_z = max(self.max_skipped_z, tip)
 
     def is_above_skipped_cuts(self, point: Checkpoint) -> bool:
-        """Return whether a position is not below a skipped cut's start and was reached at rapid."""
+        """Return whether a position is at or above the start of all skipped cuts.
+
+        The result is False if the position was not reached at rapid, or if a skipped cut moves rotary axes.
+        """
         return (
             not (self.is_cutting or self.moves_rotary_axes)
             and point.at[2] - self.tool_length_mm >= self.max_skipped_z - _SAME
@@ -301,7 +304,7 @@ class _PassState:
 
 
 def _is_uncut(block: Block, interruption: Interruption) -> bool:
-    """Return whether the cut of a block was not started, or was interrupted before its end.
+    """Return whether the interruption prevented the cut of a block or left it incomplete.
 
     A closed block, such as a full circle, counts as uncut, because its end point does not show how far the
     cut had progressed.

@@ -1,10 +1,10 @@
 """Path from the current machine position to a restart line, on a lathe or a mill.
 
-On a lathe, the tool leaves the part as the interrupted block requires. Z moves clear of the part, and X
-moves to the X of the start point. The spindle and the coolant start, and the tool enters as the line
-requires. Rapids occur only outside the material. On a mill, the tool retracts along its axis, and Z moves
-to its upper limit. At this height, the rotary axes move, the tool is changed, and the tool moves above the
-start position. The spindle and coolant start. The tool then enters along its axis, at a feed near the end.
+On a lathe, the tool leaves the part along its retract. Z moves clear of the part, and X moves to the X of
+the start point. The spindle and the coolant start, and the tool enters along the reversed retract of the
+line. Rapids remain outside the material. On a mill, the tool retracts along its axis, and Z moves to its
+upper limit. There, the rotary axes move, the tool is changed, and X and Y move. The spindle and the coolant
+start, and the tool enters along its axis, at a feed near the end.
 """
 
 from __future__ import annotations
@@ -127,7 +127,7 @@ def _tip(cut: CutRecord, at: tuple[float, ...], tool: int) -> tuple[float, float
 
 
 def _unknown(cut_record: CutRecord, present: CurrentMachineState) -> Retract:
-    """Return the retract if the point of interruption is not known.
+    """Return the retract for a tool whose point of interruption is unknown.
 
     The tool counts as clear only if every tool of the program would be outside the material here.
     """
@@ -166,7 +166,7 @@ def _remaining_retract(cut_record: CutRecord, interruption: Interruption, x: flo
 
 
 def _block_turned_mill(retract: Retract, present: CurrentMachineState) -> Retract:
-    """Return the retract, without a path if C has rotated while a milling tool was in its cut."""
+    """Return the retract, but without its path if C has rotated while a milling tool is in its cut."""
     broken = present.interruption
     if (
         retract.tool_situation is not ToolSituation.MILLING
@@ -212,7 +212,7 @@ def make_lathe_pass_start(
 def plan_lathe_approach(
     restart_point: RestartPoint, present: CurrentMachineState, choices: OperatorChoices
 ) -> tuple[ApproachStep, ...]:
-    """Return all approach steps from the current position at rest to the first block of the line."""
+    """Return all approach steps from the current position, at rest, to the start of the line."""
     out = (
         plan_exit_moves(restart_point.cut_record, present, choices)
         if restart_point.cut_record is not None

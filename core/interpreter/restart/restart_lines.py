@@ -1,4 +1,4 @@
-"""Lines from which a program can be restarted, as far as the program text alone determines them."""
+"""Lines from which a program can be restarted, as far as its text alone determines this."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _NOSE_ON, _NOSE_OFF = frozenset({41, 42}), 40
 class LineRange(NamedTuple):
     """The lines ``first`` to ``last_line`` of a program, counted from 1.
 
-    If a program cannot be restarted from these lines, ``rejection_template`` is the template of the message.
-    Its placeholders are ``line``, the restart line, and ``begin``, the line on which the contour, corner or
-    other section begins.
+    If a program cannot be restarted from these lines, ``rejection_template`` is the template of the
+    message. Its placeholder ``line`` is the restart line. Its placeholder ``begin`` is the line on which
+    the contour, corner or other section begins.
     """
 
     first: int
@@ -99,7 +99,7 @@ class RestartSuitability:
 
 
 def _calls(program: Program) -> list[tuple[int, int, int]]:
-    """Return the first line, last line and first outside call line of each called subroutine."""
+    """Return the first and last line of each called subroutine, and its first call from outside."""
     calls = [
         (number, get_subroutine_number(step))
         for number, step in enumerate(program.executable_lines, start=1)
@@ -176,9 +176,9 @@ def _open(lines: ExecutableLines) -> Iterator[LineRange]:
 
 
 def _plane(step: Statement, number: int, begun: int) -> tuple[int, int]:
-    """Return the start line of the active coordinate transformation (plane switching).
+    """Return the line on which the active coordinate transformation starts, or 0 if none is active.
 
-    Also returns the start line of the transformation that ends here. Each line is 0 if there is none.
+    Also return the start line of the transformation that ends on this line, or 0 if none ends.
     """
     name = step.plane_switching_line.name if step.plane_switching_line is not None else ""
     if name == "END":

@@ -11,7 +11,7 @@ from core.interpreter.shared.checkpoint import Checkpoint
 
 
 class LoopPass(NamedTuple):
-    """One pass of a program loop, with LS on ``first_line`` and LF on ``last_line``."""
+    """One execution of a program loop, with LS on ``first_line`` and LF on ``last_line``."""
 
     first_line: int
     last_line: int
@@ -27,7 +27,7 @@ class ActiveCall(NamedTuple):
 
 
 class LineVisit(NamedTuple):
-    """One of the executions of a line in a complete run, with its loop passes and calls."""
+    """One execution of a line in a complete run, with the loops and calls that are active."""
 
     visit_number: int = 1
     visit_count: int = 1
@@ -82,7 +82,7 @@ class RestartPoint:
 class RestartRejection:
     """The reason why a restart at a line is not possible, with the nearest suitable lines.
 
-    A suitable line is 0 if none exists in that direction.
+    A line number is 0 if no suitable line exists in that direction.
     """
 
     line_number: int

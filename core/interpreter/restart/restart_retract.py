@@ -1,8 +1,8 @@
 """Retract of a tool from the part along moves that do not cross material.
 
 The approach of the tool is the same path in reverse. Space is known to be free outside the largest cut
-radius, in front of the face, and where this tool has been since the collet was last opened. Other moves are
-safe only if the program itself makes the same retract. The rules are in docs/decisions/0021-restart.md.
+radius, in front of the face, and where this tool has been since the collet was last opened. Any other move
+is considered safe only if the program itself makes it. The rules are in docs/decisions/0021-restart.md.
 """
 
 from __future__ import annotations
@@ -157,7 +157,7 @@ class _Search:
         return None
 
     def _crosswise_retract(self) -> Retract | None:
-        """Return a retract along X and then along the program's next rapid toward Z+.
+        """Return a retract along X, and then along Z+ as in the program's next rapid.
 
         Returns None if earlier cuts may not yet have cleared the path of this rapid.
         """
@@ -189,7 +189,7 @@ class _Search:
         return self._out_with(self._segment(crossing), steps, grew=grew, shrank=shrank)
 
     def _remaining_travel(self, level: float) -> float | None:
-        """Return the outward travel of the rest of this row in mm, or 0 in a screw thread.
+        """Return how far the rest of this row moves outward along X, in mm, or 0 in a screw thread.
 
         Returns None if the rest of the row is itself an obstacle.
         """
@@ -209,7 +209,7 @@ class _Search:
         return slice(first, first + (int(ends[0]) if len(ends) else len(other)))
 
     def _is_obstructed(self, rows: slice, level: float) -> bool:
-        """Return whether a cut in these rows reaches this Z or moves along X at this Z."""
+        """Return whether a cut in these rows reaches the Z ``level`` or moves along X at this Z."""
         cut = self.cut_record
         feeds = (cut.move_kinds[rows] & FEED) != 0
         upper = np.maximum(cut.end_z[rows], cut.start_z[rows])
@@ -253,7 +253,7 @@ class _Search:
         return self._made(legs)
 
     def _has_left_part(self, leg: RetractLeg) -> bool:
-        """Return whether a rapid that ends at this point has left the part."""
+        """Return whether the tool has left the part if a rapid ends at this point."""
         return (
             leg.z >= self.cut_record.max_cut_start_z - SAME_POINT_MM
             or self.cut_record.is_outside_material(leg.x, leg.z, self.position.tool_number)
@@ -292,9 +292,9 @@ class _Search:
         return False
 
     def _drawoff_radius(self, row: int, side: float) -> float:
-        """Return the start radius of the outward cut along X that directly precedes this rapid.
+        """Return the start radius of the outward cut along X directly before the rapid in ``row``.
 
-        The radius is inf if such a cut does not exist.
+        The radius is inf if no such cut precedes the rapid.
         """
         cut = self.cut_record
         before = row - 1
@@ -382,7 +382,7 @@ class _Search:
         return None if found is None or not found.legs else (leg, found.legs)
 
     def _is_approach_rapid(self, row: int) -> bool:
-        """Return whether the row is the rapid that moves the tool from outside to the part after its T."""
+        """Return whether the row is the rapid, after a tool change, that moves the tool to the part."""
         cut = self.cut_record
         if row < 0 or cut.move_kinds[row] & FEED or isnan(cut.end_x[row]) or isnan(cut.end_z[row]):
             return False
@@ -393,7 +393,7 @@ class _Search:
         return first and cut.is_clear_after_rapid(float(cut.end_x[row]), float(cut.end_z[row]))
 
     def _direction_only(self) -> Retract:
-        """Return a retract without moves, with the direction of the next rapid or of the entry."""
+        """Return a retract without moves, with only the direction of the next rapid or of the entry."""
         cut, row = self.cut_record, self.row
         rapids = (segment for segment in self._following_segments() if not segment.move_kind & FEED)
         ways = [(segment.end_x - segment.start_x, segment.end_z - segment.start_z) for segment in rapids]

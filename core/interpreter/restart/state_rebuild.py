@@ -73,7 +73,7 @@ class OmniturnRestartSearch:
     def find_restart_point(
         self, line: int, visit: int = 0, interruption: Interruption | None = None
     ) -> RestartPoint | RestartRejection:
-        """Return the restart point of a line, or the refusal of the restart with its reason.
+        """Return the restart point of a line, or the rejection of the restart with its reason.
 
         ``visit`` selects the execution of the line, from 1. With 0, it is the interrupted execution, or the
         first execution if the program was not interrupted. ``interruption`` is the interruption of the
@@ -116,9 +116,9 @@ class OmniturnRestartSearch:
     def _search_in_loop(
         self, line: int, anchor: int, nth: int, visit: LineVisit, interruption: Interruption | None
     ) -> RestartPoint | str:
-        """Return the restart point of a line in a loop or subroutine, or the reason for a refusal.
+        """Return the restart point of a line in a loop or subroutine, or the reason for its rejection.
 
-        The search starts at the main program line that contains the visit.
+        The search starts at the main program line from which the loop or subroutine is entered.
         """
         walks = [self._walk_from(self._walk, anchor)]
         if self._other is not None:
@@ -241,7 +241,7 @@ class OmniturnRestartSearch:
                 pass
 
     def _start_second_pass(self) -> None:
-        """Start a second pass in which the input of this line has the opposite state."""
+        """Start a second pass, in which the input that this line reads has the opposite state."""
         if self._other is not None:
             self._lost = Message(
                 "line {position} depends on an input, and the state of this input is unknown.",
@@ -413,9 +413,9 @@ def _plan_retract(cut_record: CutRecord, point: Checkpoint) -> Retract:
 
 
 def _skipped_lines(cut_record: CutRecord, last_complete_block: int, blocks: int) -> tuple[int, int]:
-    """Return the lines of the first and last cut between the executed blocks and the restart line.
+    """Return the lines of the first and last cut that would be skipped, the lower line first.
 
-    The lower line is first. Both lines are 0 if no cut was skipped.
+    These cuts are between the executed blocks and the restart line. Both lines are 0 if no cut is skipped.
     """
     rows = (
         (cut_record.block_numbers > last_complete_block)
@@ -436,10 +436,7 @@ def _input_lines(program: Program, lines: RestartSuitability) -> list[int]:
 
 
 def _same_state(one: StoppablePass, other: StoppablePass) -> bool:
-    """Return whether both passes are at the same point in the same state.
-
-    If so, they continue identically.
-    """
+    """Return whether both passes are at the same line in the same state, and so continue identically."""
     a, b = one.checkpoint, other.checkpoint
     if (
         one.next_line != other.next_line

@@ -8,9 +8,10 @@ from typing import NamedTuple
 
 
 class ToolSituation(Enum):
-    """Situation of a tool, which is either clear of the part or in the part.
+    """Situation of a tool relative to the part.
 
-    If the tool is in the part, the situation determines how the tool can leave the part.
+    A tool is either clear of the part or in it. In the part, the situation determines how the tool can
+    leave.
     """
 
     CLEAR = "clear"

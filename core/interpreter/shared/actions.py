@@ -116,7 +116,10 @@ class Preset(ValueObject):
 
 
 class ProgramStop(ValueObject):
-    """Action that waits for Cycle Start (M00, or M01 if ``optional``) and shows ``message`` in large type."""
+    """Action that stops the program until Cycle Start is pressed (M00, or M01 if ``optional``).
+
+    ``message`` is shown to the operator in large type.
+    """
 
     __slots__ = __match_args__ = ("optional", "message")
 
@@ -144,7 +147,7 @@ class CycleRepeatCancel(ValueObject):
 
 
 class InputWait(ValueObject):
-    """Action that waits until a terminal is closed (``closed`` is True) or open (M91 to M94)."""
+    """Action that waits until an input terminal is closed (``closed`` is True) or open (M91 to M94)."""
 
     __slots__ = __match_args__ = ("terminal", "closed")
 

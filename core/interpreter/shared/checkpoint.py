@@ -1,7 +1,7 @@
 """State from which a pass can start: the first line, or a state saved by another pass.
 
-MDI, restart and block search start from a saved state. Each part of an interpreter contains its own share
-of the state. A saved pass copies these parts completely, so that it includes the state of every function.
+MDI, restart and block search start from a saved state. Each part of an interpreter contains its own portion
+of the state. A saved pass copies all parts completely, so that no part of the state is missing.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class ModalStateLine(NamedTuple):
 
 @runtime_checkable
 class ReplacedWhenSaved(Protocol):
-    """A shared object of which a saved pass contains only a stand-in."""
+    """A shared object, such as a log, that is replaced by a stand-in when a pass is saved."""
 
     def make_stand_in(self) -> object:
         """Return an object that another process can use until the next pass replaces it."""
@@ -40,8 +40,8 @@ class SavedPass(Generic[PartsType]):
 
     Each saved pass has a name that is unique in all processes. A saved pass is equal only to itself and to
     its copies in other processes. ``shared`` contains the objects that are not copied, such as the setup,
-    the log and program texts. The setup is saved without inputs and start, and the log without findings,
-    because another process cannot use them and the next pass replaces both.
+    the log and program texts. The setup is saved without inputs and start, and the log without findings.
+    Another process cannot use these data, and the next pass replaces both objects.
     """
 
     def __init__(
@@ -62,16 +62,16 @@ class SavedPass(Generic[PartsType]):
         return hash(self._name)
 
     def copy_parts(self, *instead: object) -> PartsType:
-        """Return a copy of the saved parts, in which some of the shared objects are replaced.
+        """Return a copy of the saved parts, in which the objects ``instead`` replace shared objects.
 
-        The objects in ``instead`` replace the same number of shared objects, starting with the first one.
+        The first object in ``instead`` replaces the first shared object, and so on.
         """
         places = (*instead, *self._shared[len(instead) :])
         return deepcopy(self._parts, {id(old): new for old, new in zip(self._shared, places, strict=True)})
 
 
 def _make_stand_in(shared: object) -> object:
-    """Return what is saved of a shared object: no live inputs, earlier saved states or findings."""
+    """Return the stand-in of a shared object for saving, or the object itself if it has none."""
     return shared.make_stand_in() if isinstance(shared, ReplacedWhenSaved) else shared
 
 
@@ -166,11 +166,11 @@ ApproachStep = StraightLeg | MultiAxisLeg | CAxisMove | FunctionStep
 
 
 class PassStart(NamedTuple):
-    """The start of a pass.
+    """The start of a pass: the checkpoint, and the approach to it.
 
-    ``is_mdi_line`` means that the text is one MDI line instead of a program. The moves of ``approach_steps``
-    precede the line and must end at the position of the checkpoint. With ``skips_cuts``, the part is not
-    counted, because earlier cuts are incomplete.
+    - ``is_mdi_line`` means that the text is one MDI line instead of a program.
+    - The moves of ``approach_steps`` precede the line and must end at the position of the checkpoint.
+    - With ``skips_cuts``, the part is not counted, because earlier cuts are incomplete.
     """
 
     checkpoint: Checkpoint

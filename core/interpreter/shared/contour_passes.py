@@ -56,9 +56,9 @@ class RoughingPlanner:
     """Planner of the passes that rough a contour.
 
     ``add_pass`` adds passes of increasing depth to ``moves``, and ``add_finishing_pass`` adds a cut along
-    the contour. A span is a section of a pass with material to cut; the tool feeds into it from the end of
-    the previous pass. Between spans, the tool moves at ``rapid`` mm/s, ``lift`` mm above the remaining
-    material.
+    the contour. A span is a section of a pass in which there is material to cut. The tool moves into a span
+    at the feed, starting just above the depth of the previous pass. Between spans, the tool moves at
+    ``rapid`` mm/s, ``lift`` mm above the remaining material.
     """
 
     def __init__(self, area: RoughingArea, rapid: float, lift: float) -> None:
@@ -110,7 +110,7 @@ class RoughingPlanner:
     def _approach(self, to: Point, *, front: bool) -> None:
         """Add the moves to the start of the contour.
 
-        The tool approaches the front end from in front of the area, and the back end from above.
+        The tool approaches the front end of the contour from the front, and the back end from above.
         """
         length = min(to[1], 0.0) if front else to[1]
         self._move_above(length)
@@ -254,7 +254,7 @@ class ContourFrame(NamedTuple):
 def make_contour_frame(start: Point, first_point: Point, last_point: Point) -> ContourFrame:
     """Return the frame of a contour from ``first_point`` to ``last_point``.
 
-    Both points are in the same quadrant of ``start``.
+    As seen from ``start``, both points must be in the same quadrant.
     """
     a, b = _off(start, first_point), _off(start, last_point)
     x = 1.0 if a[0] + b[0] > 0 else -1.0

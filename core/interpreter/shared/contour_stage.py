@@ -56,7 +56,7 @@ class AdjustedMoveFactory(ABC):
         """
 
     def make_motionless_block(self, block: Block, point: Point) -> Block:
-        """Return a block without motion, moved to another point."""
+        """Return a block without motion, copied to another point."""
         x, z = point
         rpm = self._rpm(block, x)
         action = block.action
@@ -94,7 +94,7 @@ MarkerType = TypeVar("MarkerType")
 
 @dataclass(slots=True)
 class BufferedMove(Generic[CornerType, MarkerType]):
-    """A buffered move that ends with a corner, and the blocks without motion that follow it."""
+    """A buffered move that ends with a corner, and the blocks without motion that follow the move."""
 
     block: Block
     corner: CornerType
@@ -183,7 +183,7 @@ class CornerStage(ABC, Generic[CornerType, MarkerType]):
     def _keeps_waiting(
         self, buffered: BufferedMove[CornerType, MarkerType], item: Block | MarkerType
     ) -> bool:
-        """Return whether the corner remains open because the item is not a move.
+        """Return whether the corner still needs a second move, because the item is not a move.
 
         Raises ProgramError if the item is not allowed at this point.
         """
@@ -204,7 +204,7 @@ class CornerStage(ABC, Generic[CornerType, MarkerType]):
 
     @abstractmethod
     def _report_straight(self, buffered: BufferedMove[CornerType, MarkerType], after: Block) -> None:
-        """Report that both moves have the same direction, so they do not form a corner."""
+        """Report that both moves have the same direction, so that no corner is between them."""
 
     @abstractmethod
     def _make_size_error(
@@ -226,11 +226,11 @@ _END_CLEARANCE_RATIO = 0.5
 
 
 def is_gouging_contour(path: Element, contour: Iterable[Element], nose_radius_mm: float) -> bool:
-    """Return whether the tool nose comes too close to the contour and would gouge it.
+    """Return whether the tool nose would gouge the contour on this path.
 
     The nose has the radius ``nose_radius_mm``. The elements of the contour start with the nearest element.
-    Near the end of the contour, an approach that is not perpendicular always comes closer than the radius.
-    Here, only ``_END_CLEARANCE_RATIO`` times the radius is required.
+    Near the end of the contour, only ``_END_CLEARANCE_RATIO`` times the radius is required as a distance,
+    because an approach that is not perpendicular always comes closer than the radius.
     """
     if path.length < SAME_POINT_TOLERANCE_MM:
         return False
@@ -249,7 +249,7 @@ def is_gouging_contour(path: Element, contour: Iterable[Element], nose_radius_mm
 
 @dataclass(slots=True)
 class ContourMove:
-    """A programmed move with the blocks without motion that follow it."""
+    """A programmed move, and the blocks without motion that follow it."""
 
     block: Block
     following_blocks: list[Block] = field(default_factory=list)
@@ -305,7 +305,7 @@ class ContourStage(ABC):
             ) from None
 
     def _yield_pieces(self, pieces: Iterable[OffsetPiece]) -> Iterator[Block]:
-        """Yield the blocks of these pieces, preceded by the approach at the start of the contour.
+        """Yield the blocks of these pieces; the approach precedes the first block of the contour.
 
         Raises ProgramError if the approach is not possible.
         """

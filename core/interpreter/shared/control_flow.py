@@ -16,7 +16,7 @@ RoutineType = TypeVar("RoutineType")
 
 
 class CallSite(NamedTuple):
-    """The place in the main file at which the lines of the active program are displayed.
+    """The place in the main file at which the lines of a called program are displayed.
 
     ``file_name`` is the name of a program from another file, and ``line`` is the line of its call. Both are
     empty in the main file.
@@ -104,7 +104,7 @@ class ControlFlow(Generic[FrameType]):
         self._resume_frame()
 
     def _resume_frame(self) -> None:
-        """Continue execution at the saved position of the last frame."""
+        """Continue execution at the saved position of the innermost frame."""
         self.active_frame = here = self.frames[-1]
         self.next_index, self.end_index = here.next_index, here.end_index
 
@@ -129,12 +129,12 @@ class ControlFlow(Generic[FrameType]):
 
 
 class EndlessLoopDetector:
-    """Detector of endless loops, which compares the program state at each backward jump.
+    """Detector of endless loops that compares the program state at each backward jump.
 
     Execution from the same state always continues identically. If a backward jump occurs in the same state
     as an earlier jump, the loop is therefore endless. The reference state is renewed at jumps 1, 2, 4, 8
-    and so on (Brent's cycle detection), so that a loop of any length is detected within three rounds. Each
-    jump of a normal loop costs one comparison, which ends at the first difference.
+    and so on (Brent's cycle detection), so that a loop of any length is detected within three rounds. In a
+    normal loop, each jump costs one comparison, which ends at the first difference.
     """
 
     def __init__(self) -> None:
@@ -145,7 +145,7 @@ class EndlessLoopDetector:
     def is_repeated_state(self, flow: ControlFlow[FrameType], *held: object) -> bool:
         """Return whether a backward jump repeats an earlier state, so that the loop is endless.
 
-        ``held`` contains all values, other than the position, on which later jumps can depend.
+        ``held`` contains all values, other than the execution position, on which later jumps can depend.
         """
         flow.active_frame.next_index = flow.next_index
         now = [each.comparison_key for each in flow.frames], held

@@ -70,7 +70,7 @@ class DiagnosticLog:
         self._others = len(self.findings) - len(self.error_findings)
 
     def make_stand_in(self) -> DiagnosticLog:
-        """Return an empty log."""
+        """Return an empty log, which replaces this log in a saved pass."""
         return DiagnosticLog()
 
     @property
@@ -86,8 +86,8 @@ class DiagnosticLog:
     def add_finding(self, finding: Diagnostic, original: Diagnostic | None = None) -> None:
         """Store a finding, unless the log already contains it or the limit of its kind is reached.
 
-        ``original`` is the finding before it was moved from another file to the line of the call. All
-        findings of that file have this line, and their original locations distinguish them.
+        ``original`` is the finding before its location was changed from another file to the line of the
+        call. Because all findings of that file have this line, their original locations distinguish them.
         """
         place = "" if original is None or finding is original else f"{original.line}:{original.column}"
         key = (finding.line, finding.code, finding.column, place)

@@ -1,4 +1,4 @@
-"""Elementary blocks, which the executor runs, the proof checks and the screen draws.
+"""Elementary blocks, the common form of all programs for execution, proving and drawing.
 
 Most blocks of a long program are straight moves with the same state. A ``StraightMoveSeries`` stores such
 blocks as arrays, because creating an object per block would take too long. ``SectionEndDetector`` finds the
@@ -283,11 +283,11 @@ def needs_spindle_at_speed(block: Block) -> bool:
 
 
 class SectionEndDetector:
-    """Detector of the blocks before which all axes must stop; between them are the path sections.
+    """Detector of the blocks before which all axes must be at rest; they separate the path sections.
 
-    The blocks must be passed in order. A standstill is required before every action, before the first block
+    The blocks must be passed in order. The axes must be at rest before every action, before the first block
     that needs a new spindle speed, and before and after each thread pass. A thread pass is a screw thread
-    or a chain of threads with its pull-out. All other blocks are executed without a standstill.
+    or a chain of threads with its pull-out. No other block requires a standstill.
     """
 
     def __init__(self) -> None:
@@ -296,7 +296,7 @@ class SectionEndDetector:
 
     @property
     def is_in_thread_pass(self) -> bool:
-        """Return whether the previous block belongs to a thread pass, which the next block may end."""
+        """Return whether the previous block belongs to a thread pass; the next block may end this pass."""
         return self._pass > 0
 
     def needs_standstill_before(self, block: Block) -> bool:
@@ -317,7 +317,7 @@ class SectionEndDetector:
         )
 
     def record_standstill(self, block: Block) -> None:
-        """Record that all axes are at rest and that ``block``, which required the standstill, starts."""
+        """Record that all axes came to rest as required before ``block``, and that ``block`` starts."""
         if block.action is None:
             self._new_speed = self._new_speed and not needs_spindle_at_speed(block)
             self._pass = int(block.kind is BlockKind.THREAD)

@@ -68,7 +68,7 @@ _ROUNDING_ERROR = 1e-9
 
 
 def convert_to_whole_number(value: float) -> int | None:
-    """Return the whole number that a value is apart from rounding errors, or None if it is not whole."""
+    """Return the nearest whole number, or None if the value differs by more than rounding errors."""
     nearest = round(value)
     return nearest if abs(value - nearest) <= _ROUNDING_ERROR else None
 

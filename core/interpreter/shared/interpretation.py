@@ -29,9 +29,9 @@ MAX_CALL_DEPTH = 16
 
 
 class ToolUsage:
-    """Tool numbers used so far, in the order of first use.
+    """Record of the tool numbers used so far, in the order of first use.
 
-    The class also records the used tools whose offsets were never set.
+    The record also contains the used tools whose offsets were never set.
     """
 
     def __init__(self) -> None:
@@ -52,10 +52,10 @@ class ToolUsage:
 
 
 class InterpreterPass(ABC):
-    """One pass through a program, which raises no exceptions and reports all errors in ``diagnostics``.
+    """One pass through a program. It raises no exceptions and reports all errors in ``diagnostics``.
 
-    No block follows an error, but the pass continues as far as possible to find other errors. The results
-    are extended while blocks are generated.
+    No block follows an error, but the pass continues as far as possible to find other errors. While blocks
+    are generated, the findings and other results are extended.
     """
 
     def __init__(self, log: DiagnosticLog) -> None:

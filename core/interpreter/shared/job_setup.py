@@ -27,7 +27,7 @@ class MillTool:
     """A row of a mill's tool table.
 
     Lengths, radii and their deltas are in mm, the point angle is in degrees, and the tool life is in
-    minutes. A point angle or tool life of 0 is not specified.
+    minutes. A point angle or tool life of 0 means that it is not specified.
     """
 
     length: float = 0.0
@@ -98,7 +98,7 @@ class ControlLimits:
 
 
 def read_no_input(_terminal: str) -> bool:
-    """Return False for every input, for a pass without live inputs."""
+    """Return False for every input terminal, for a pass that must not read live inputs."""
     return False
 
 
@@ -106,10 +106,10 @@ def read_no_input(_terminal: str) -> bool:
 class InterpreterSetup:
     """Conditions of one pass through a program.
 
-    ``start`` is the machine position of all axes (x, z, c on a lathe) before the first block. ``metric``
-    and ``last_rapid`` come from the previous job or from power-up. ``inputs`` returns the state of a
-    terminal such as ``"TB2-5"`` or of a PLC input such as ``"10"``. ``begin`` is set if a pass does not
-    start at the first line.
+    - ``start`` is the machine position of all axes (x, z, c on a lathe) before the first block.
+    - ``metric`` and ``last_rapid`` come from the previous job or from power-up.
+    - ``inputs`` returns the state of a terminal such as ``"TB2-5"`` or of a PLC input such as ``"10"``.
+    - ``begin`` is the start of the pass, or None if it starts at the first line.
     """
 
     tools: Mapping[int, ToolOffset] = field(

@@ -1,4 +1,4 @@
-"""Functions that a program requires in addition to straight moves.
+"""Machine functions that a program requires in addition to straight moves.
 
 A machine that lacks one of these functions rejects the program.
 """

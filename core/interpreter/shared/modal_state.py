@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 class VirtualMill(NamedTuple):
     """The frame of the virtual mill, and the current position in this frame, in mm.
 
-    In milling on the side of the part, Z is a radius. ``polar_angle_rad`` is the polar angle of the
-    position in radians, counted without wrapping. ``is_newly_active`` is True until the first move or F; H
+    On the side of the part, Z is a radius. ``polar_angle_rad`` is the polar angle of the position in
+    radians, continuous over several revolutions. ``is_newly_active`` is True until the first move or F; H
     is allowed only until then.
     """
 

@@ -16,10 +16,9 @@ RotaryAngles = tuple[float | None, float | None, float | None]
 
 @dataclass(frozen=True, slots=True)
 class PlaneCoordinateSystem:
-    """The coordinate system of a working plane with a tool, in mm and degrees.
+    """The coordinate system of a working plane for one tool, in mm and degrees.
 
-    Blocks share a plane system until the plane or the tool changes.
-
+    All blocks share one object until the plane or the tool changes.
     - ``transform`` converts points of the system to machine X, Y and Z.
     - ``frame`` (rows) and ``datum`` are the axes and the origin of the system in the workpiece system.
     - ``is_tilted`` is True if a PLANE block defined the system.

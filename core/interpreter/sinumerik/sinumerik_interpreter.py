@@ -235,7 +235,7 @@ class Interpreter(LinePass[LexedBlock]):
         self._execute_program_end(line, is_program_end=ends)
 
     def _check_control(self, line: LexedBlock) -> None:
-        """Raise ProgramError for a function that the machine file's control does not have."""
+        """Raise ProgramError for a function that the control model in the machine file does not have."""
         control = self._setup.limits.control_model
         if found := find_missing_function(control, line):
             name, column = found
@@ -288,9 +288,9 @@ class Interpreter(LinePass[LexedBlock]):
             yield from self._call(called, modal=True)
 
     def _modal_call(self, statement: Statement) -> LexedBlock | None:
-        """Return the line of the modal call (MCALL) that must be executed after this block.
+        """Return the line of the active modal call (MCALL) to execute after this block, or None.
 
-        Returns None if no MCALL is active or the block has no motion.
+        The result is None if no MCALL is active or the block has no motion.
         """
         return (
             None if self._flow.is_in_modal_call or not statement.axis_names else self._state.modal_call_line
@@ -306,7 +306,7 @@ class Interpreter(LinePass[LexedBlock]):
             self._flow.end_subprogram()
 
     def _blocks_with_corners(self, statement: Statement) -> Iterator[Block]:
-        """Yield the blocks of a statement with corners and compensation, as far as they are final."""
+        """Yield the final blocks of a statement, after corners and compensation were applied."""
         number = statement.lexed_block.line_number
         place = self._flow.get_displayed_line(number)
         if TRANSFORMATION_GROUP in statement.g_words:
@@ -328,7 +328,7 @@ class Interpreter(LinePass[LexedBlock]):
             yield from self._compensation.accept_block(cut)
 
     def _flush(self) -> Iterator[Block]:
-        """Yield the buffered blocks, because no move follows that could form a corner with them."""
+        """Yield the buffered blocks, because no following move can form a corner with them."""
         if self._active_transformation is not None:
             yield from self._active_transformation.flush_corner()
             return
@@ -336,10 +336,7 @@ class Interpreter(LinePass[LexedBlock]):
             yield from self._compensation.accept_block(cut)
 
     def _blocks(self, statement: Statement) -> Iterator[Block]:
-        """Yield the blocks of a statement in the order of execution.
-
-        The order is modes, tool, spindle, motion and stops.
-        """
+        """Yield the blocks of a statement in the order modes, tool, spindle, motion and stops."""
         state = self._state
         set_parameters(state, statement)
         check_y_word(state, statement)

@@ -38,7 +38,7 @@ from core.message import Message
 
 
 class ActivePlane(Protocol):
-    """Protocol for the plane of an active transformation (see ``transformed_plane``)."""
+    """Interface of the plane of an active transformation (see ``transformed_plane``)."""
 
     @property
     def name(self) -> str:
@@ -112,9 +112,11 @@ TAP_MOTIONS = frozenset({MotionKind.TAP, MotionKind.TAP_RETRACT})
 class SinumerikState:
     """The machine position and the modal functions of a pass.
 
-    Positions are in mm and degrees, with X as a radius and continuous C. Blocks store ``modal``. ``motion``
-    is the active function of group 1, and ``plane`` is the G code of the plane. ``programmed_frame`` is the
-    frame of TRANS, ROT, SCALE and MIRROR. ``edge`` is the offset of the active T and D.
+    - Positions are in mm and degrees, with X as a radius and continuous C.
+    - ``modal`` is the modal state that blocks store.
+    - ``motion`` is the active function of group 1, and ``plane`` is the G code of the plane.
+    - ``programmed_frame`` is the frame of TRANS, ROT, SCALE and MIRROR.
+    - ``edge`` is the offset of the active T and D.
     """
 
     def __init__(self, setup: InterpreterSetup, log: DiagnosticLog) -> None:
@@ -269,7 +271,7 @@ class SinumerikState:
         self.log.add_finding(self.call_site.relocate_finding(finding), finding)
 
     def _warn_unset(self, finding: Diagnostic) -> None:
-        """Log one warning for each R parameter that has no value and is therefore treated as 0."""
+        """Log a warning, once per R parameter, that the parameter has no value and is treated as 0."""
         if (
             finding.hint not in self.logged_functions
         ):  # the hint identifies the parameter, independent of the line

@@ -96,12 +96,12 @@ class Statement:
     def require_condition(
         self, condition: object, word: Word | None, code: int | str, text: str, hint: str, /, **values: object
     ) -> None:
-        """Raise the error of ``make_error`` unless ``condition`` is true."""
+        """Raise the ProgramError that ``make_error`` returns, unless ``condition`` is true."""
         if not condition:
             raise self.make_error(word, code, text, hint, **values)
 
     def make_warning(self, word: Word | None, code: str, text: str, hint: str) -> Diagnostic:
-        """Return the diagnostic of ``make_error`` with the severity changed to warning."""
+        """Return a warning with the location and texts of the error that ``make_error`` would return."""
         return replace(self.make_error(word, code, text, hint).diagnostic, severity=Severity.WARNING)
 
 

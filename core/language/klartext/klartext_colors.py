@@ -1,4 +1,4 @@
-"""Syntax coloring of Klartext lines, with the errors that the parser of the interpreter finds."""
+"""Syntax coloring of Klartext lines. Errors come from the parser that the interpreter also uses."""
 
 from __future__ import annotations
 
@@ -50,8 +50,8 @@ BLOCK_GOES_ON, COMMENT_GOES_ON = 1, 2
 def color_line(text: str, state_before: int = PLAIN_STATE) -> tuple[list[ColoredSpan], int]:
     """Return the colored spans of a line, with any error last, and the state for the next line.
 
-    A block can continue over lines that end with ~. A single line of such a block, including the last line,
-    is not marked as an error. Errors in such a block are reported when the program is checked.
+    A block can continue over several lines that end with ~. Because a line of such a block cannot be parsed
+    alone, its errors are not marked here. They are reported when the program is checked.
     """
     goes_on = text.rstrip().endswith(CONTINUATION_SIGN)
     end = find_comment_start(text)

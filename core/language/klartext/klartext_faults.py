@@ -1,4 +1,4 @@
-"""Klartext errors, and rejection of unsupported codes with advice on an alternative.
+"""Klartext errors, and errors for unsupported codes that suggest an alternative.
 
 If the message of the original control is known, it is the code of the error.
 """

@@ -344,8 +344,8 @@ class ToolDefinition:
 class CoordinateTransform:
     """A transformation with TRANS MIRROR, TRANS ROTATION, TRANS SCALE, or cycle 8, 10 or 11.
 
-    ``value`` is the angle or the factor. If ``value`` is None and ``axes`` is empty, the transformation is
-    reset.
+    ``value`` is the angle or the factor. If ``value`` is None and ``mirrored_axes`` is empty, the
+    transformation is reset.
     """
 
     transformation_kind: str  # MIRROR, ROTATION or SCALE

@@ -312,7 +312,7 @@ def read_words_by_name(cursor: LineCursor, pattern: re.Pattern[str]) -> dict[str
 def check_word_not_repeated(
     cursor: LineCursor, column: int, previous_words: object, description: str
 ) -> None:
-    """Raise ProgramError if the block already contains the word."""
+    """Raise ProgramError if ``previous_words`` shows that the word is repeated in the block."""
     if previous_words:
         raise make_repeated_word_error(cursor, column, description)
 

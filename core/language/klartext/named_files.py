@@ -1,4 +1,4 @@
-"""Files that a Klartext program names, such as other programs, datum tables (.D) and point tables (.PNT).
+"""Files to which a Klartext program refers: programs, datum tables (.D) and point tables (.PNT).
 
 A table consists of ``BEGIN NAME.D MM``, a line with the column names, one line per row, and ``[END]``. A
 cell extends from the start of its column name to the start of the next name. An empty cell has no value.

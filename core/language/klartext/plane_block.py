@@ -111,7 +111,7 @@ def _positioning(cursor: LineCursor, form: str) -> RotaryPositioning:
 
 
 def _with_word(cursor: LineCursor, form: str, positioning: RotaryPositioning) -> RotaryPositioning:
-    """Read the next word at the cursor, and return the positioning with this word added."""
+    """Read the next word at the cursor, and return the positioning mode with this word added."""
     column = cursor.column
     if form != "RESET" and (side := cursor.match_pattern(_SIDE)):
         check_word_not_repeated(cursor, column, positioning.solution, "SYM or SEQ")

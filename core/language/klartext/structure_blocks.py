@@ -64,7 +64,7 @@ def read_end(cursor: LineCursor) -> EndBlock:
 
 
 def _name_and_unit(cursor: LineCursor, what: str) -> tuple[str, bool]:
-    """Read the optional program name and the unit, and return whether the unit is INCH.
+    """Read the optional program name and the unit; return the name, and True if the unit is INCH.
 
     END PGM without a unit means MM.
     """

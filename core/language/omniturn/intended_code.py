@@ -1,4 +1,4 @@
-"""Detection of lines that are written for another control, with the OmniTurn codes to use instead.
+"""Detection of lines written for another control, with the OmniTurn codes to use instead.
 
 Each pattern matches the code of a line in upper case, without blanks and comments. A matching line causes
 one error. Its other words are not checked, because they also belong to the other control.
@@ -17,7 +17,10 @@ from core.message import Message
 
 
 class ForeignCode(NamedTuple):
-    """A mistake in a line, with the index of its first character, diagnostic code, message and remedy."""
+    """A code of another control in a line.
+
+    The values are the index of its first character, the diagnostic code, the message and the remedy.
+    """
 
     start_index: int
     diagnostic_code: str
@@ -26,7 +29,7 @@ class ForeignCode(NamedTuple):
 
 
 class _Pattern(NamedTuple):
-    """Pattern of a code for another control; the message and the remedy may depend on the match."""
+    """Pattern of a code for another control, with the error message and a function for the remedy."""
 
     regex: str
     message: str
@@ -151,7 +154,7 @@ def _compiled() -> tuple[tuple[re.Pattern[str], str, Callable[[re.Match[str]], s
 
 
 def find_foreign_code(code: str) -> ForeignCode | None:
-    """Return the code of another control that a line contains, with a message, or None if it has none."""
+    """Return the code of another control that a line contains, or None if it contains none."""
     for form, message, hint in _compiled():
         match = form.search(code)
         if match is not None:

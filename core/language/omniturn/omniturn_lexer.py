@@ -1,4 +1,4 @@
-"""Lexer of OmniTurn lines, in which numbers have a strict syntax and any other text is an error."""
+"""Lexer of OmniTurn lines. Numbers have a strict syntax, and any other text is an error."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def lex_line(number: int, text: str) -> LexedLine:
 
 
 def _nested_comment(text: str) -> int | None:
-    """Return the index of an opening parenthesis inside a comment, or None if it does not exist.
+    """Return the index of an opening parenthesis within a comment, or None if no comment is nested.
 
     Also returns None if a parenthesis is not closed.
     """
@@ -117,7 +117,7 @@ def _letter_l(number: int, text: str) -> Diagnostic | None:
 
 
 def _blank_prose(number: int, text: str) -> tuple[str, list[Diagnostic]]:
-    """Return the line with text that is not code replaced by blanks, and one error for each such text."""
+    """Return the line with plain text replaced by blanks, and one error for each such text."""
     bare = _with_blank_comments(text)
     habit = other_controls.explain_foreign_line(bare)
     if habit is not None:
@@ -144,7 +144,7 @@ def _with_blank_comments(text: str) -> str:
 
 
 def _prose_in(bare: str) -> Iterator[re.Match[str]]:
-    """Yield the matches of plain text, including the characters between its words."""
+    """Yield a match for each plain text in the line, including the characters between its words."""
     thread = _THREAD.search(bare.upper().replace(" ", "")) is not None
     for found in _PROSE.finditer(bare):
         words = _LETTERS.findall(found[0].upper())

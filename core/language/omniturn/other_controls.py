@@ -135,7 +135,7 @@ def explain_character(character: str) -> tuple[str, str] | None:
 
 
 def explain_foreign_line(code: str) -> tuple[str, str, str] | None:
-    """Return code, message and hint for a line that only other controls need, or None for any other line."""
+    """Return code, message and hint for a line that is useful only on other controls, otherwise None."""
     if _TRANSFER.fullmatch(code):
         return (
             "transfer-line",

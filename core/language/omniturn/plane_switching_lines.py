@@ -45,10 +45,10 @@ def parse_plane_switching_start(text: str) -> PlaneSwitchingLine | None:
 
 
 def is_missing_tilde(text: str, following_lines: Iterable[str]) -> bool | None:
-    """Return whether a line such as (PLXC) was meant to start plane switching but lacks its ~.
+    """Return whether a line such as (PLXC) lacks the ~ with which plane switching starts.
 
     The control treats a line without ~ as a comment. True means that the next line in ``following_lines``
-    is a statement of plane switching. False means that the line may be a comment. Returns None for any
+    is a statement of the virtual mill. False means that the line may be a comment. Returns None for any
     other line.
     """
     if _BARE_ENTRY.fullmatch(text) is None:
@@ -65,7 +65,7 @@ def is_program_end(text: str) -> bool:
 
 
 def lex_plane_switching_line(number: int, text: str) -> PlaneSwitchingLine:
-    """Read a line between the start of plane switching and (END).
+    """Read a line of a coordinate transformation (plane switching), up to and including (END).
 
     Raises ProgramError for a statement that is not allowed.
     """

@@ -124,7 +124,7 @@ _LIST = re.compile(r"\s*(SET|REP)?\s*\(")
 
 
 class ValueList(NamedTuple):
-    """The values for consecutive elements of an array, with None for an element that does not change.
+    """The values for consecutive elements of an array, with None for an element that is not changed.
 
     REP has one formula for ``repeat_count`` elements, or for all remaining elements if ``repeat_count`` is
     None.

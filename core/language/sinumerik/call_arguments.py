@@ -36,9 +36,11 @@ class CallArgument(NamedTuple):
 class ProcParameter(NamedTuple):
     """A parameter of PROC.
 
-    ``type_name`` is its type, such as REAL. ``is_by_reference`` is True with VAR. ``default`` is the
-    default value, or None. ``dimensions`` contains the dimensions of an array, with None for a dimension
-    that the caller's array determines. It is empty for a scalar.
+    - ``type_name`` is its type, such as REAL.
+    - ``is_by_reference`` is True if the parameter is declared with VAR.
+    - ``default`` is the default value, or None if it has none.
+    - ``dimensions`` contains the dimensions of an array, with None for a dimension that the caller's array
+      determines. It is empty for a scalar.
     """
 
     name: str

@@ -1,8 +1,8 @@
-"""Functions that the smaller SINUMERIK controls 802D and 808D lack in comparison with 828D and 840D.
+"""Functions of the SINUMERIK controls 828D and 840D that the smaller controls 802D and 808D lack.
 
-The machine file of a machine that replaces an 802D specifies the old control (``machine.control``). A
-program that the old control would not accept is then also rejected by TurnDesk. The lists follow the
-manufacturer's programming guides for turning; ``docs/sinumerik-controls.md`` shows them.
+If a machine replaces an 802D, its machine file specifies the old control (``machine.control``). A program
+that the old control would not accept is then also rejected by TurnDesk. The lists follow the manufacturer's
+programming guides for turning; ``docs/sinumerik-controls.md`` shows them.
 """
 
 from __future__ import annotations

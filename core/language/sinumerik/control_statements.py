@@ -48,7 +48,7 @@ class ControlKeyword(StrEnum):
 
 
 class VariableDefinition(NamedTuple):
-    """A variable of DEF, with the formula of its initial value, which is None for the value 0.
+    """A variable that DEF defines. The formula of its initial value is None for the value 0.
 
     ``dimensions`` contains the dimensions of an array, and ``values`` contains the values of its elements.
     """
@@ -70,16 +70,15 @@ class CaseBranch(NamedTuple):
 
 
 class ControlStatement(NamedTuple):
-    """One program control line.
+    """One program control line. ``column`` counts from 1.
 
     - ``condition`` belongs to IF, CASE, WHILE and UNTIL.
     - ``target_label`` of a jump is a label or a block number such as N123.
     - ``identifier``, ``start_value`` and ``end_value`` are the variable, the start and the end of FOR.
     - PROC uses ``identifier``, ``parameters`` and ``has_save_keyword``.
     - ``message_parts`` contains the texts and formulas of MSG.
-    - REPEAT executes the lines from ``target_label`` to ``end_label`` another ``repeat_count`` times.
-    - ``else_jump`` is a further IF … GOTO in the block.
-    - ``column`` counts from 1.
+    - REPEAT executes the lines from ``target_label`` to ``end_label`` ``repeat_count`` more times.
+    - ``else_jump`` is another IF … GOTO in the same block.
     """
 
     keyword: ControlKeyword

@@ -1,4 +1,4 @@
-"""Lexer of SINUMERIK blocks, in which text outside the grammar is an error."""
+"""Lexer of SINUMERIK blocks. Any text that the grammar does not allow is an error."""
 
 from __future__ import annotations
 
@@ -226,7 +226,7 @@ class _Scanner:
         return rest.end() if rest else at + 1
 
     def _report_unsupported(self, index: int, end: int, name: str, reason: str) -> int:
-        """Report a word of the dialect that TurnDesk does not execute."""
+        """Report a word of the SINUMERIK language that TurnDesk does not support."""
         text, hint = (
             Message("{word}: {problem}.", word=name, problem=reason),
             ("Remove this text from the program."),
@@ -294,7 +294,7 @@ class _Scanner:
         return self._skip(at, Message("{name} is not a valid word", name=name), hint)
 
     def _key(self, name: str, index: int, end: int) -> int:
-        """Read a word that has no value or has arguments in parentheses."""
+        """Read a keyword that has either no value or arguments in parentheses."""
         if name in _TRANSFORMATIONS:
             return self._transformation(name, index, end)
         self.words.append(Word(name, None, index + 1, name))
@@ -442,7 +442,7 @@ class _Scanner:
         return self._value(name, at, end)
 
     def _without_equals(self, name: str, index: int) -> int:
-        """Report a value that is assigned to a word that does not accept a value."""
+        """Report an equals sign after a word that does not accept a value."""
         text = Message("{name} does not accept a value", name=name)
         return self._skip(index, text, Message("Write {name} without an equals sign.", name=name))
 
@@ -459,7 +459,7 @@ class _Scanner:
         )
 
     def _target(self, name: str, index: int, found: re.Match[str]) -> int:
-        """Read a target such as AC( ), IC( ), DC( ), ACP( ) or ACN( )."""
+        """Read a target position such as AC( ), IC( ), DC( ), ACP( ) or ACN( )."""
         form, bracket = found[1], found[2]
         if form not in known.FORMS_BY_WORD.get(name, frozenset()):
             allowed = ", ".join(sorted(known.FORMS_BY_WORD.get(name, ()))) or "a number or a formula"

@@ -1,4 +1,4 @@
-"""Words and lines of SINUMERIK programs, whose values are numbers, R parameters or targets in parentheses.
+"""Words and blocks of SINUMERIK programs; values are numbers, R parameters or targets.
 
 The machine builder defines the name of the third axis, such as B, Y or Q1 instead of C. TurnDesk parses the
 words of this axis as words of C and displays them as written.
@@ -24,7 +24,7 @@ MAX_LINE_LENGTH = 512
 
 
 class PositionMode(StrEnum):
-    """How a word specifies its position, such as AC or IC; for PLAIN, G90 or G91 decides."""
+    """How a word specifies its position, such as AC or IC; with PLAIN, G90 or G91 determines this."""
 
     PLAIN = ""
     AC = "AC"
@@ -37,10 +37,12 @@ class PositionMode(StrEnum):
 class Word(NamedTuple):
     """One word of a block.
 
-    ``name`` is in upper case. ``value`` is the number of the word, or None if ``formula`` determines the
-    value. ``column`` is the column of the first character, from 1. ``text`` is the word as written, without
-    blanks. ``quoted_name`` is a name in quotation marks, as in T="ROUGHER". ``spindle_number`` is the
-    spindle number, as in M1=3 or SPOS[1]=90, or 0 if it is not specified.
+    - ``name`` is in upper case.
+    - ``value`` is the number of the word, or None if ``formula`` determines the value.
+    - ``column`` is the column of the first character, from 1.
+    - ``text`` is the word as written, without blanks.
+    - ``quoted_name`` is a name in quotation marks, as in T="ROUGHER".
+    - ``spindle_number`` is the spindle number, as in M1=3 or SPOS[1]=90, or 0 if it is not specified.
     """
 
     name: str

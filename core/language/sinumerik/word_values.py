@@ -88,7 +88,7 @@ def find_violated_limits(name: str, value: float) -> tuple[float, float] | None:
 
 
 def make_limit_hint(name: str, limits: tuple[float, float]) -> str:
-    """Return the hint that names the limits of a word."""
+    """Return the remedy for a value outside the limits of a word; it names the limits."""
     low, high = limits
     return Message(
         "Use a value of {word} between {low} and {high}.", word=name, low=f"{low:g}", high=f"{high:g}"

@@ -95,7 +95,7 @@ class AirCutChecks:
     _went_in: TipMove | None = None  # a rapid next to the part after which nothing has been cut
 
     def record_pause(self) -> None:
-        """Record a wait or a switched output, which may be why the tool is at its current position."""
+        """Record a wait or a switched output, for which the program may have moved the tool here."""
         self._went_in = None
 
     def check_rapid_move(self, move: TipMove, cut: Cut, tool: int) -> Iterator[Found]:
@@ -213,7 +213,7 @@ class AirCutChecks:
         return self.stock is not None and move.points[-1][0] < self.stock.front_z_mm - NEAR_MATERIAL_MM
 
     def _is_exit_feed(self, move: TipMove, cutter: Cutter, *, is_after_rapid: bool) -> bool:
-        """Return whether a tool feeds along a turned surface forward out of the part.
+        """Return whether a tool feeds along a turned surface toward Z+ and out of the part.
 
         Such a feed is typically caused by a missing minus sign. A boring tool is checked only if it starts
         at the face, because it normally feeds out of its bore.
@@ -296,7 +296,10 @@ def check_cut_size(
 
 
 def _check_feed_rate(move: TipMove, shape: ToolShape, tool: int, *, has_holder: bool) -> Iterator[Found]:
-    """Check the feed per revolution against the nose radius, the groove width or the drill diameter."""
+    """Check the feed per revolution against the nose radius, the groove width or the drill diameter.
+
+    Yields a fault if the feed exceeds the usual maximum.
+    """
     feed = move.feed_per_rev_mm or (move.speed_mm_s * 60.0 / abs(move.rpm) if move.rpm else 0.0)
     if not feed or move.block_kind is BlockKind.THREAD or shape.kind is ToolKind.TAP:
         return
@@ -313,7 +316,7 @@ def _check_feed_rate(move: TipMove, shape: ToolShape, tool: int, *, has_holder: 
 def _feed_limit(shape: ToolShape, *, has_holder: bool) -> tuple[float, float, float]:
     """Return the usual maximum feed, the multiple of it at which the tool breaks, and a safe feed.
 
-    Feeds are in mm/rev; a maximum of 0 means no limit.
+    Feeds are in mm/rev. If the maximum feed is 0, the feed is not limited.
     """
     if shape.kind in _DRILLS and has_holder:
         share = _REAMER_FEED_FRACTION if shape.kind is ToolKind.REAMER else _DRILL_FEED_FRACTION
@@ -424,7 +427,7 @@ def _check_depth(
 def _mean_depth(cut: Cut, *, is_z_move: bool) -> float:
     """Return the mean depth of a cut in mm, along r, or along Z for a cut across Z.
 
-    The pieces of an arc are cut one after the other.
+    For an arc, ``cut`` is the total of straight pieces that were cut one after the other.
     """
     if is_z_move:
         return cut.area / max(cut.width_mm, cut.front_z_mm - cut.back_z_mm)
@@ -434,7 +437,7 @@ def _mean_depth(cut: Cut, *, is_z_move: bool) -> float:
 def _breaking_depth(shape: ToolShape) -> float:
     """Return the depth of cut in mm at which the tool breaks.
 
-    Dimensions that are not specified set no limit.
+    Dimensions that are not specified are ignored.
     """
     bar = (
         _BAR_DEPTH_FRACTION * shape.diameter if shape.kind is ToolKind.BORING and shape.diameter else math.inf

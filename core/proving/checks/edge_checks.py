@@ -53,7 +53,7 @@ class EdgeChecks:
     _solid: float = 0.0  # mm of solid material along Z that the present move enters
 
     def record_solid_length(self, move: TipMove, shape: ToolShape | None, part: TurnedPart) -> None:
-        """Record the length of solid material that a boring tool is about to enter."""
+        """Record the length along Z over which the part has no bore before a boring tool feeds."""
         self._solid = 0.0
         if shape is None or not shape.internal or move.is_fast:
             return
@@ -150,7 +150,7 @@ class EdgeChecks:
             yield Found("wrong-spindle-direction", words)
 
     def _check_axis_crossing(self, move: TipMove, cut: Cut, cutter: Cutter, tool: int) -> Iterator[Found]:
-        """Check that an outside tool does not feed through the axis or cut beyond the axis."""
+        """Check that an outside tool does not feed through the axis or cut on its other side."""
         face = (self.stock.front_z_mm if self.stock is not None else 0.0) - _FACE_DEPTH_MM
         beyond = max((-r * cutter.x_sign for z, r in move.points[1:] if z < face), default=0.0)
         turns = max(r * cutter.x_sign for _, r in move.points) < 0.0 and cut.width_mm > _ENTERS
@@ -184,7 +184,7 @@ class EdgeChecks:
             )
 
     def _check_contour_past_part_off(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
-        """Check for an arc on the bar side of the deepest part-off, past the end of the finished part."""
+        """Check for an arc between the deepest part-off and the chuck, past the finished part."""
         if (
             self.part_off_z_mm is None
             or move.block_kind is not BlockKind.ARC
@@ -371,9 +371,9 @@ def _check_cutting_side(
 
 
 def _leaves_wall(part: TurnedPart, cut: Cut, forward: int, r: float, side: CutSide) -> bool:
-    """Return whether material remains outside the tip immediately after the cut.
+    """Return whether material remains next to the cut, on the back side of the insert.
 
-    Such a wall has been hit by the back of the insert.
+    The back of the insert has hit this material.
     """
     step = part.columns.step_mm
     edge = cut.front_z_mm + step if forward < 0 else cut.back_z_mm - step

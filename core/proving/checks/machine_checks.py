@@ -1,6 +1,7 @@
 """Checks against the machine: the travel limits, and the states that a cut requires.
 
-A cut requires an active tool, a closed collet, and a running spindle or live tool. Inputs are checked too.
+A cut requires an active tool, a closed collet, and a running spindle or live tool. The inputs that the
+program reads or waits for are also checked.
 """
 
 from __future__ import annotations
@@ -220,7 +221,7 @@ class CuttingChecks:
     def _check_collet(self, block: Block) -> None:
         """Check that a move does not cut while the collet is open.
 
-        Bar work may move a stop or a gripper, but must not cut.
+        A bar stop or a gripper may move while the collet is open.
         """
         if block.per_rev or block.kind in _METAL or block.modal.c_locked:
             text = "This move cuts with the collet open, so the part is not clamped."
@@ -295,7 +296,7 @@ class CuttingChecks:
         )
 
     def _report_once(self, block: Block, severity: Severity, check: str, text: str, hint: str) -> None:
-        """Add a finding only once until the fault is corrected.
+        """Add a finding, unless it has already been added since the fault was last corrected.
 
         An error is added even after a warning.
         """

@@ -16,8 +16,9 @@ class PartCheck:
     """One check with its purpose, its condition and the remedy.
 
     ``required_data`` lists the data of stock and tools on which the check depends. If these data are not
-    specified, the finding is based on assumptions. ``TOOL_KIND`` means the kind of tool, which a comment may
-    name. ``EARLIER_HOLES`` means the holes of drills without a diameter.
+    specified, the finding is based on assumptions. ``TOOL_KIND`` means that only the kind of tool is
+    required, which a comment may name. ``EARLIER_HOLES`` means that the check depends on holes of earlier
+    drills, whose diameter may be unknown.
     """
 
     severity: Severity

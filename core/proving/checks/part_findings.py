@@ -83,7 +83,7 @@ class PartFindings:
 
     @property
     def clamping_bodies(self) -> dict[str, TurnedPart]:
-        """Return the chuck and the tailstock as bodies, by the name of the check that monitors each body.
+        """Return the chuck and the tailstock as bodies, by the name of their collision check.
 
         Bodies that are unknown are left out.
         """
@@ -282,7 +282,7 @@ class PartFindings:
             )
 
     def report_stationary_cut(self, line: int, block_number: int, tool: int) -> None:
-        """Report that a tool cuts material while neither the tool nor the spindle turns."""
+        """Report that a tool cuts material while neither the tool nor the spindle rotates."""
         self._store_finding(
             "cut-standing",
             line,
@@ -343,7 +343,10 @@ class PartFindings:
         return ends[0] * ends[1] < 0.0 and float(move.path[:, 1].min()) < front
 
     def _record_part_off(self, move: TipMove, cut: Cut, shape: ToolShape | None, tool: int) -> None:
-        """Record the stub that a parting tool has left at the axis and has not cut yet."""
+        """Record a parting cut that stops short of the axis, or clear an earlier record.
+
+        Such a cut leaves a stub that still connects the part.
+        """
         if self._left is not None and self._left[0] != tool:
             self._tell_left()
         r = abs(move.points[-1][1])
@@ -453,8 +456,8 @@ def _execute_move(move: TipMove, cutter: Cutter, part: TurnedPart) -> tuple[list
 def _combine_cuts(move: TipMove, cuts: Iterable[Cut]) -> Cut:
     """Return the total cut of a move from the cuts of its straight pieces.
 
-    In a screw thread, further revolutions deepen the cut. On other paths, the pieces are cut one after the
-    other.
+    In a screw thread, the pieces cut the same place more than once, so their depths add up. On other paths,
+    the greatest depth applies.
     """
     met = NO_CUT
     for cut in cuts:

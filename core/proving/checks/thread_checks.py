@@ -35,7 +35,7 @@ _SAME_END = 1.0  # mm of Z between passes of one thread
 class Found(NamedTuple):
     """A fault that a check has found.
 
-    The fault is at ``move`` or, if this is None, at the move that was just checked.
+    The fault is at ``move``. If ``move`` is None, the fault is at the move that was just checked.
     """
 
     check_name: str
@@ -192,7 +192,7 @@ class ThreadChecks:
             yield Found("thread-run-up", words)
 
     def _edge_depth(self, move: TipMove, part: TurnedPart) -> float:
-        """Return the greatest depth in mm of the edge below the surface before the first pass.
+        """Return the greatest depth in mm of the edge below the original surface of the thread.
 
         The result is 0 if this surface is not known, or if the edge is not below it.
         """
@@ -213,15 +213,15 @@ class ThreadChecks:
         return z0 - met.front_z_mm if z1 < z0 else met.back_z_mm - z0
 
     def _braking_distance(self, move: TipMove) -> float:
-        """Return the distance in mm in which the axis accelerates to the speed that the lead requires.
+        """Return the distance in mm in which the axis reaches the speed that the lead requires.
 
-        The axis stops from this speed in the same distance.
+        The axis needs the same distance to stop from this speed.
         """
         accel = self.drive_limits.z_acceleration_mm_s2
         return (move.feed_per_rev_mm * abs(move.rpm) / 60.0) ** 2 / (2.0 * accel) if accel else 0.0
 
     def _check_pass_end(self, move: TipMove) -> Iterator[Found]:
-        """Check that the axis does not brake in the material.
+        """Check that the axis does not brake while the tool is in the material.
 
         If it does, the last revolutions of the thread have a smaller lead.
         """

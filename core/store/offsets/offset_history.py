@@ -1,4 +1,7 @@
-"""The history of the offsets: changes, past states, and an undo that does not affect other rows."""
+"""The history of the offsets: changes, earlier states, and an undo of one step.
+
+The undo changes only the rows that the step has changed.
+"""
 
 from __future__ import annotations
 
@@ -27,8 +30,8 @@ from core.tool_edges import format_edge_name, get_tool_number
 def undo(connection: sqlite3.Connection, reason: ChangeReason, kind: OffsetKind) -> tuple[OffsetChange, ...]:
     """Undo the latest step of a table that is not undone yet, and return the resulting changes.
 
-    Another call undoes the step before it. Raises StoreError if no step remains, or if a history entry of
-    this step or of a later step is damaged.
+    Calling the function again undoes the previous step. Raises StoreError if no step remains, or if a
+    history entry of this step or of a later step is damaged.
     """
     return _undo(connection, reason, OFFSET_TABLES[kind].history_table, kind)
 
@@ -36,8 +39,9 @@ def undo(connection: sqlite3.Connection, reason: ChangeReason, kind: OffsetKind)
 def undo_last_step_in_store(connection: sqlite3.Connection, reason: ChangeReason) -> tuple[OffsetChange, ...]:
     """Undo the latest step of all tables, and return the resulting changes.
 
-    A step that changed several tables is undone in all of them. Another call undoes the step before it.
-    Raises StoreError if no step remains, or if a history entry of this step or of a later step is damaged.
+    A step that changed several tables is undone in all of them. Calling the function again undoes the
+    previous step. Raises StoreError if no step remains, or if a history entry of this step or of a later
+    step is damaged.
     """
     last = {log: _last_step(connection, log, None) or 0 for log in HISTORY_TABLES}
     order = {log: step if isinstance(step, int) else MAX_STEP_NUMBER for log, step in last.items()}
@@ -95,7 +99,8 @@ def find_undoable_changes(
 ) -> tuple[OffsetChange, ...]:
     """Return the changes of the step that ``undo_given_step`` would undo, or () if no step remains.
 
-    ``number`` selects the latest step that changed this row; None selects the latest step of the table.
+    ``number`` selects the latest step that changed this row. If it is None, the latest step of the table is
+    selected.
     """
     return _step_to_undo(connection, OFFSET_TABLES[kind].history_table, kind, number)
 

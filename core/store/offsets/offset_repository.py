@@ -28,10 +28,11 @@ if TYPE_CHECKING:
 
 
 class OffsetTable(Generic[RowT]):
-    """One table of offsets, with rows by number, in mm and degrees, with X as a radius.
+    """One table of offsets in mm and degrees, with X as a radius.
 
-    The reason and the author of a change are stored in the history. Methods raise StoreError as described
-    in ``StoreAccess``. The future of a change also raises StoreError if a number or value is out of range.
+    The rows are identified by number. The reason and the author of a change are stored in the history.
+    Methods raise StoreError as described in ``StoreAccess``. The future of a change also raises StoreError
+    if a number or value is out of range.
     """
 
     def __init__(self, store: StoreAccess, kind: OffsetKind, row: type[RowT]) -> None:
@@ -62,7 +63,7 @@ class OffsetTable(Generic[RowT]):
     def remove_row(self, number: int, reason: str, *, author: str = "operator") -> Future[bool]:
         """Remove a row.
 
-        The result is True if the row was set.
+        The future returns True if the row existed.
         """
         return self._store.write(
             lambda c: offset_tables.remove_row(c, self._kind, number, ChangeReason(reason, author))
@@ -90,8 +91,8 @@ class OffsetTable(Generic[RowT]):
     def undo_last_step(self, why: str = "undo", *, who: str = "operator") -> Future[tuple[OffsetChange, ...]]:
         """Undo the latest step of this table.
 
-        Another call undoes the step before it. The result contains the changes that were made. The future
-        raises StoreError if no step remains.
+        Calling the function again undoes the previous step. The future returns the changes that were made,
+        and raises StoreError if no step remains.
         """
         return self._store.write(lambda c: offset_history.undo(c, ChangeReason(why, who), self._kind))
 
@@ -162,8 +163,8 @@ class OffsetTables:
     ) -> Future[tuple[OffsetChange, ...]]:
         """Undo the latest step of all tables.
 
-        Another call undoes the step before it. The result contains the changes that were made. The future
-        raises StoreError if no step remains.
+        Calling the function again undoes the previous step. The future returns the changes that were made,
+        and raises StoreError if no step remains.
         """
         return self._store.write(
             lambda c: offset_history.undo_last_step_in_store(c, ChangeReason(reason, author))

@@ -72,7 +72,7 @@ class HistoryTable:
 
 @dataclass(frozen=True, slots=True)
 class _OffsetTableSchema:
-    """A table of offsets with its name, its letter, its valid numbers, its row type and its history."""
+    """Schema of an offset table: its name, letter, valid row numbers, row type and history table."""
 
     name: str
     letter: str
@@ -245,9 +245,8 @@ def check_edge(
 
 
 def _other_masters(rows: Mapping[int, OffsetRow], number: int) -> list[tuple[int, ToolOffsetRow]]:
-    return [
-        (n, row) for n, row in rows.items() if n != number and isinstance(row, ToolOffsetRow) and row.master
-    ]
+    tools = [(n, row) for n, row in rows.items() if n != number and isinstance(row, ToolOffsetRow)]
+    return [(n, row) for n, row in tools if row.master]
 
 
 def make_no_offset_message(number: int) -> str:
@@ -385,7 +384,7 @@ def apply_changes(
 ) -> tuple[OffsetChange, ...]:
     """Write changes and their history as one step, and return the history entries of the step.
 
-    ``step`` is the number of a step that also changes another table; None begins a new step.
+    ``step`` is the number of a step that also changes another table. If it is None, a new step is started.
     """
     table, log = OFFSET_TABLES[kind], OFFSET_TABLES[kind].history_table
     step = _next_step(connection) if step is None else step

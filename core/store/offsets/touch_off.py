@@ -22,8 +22,9 @@ from core.tool_edges import format_edge_name
 class TouchPosition(NamedTuple):
     """The machine position in mm, with X as a radius, at which a tip is at part zero.
 
-    An axis is None if it was not touched off. ``applies_to_this_tool_only`` means that only this tool
-    changes, even if it is the master tool, because its tip has changed but part zero has not.
+    An axis is None if it was not touched off. ``applies_to_this_tool_only`` means that only the offset of
+    this tool changes, even if it is the master tool. This applies if its tip has changed, but part zero has
+    not.
     """
 
     x: float | None = None
@@ -37,9 +38,10 @@ def store_touch_off(
     """Store a touched-off position and set the wear of the touched-off axes to zero.
 
     The new geometry already includes the wear. Touching off the master tool moves all other tools by the
-    same distance, as one step of the history, unless ``touch.applies_to_this_tool_only`` is True. Raises
-    StoreError, and leaves the store unchanged, if the number is unknown, if a value is out of range, if not
-    both axes of a new tool were touched off, or for an additional cutting edge whose tool has no offset yet.
+    same distance, as one step of the history, unless ``touch.moves_only_this_tool`` is True. Raises
+    StoreError if the number is unknown, a value is out of range, or a new tool was not touched off in both
+    axes. Also raises StoreError for an additional cutting edge whose tool has no offset yet. After an
+    error, the store is unchanged.
     """
     offset_tables.check_row_number(OffsetKind.TOOL, number)
     rows = offset_tables.read_tool_offsets(connection)

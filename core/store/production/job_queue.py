@@ -1,7 +1,7 @@
 """The job queue: programs with the number of parts to make and the number of parts made.
 
-A job does not have a separate counter. Its parts are the parts that are counted for its program while the
-job is active. At most one job is active, which is the job that the operator loaded last.
+A job has no separate counter. While a job is active, the parts that are counted for its program also count
+for the job. At most one job is active, which is the job that the operator loaded last.
 """
 
 from __future__ import annotations

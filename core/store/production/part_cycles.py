@@ -1,4 +1,4 @@
-"""Stored cycles and stops, with one row for each started part and for each stop of production."""
+"""Stored cycles and stops of production, with one row for each started part and for each stop."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def save_stop(connection: sqlite3.Connection, row: ProductionStopRow) -> None:
 
 
 def queue_row(entries: WaitingEntries, row: ProductionRow) -> None:
-    """Add a cycle or a stop to the entries that wait for the disk, replacing an earlier state of the row."""
+    """Queue a cycle or a stop for writing to disk, replacing a queued entry of the same row."""
     if isinstance(row, CycleRow):
         entries.replace_operation(("cycle", row.key), lambda connection: save_cycle(connection, row))
     else:

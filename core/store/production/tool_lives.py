@@ -12,7 +12,7 @@ from core.store.store_rows import MILL_TOOL_NUMBERS, OFFSET_NUMBERS, OffsetKind,
 
 
 class ToolLifeRow(NamedTuple):
-    """The tool life of one tool, with times at feed in seconds.
+    """The tool life of one tool, with feed times in seconds.
 
     A limit of 0 means unlimited.
     """
@@ -27,9 +27,9 @@ class ToolLifeRow(NamedTuple):
 
 
 class InsertChange(NamedTuple):
-    """The change of an insert or of a mill tool.
+    """The change of an insert or of a milling tool.
 
-    ``parts`` and ``seconds`` are the parts and the seconds at feed of the old insert or tool.
+    ``parts`` and ``seconds`` are the number of parts and the feed time of the old insert or tool.
     """
 
     id: int
@@ -86,7 +86,7 @@ def save_insert_use(
     seconds: float,
     kind: OffsetKind = OffsetKind.TOOL,
 ) -> None:
-    """Save the use of an insert since its last change, in parts and in seconds at feed."""
+    """Save the number of parts and the feed time in seconds of an insert since its last change."""
     connection.execute(
         f"INSERT INTO {_USE[kind]} (number, parts, seconds) VALUES (?1, ?2, ?3)"
         " ON CONFLICT (number) DO UPDATE SET parts = ?2, seconds = ?3",

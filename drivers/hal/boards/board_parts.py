@@ -1,9 +1,10 @@
 """Shared parts of HAL files: C axis on the spindle drive, and Ethernet cards from Mesa.
 
-For C, a pid component closes a position loop with the spindle encoder. A drive with a speed input (±10 V,
-EtherCAT) receives the spindle speed or, as C, the output of the pid component. If the drive also has a step
-input, a terminal switches it to this input for C, and the pid component controls the step rate. All
-supported Mesa cards use hm2_eth with its watchdog, its encoders and pid components.
+A pid component closes the position loop of the C axis with the spindle encoder. A drive with a speed input
+(±10 V, EtherCAT) receives the spindle speed, or the output of the pid component when it is used as the C
+axis. If the drive also has a step input, a terminal switches it to this input for C. The pid component then
+controls the step rate. All supported Mesa cards use hm2_eth with its watchdog, its encoders and pid
+components.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ _SIMULATED = 100.0  # 1/s, for a simulated spindle.
 
 
 def get_c_revolution_pins(file: HalFile) -> tuple[str, ...]:
-    """Return the pin through which C reads the spindle revolutions, or no pins without C."""
+    """Return the pin from which the C axis reads the spindle revolutions, or () without a C axis."""
     return (C_TURN_PIN,) if file.lathe.c_axis is not None else ()
 
 
@@ -139,7 +140,7 @@ CARD_NOTES = (
 
 
 def load_ethernet_card(file: HalFile, card: str, config: str, *further: str) -> None:
-    """Load hostmot2 for an Ethernet card; each thread cycle first reads and last writes the card.
+    """Load hostmot2 for an Ethernet card, which each cycle of the thread reads first and writes last.
 
     ``further`` lists additional pins that report stale inputs of the card.
     """
@@ -157,9 +158,9 @@ def load_ethernet_card(file: HalFile, card: str, config: str, *further: str) -> 
 def _connect_link(file: HalFile, card: str, other_faults: tuple[str, ...]) -> None:
     """Connect the pins that report a lost card to hal.link_fault.
 
-    After a loss, hm2_eth retains every input and no longer reads the watchdog. hm2_eth sets the parameter
-    ``io_error`` together with the pin ``packet-error-exceeded``, which remains on until the driver is
-    loaded again.
+    After the card is lost, hm2_eth retains the state of every input and no longer reads the watchdog.
+    hm2_eth sets the parameter ``io_error`` together with the pin ``packet-error-exceeded``, which remains
+    on until the driver is loaded again.
     """
     gates = _list_drive_faults(file)
     silent = f"{card}.packet-error-exceeded", f"{card}.watchdog.has_bit"
@@ -168,9 +169,9 @@ def _connect_link(file: HalFile, card: str, other_faults: tuple[str, ...]) -> No
 
 
 def _list_drive_faults(file: HalFile) -> list[str]:
-    """Combine each axis's drive fault with the loss of the card, and return the "or" gates.
+    """Combine the drive fault of each axis with the loss of the card, and return the "or" gates.
 
-    Only faults that the machine file names as signals are combined.
+    A drive fault is combined only if the machine file specifies it as a signal.
     """
     gates = []
     for axis in file.lathe.axes:

@@ -1,8 +1,8 @@
 """The table [board] of the machine file, from which ``turndesk machine hal`` writes the HAL file.
 
-[hal] contains the pins or signals that TurnDesk uses, and [board] contains the hardware that is connected
-to them. Scales follow from ``axis.….count`` and ``spindle.encoder_ppr``, which the machine file contains
-anyway.
+[hal] contains the pins or signals that TurnDesk uses, and [board] describes the hardware that is connected
+to them. Scales are calculated from ``axis.….count`` and ``spindle.encoder_ppr``, which are not repeated in
+[board].
 """
 
 from __future__ import annotations
@@ -60,9 +60,9 @@ class BoardAxis:
     """The connection of one axis to a board.
 
     Speeds are in mm/s, pulse times are in nanoseconds, and gains are those of LinuxCNC's ``pid`` component.
-    ``channel`` is the step generator, the encoder and analog output, or the position of the drive on
-    EtherCAT; -1 means not specified. ``full_speed`` is the speed at 10 V, and ``full_rpm`` is the speed of
-    a separate C drive at 10 V. ``step`` and ``direction`` are pins of a parallel port.
+    ``channel`` is the number of the step generator, or of the encoder and analog output, or the position of
+    an EtherCAT drive; -1 means not specified. ``full_speed`` is the speed at 10 V, and ``full_rpm`` is that
+    of a separate C drive. ``step`` and ``direction`` are pins of a parallel port.
     """
 
     channel: int = _channel_key(
@@ -174,10 +174,8 @@ def _read(file: MachineFileReading) -> Iterator[FileFinding]:
 
 def _read_parts(file: MachineFileReading) -> dict[str, object]:
     """Return the nested tables of the axes and the spindle."""
-    axes = {
-        name: file.file_values.make_model(BoardAxis, f"{_AXES}.{name}")
-        for name in file.list_table_keys(_AXES)
-    }
+    names = file.list_table_keys(_AXES)
+    axes = {name: file.file_values.make_model(BoardAxis, f"{_AXES}.{name}") for name in names}
     return {"axes": axes, "spindle": file.file_values.make_model(BoardSpindle, _SPINDLE)}
 
 
@@ -260,7 +258,7 @@ def _channel_rules(file: MachineFileReading, kind: str, path: str) -> Iterator[F
 
 
 def _spindle_is_c(file: MachineFileReading) -> bool:
-    """Return whether HAL controls the spindle and its drive is also the C axis."""
+    """Return whether HAL controls the spindle and the spindle drive also serves as the C axis."""
     values = file.file_values
     own = values.has_values("axis.C.own_drive") and values.read_flag("axis.C.own_drive")
     return not own and values.has_text("spindle.driver", "hal")

@@ -163,8 +163,8 @@ class HalFile:
     ) -> str:
         """Connect the pins that belong to a key of the machine file, and return their signal.
 
-        The key may name the signal itself, one of the pins, or a terminal of the board. A terminal is
-        connected to the pins.
+        The value of the key may be the name of the signal, of one of the pins, or of a terminal of the
+        board. A terminal is connected to the pins.
         """
         self._done.add(key)
         name = self.lathe.terminal_names.get(key, "")
@@ -211,7 +211,7 @@ class HalFile:
         self.wiring_rows.append(WiringRow(found.printed_label, name, signal, (path,)))
 
     def add_unconnected_signal(self, path: str, name: str) -> None:
-        """Create a signal without a pin, which the user sets by hand."""
+        """Create a signal without a pin, which the user sets manually."""
         self._done.add(path)
         self.sections[-1].lines.append(f"newsig {name} bit")
         self.wiring_rows.append(WiringRow("", "-", name, (path,)))
@@ -248,8 +248,8 @@ class HalFile:
     def connect_link_fault(self, gate_kind: str, *pins: str, extra_pins: tuple[str, ...] = ()) -> None:
         """Connect hal.link_fault to the output of a gate.
 
-        The gate is "or" for pins that report a fault, and "nand" for pins that report health. The pins
-        ``extra_pins`` of the file are on the same signal.
+        The gate is "or" for pins that report a fault, and "nand" for pins that report correct operation.
+        ``extra_pins`` are further pins on the same signal.
         """
         personality = {"or": 0x200, "nand": 0x800}[gate_kind] + len(pins)
         self.add_load_line(

@@ -79,7 +79,7 @@ def main(arguments: list[str]) -> int:
 def _create_component(hal: Any, sock: MessageSocket, settings: Mapping[str, Any]) -> Any | None:
     """Create the HAL component and connect its pins.
 
-    Returns None if pins do not match or if only a check was requested.
+    Returns None if a pin does not match the machine file, or if only a check was requested.
     """
     wanted = [hal_pins.ExpectedPin(*each) for each in settings["wanted"]]
     pins = hal_pins.parse_pins(hal_pins.run_halcmd("-s", "show", "pin"))

@@ -1,9 +1,9 @@
-"""The bridge, which writes setpoints to HAL, reports samples, and stops motion if the control is silent.
+"""HAL bridge: writes setpoints, reports samples, and stops motion if the driver is silent.
 
 ``queue_packet`` queues a packet of the driver, ``run_cycle`` must be called every few milliseconds, and
-``encode_report`` returns the state. If the driver is silent, its queue is executed to the end, where the
-axes are at rest. Then the spindle and the outputs are switched off. If the driver has ended, the drives are
-also switched off.
+``encode_report`` returns the state. If the driver is silent, the bridge executes the setpoint queue to the
+end, where the axes are at rest. It then switches off the spindle and the outputs. If the driver has ended,
+the bridge also switches off the drives.
 """
 
 from __future__ import annotations
@@ -284,7 +284,7 @@ class HalBridge:
         return "link-fault" in self.config.bits and bool(self.pins["link-fault"])
 
     def _open_chain(self) -> None:
-        """Command the spindle and outputs off, so that closing the E-stop chain does not restart them."""
+        """Command the spindle and outputs off, so that they stay off when the E-stop chain closes."""
         self.spindle_pins.switch_spindle_off()
         self._output_pins.switch_outputs_off()
 
@@ -399,7 +399,7 @@ class HalBridge:
     def _update_power(self, now: float) -> None:
         """End the reset pulse of the E-stop chain when it is due, and switch on the drives.
 
-        The power is switched on when HAL plays the current axis positions.
+        The drives are switched on when HAL plays a setpoint row with the current axis positions.
         """
         self._chain_pins.update_pulses(now)
         if self._grant_at <= now:
@@ -472,7 +472,7 @@ class HalBridge:
         return abs(self.setpoint_player.spindle_predictor.speed_rev_per_s) < _STANDSTILL_REV_PER_S
 
     def _brake_waiting_cam(self) -> None:
-        """Brake axes that follow a spindle that is stopped, because their queue never ends."""
+        """Brake axes that follow a stopped spindle, because their queue would otherwise never end."""
         if not self.setpoint_player.is_cam_inactive and self._is_spindle_at_standstill:
             self._brake_axes()
 

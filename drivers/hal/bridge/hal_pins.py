@@ -13,9 +13,9 @@ _HALCMD_TIMEOUT_S = 10.0  # Less than the driver waits for HAL, so that the driv
 
 @dataclass(frozen=True, slots=True)
 class ExpectedPin:
-    """A pin or signal that the machine file names.
+    """A pin or signal that the machine file specifies.
 
-    ``machine_file_key`` is its key in the machine file, and ``turndesk_signal`` is TurnDesk's signal for it.
+    ``machine_file_key`` is its key, and ``turndesk_signal`` is the TurnDesk signal that is connected to it.
     """
 
     machine_file_key: str

@@ -1,9 +1,9 @@
-"""Setpoint rows for HAL in two streams: HAL plays one, the other receives replacement rows.
+"""Setpoint rows for HAL in two streams: HAL plays one, and the other receives replacement rows.
 
-The change between the streams is requested for a row that the servo thread has not reached yet. Without
-real-time priority, the thread may have passed this row before it reads the request. The change is then
-requested for a later row. This is possible while both streams contain the same rows, as at the start of a
-continued path.
+The bridge requests a change of streams at a row that the servo thread has not reached yet. Without
+real-time priority, the thread may pass this row before it reads the request. The bridge then requests the
+change for a later row. This is possible while both streams contain the same rows, as at the start of a path
+that continues the old path.
 """
 
 from __future__ import annotations
@@ -148,9 +148,10 @@ class RowStreamPair:
         return self._change is not None and self.played_row_number + _MARGIN >= self._change
 
     def recall_rows(self, time_s: float, make_row: RowFunction, unchanged_until: float = -math.inf) -> bool:
-        """Replace all rows due from ``time_s`` on; return False, without a change, if it is too late.
+        """Replace all rows due from ``time_s`` on, and return whether this was possible.
 
-        Until ``unchanged_until``, a time in seconds, the replacement follows the same path.
+        If it is too late, nothing is changed. Until ``unchanged_until``, a time in seconds, the replacement
+        follows the same path.
         """
         first = self.find_first_recallable_row(time_s)
         if first is None or self.is_change_locked:

@@ -1,4 +1,4 @@
-"""Setpoint player: a queue that ends at rest, or a cam, a path over spindle revolutions."""
+"""Setpoint player for a queue that ends at rest, or for a cam (a path over spindle revolutions)."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class SpindlePredictor:
 class PlayerCam(NamedTuple):
     """A motion over spindle revolutions from ``start_revolutions`` on, as in ``core.ports.Cam``.
 
-    ``following_pieces`` continue the motion by time.
+    ``following_pieces`` are time-based motion pieces that continue the motion after the cam.
     """
 
     start_revolutions: float
@@ -64,7 +64,7 @@ class PlayerCam(NamedTuple):
 
 
 class SetpointPlayer:
-    """Setpoint player, which returns the setpoint row for any time.
+    """Player that calculates the setpoint row for any time from its queue or cam.
 
     For each axis, a row contains the position at spindle position 0 and the travel per revolution.
     """
@@ -96,7 +96,7 @@ class SetpointPlayer:
     ) -> None:
         """Make the axes follow the spindle along the given motion pieces.
 
-        Earlier pieces of the same cam remain.
+        If the new cam has the same start and direction as the current cam, earlier pieces remain.
         """
         path_queue = MotionPieceQueue(pieces[0].positions)
         if self.cam is not None and (self.cam.start_revolutions, self.cam.direction_sign) == (
@@ -170,9 +170,9 @@ class SetpointPlayer:
         return cam.direction_sign * (self.spindle_predictor.predict_revolutions(t) - cam.start_revolutions)
 
     def _geared_row(self, cam: PlayerCam, u: float) -> SetpointRow:
-        """Return the row with the tangent of the cam at the predicted revolutions.
+        """Return the row with the tangent of the cam at spindle revolutions ``u`` from the cam start.
 
-        HAL calculates the position from this tangent.
+        HAL calculates the axis positions from this tangent.
         """
         place, per_turn = cam.path_queue.get_commanded_state(u)
         start = cam.start_revolutions + cam.direction_sign * u

@@ -64,7 +64,10 @@ class SpindlePins:
             self._pins["spindle.position_mode"] = 0
 
     def orient_spindle(self, head: PacketHead, now: float) -> None:
-        """Orient the spindle: turn the orient pin off and then on, as its rising edge latches the angle."""
+        """Orient the spindle to the angle in a packet.
+
+        The orient pin is turned off and then on, because its rising edge latches the angle.
+        """
         self._release_angle()
         if head.get("on") is not True or not self._pins["chain-ok"]:
             return

@@ -1,4 +1,7 @@
-"""Archives with the same bytes for the same files: sorted, with one owner and one timestamp."""
+"""Archives that are byte-for-byte identical for the same files.
+
+The files are sorted, and have the same owner and timestamp.
+"""
 
 from __future__ import annotations
 

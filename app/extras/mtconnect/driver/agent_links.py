@@ -39,9 +39,9 @@ class ActiveCondition(NamedTuple):
 
 
 class MachineReport(NamedTuple):
-    """State of the machine at one instant: values of samples and events, and active conditions.
+    """Machine state at one point in time: values of samples and events, and active conditions.
 
-    A missing key means that the value is not known.
+    If a key is missing, its value is not known.
     """
 
     item_values: Mapping[str, ItemValue]
@@ -54,10 +54,10 @@ def format_utc_time(time: datetime) -> str:
 
 
 def make_pong_reply(heartbeat_s: float) -> bytes:
-    """Return the PONG line that replies to the PING of an agent.
+    """Return the PONG line that replies to the PING of an agent. ``heartbeat_s`` is in seconds.
 
-    ``heartbeat_s`` is in seconds. The reply contains it in milliseconds, limited to the range from 1 ms to
-    just under half an hour.
+    The reply contains the heartbeat in milliseconds, limited to the range from 1 ms to just under half an
+    hour.
     """
     return b"* PONG %d\n" % min(max(round(1000 * heartbeat_s), 1), _LONGEST_BEAT)
 
@@ -83,7 +83,7 @@ def replace_separators(text: str) -> str:
 
 
 def make_values_line(time_text: str, pairs: Mapping[str, str]) -> str:
-    """Return the SHDR line with the samples and events of one instant."""
+    """Return the SHDR line with the values of samples and events at one point in time."""
     return "|".join((time_text, *(part for pair in pairs.items() for part in pair))) + "\n"
 
 
@@ -217,8 +217,9 @@ class AgentDisconnectedError(AgentLostError):
 class AgentLink:
     """Connection to an agent on a non-blocking socket.
 
-    ``heartbeat_s`` is the requested PING interval in seconds. ``waiting_since`` is the time in seconds at
-    which the agent began to wait for a free connection, or None if the agent receives data.
+    ``heartbeat_s`` is the requested PING interval in seconds. ``waiting_since`` is None if the agent
+    receives data. Otherwise it is the time in seconds since which the agent has waited for a free
+    connection.
     """
 
     def __init__(
@@ -270,7 +271,7 @@ class AgentLink:
         """Read received data, reply to each PING, and count all other lines as ignored.
 
         Raises AgentLostError if the connection ends, if a line is longer than ``MAX_LINE_LENGTH`` bytes, or
-        if too much unsent data is already queued for the reply.
+        if too much unsent data is queued to add the reply.
         """
         try:
             come = self.agent_socket.recv(READ_BYTES)

@@ -120,7 +120,7 @@ class MtconnectAdapter:
             self.send_changes()
 
     def close(self) -> None:
-        """Disconnect all agents. The agents then report all values as unavailable."""
+        """Disconnect all agents, which then report all values as unavailable."""
         for link in self._links.copy():
             self._forget(link)
         if self._door is not None:
@@ -170,7 +170,7 @@ class MtconnectAdapter:
     def _make_room(self, link: AgentLink) -> None:
         """Start sending data to a waiting agent, or disconnect it if no connection can be freed.
 
-        If all connections are in use, the first connection that has never sent a PING is closed.
+        If all connections are in use, the first one whose agent has never sent a PING is closed.
         """
         served = self._served()
         silent = next((other for other in served if not other.has_pinged), None)
@@ -238,7 +238,7 @@ class AdapterThread:
     def start(self) -> None:
         """Open the port and start the thread.
 
-        Raises DriverError if the port cannot be opened. No thread is then started.
+        Raises DriverError, without starting it, if the port cannot be opened.
         """
         self._adapter.open()
         self._thread.start()

@@ -56,7 +56,7 @@ class MachineLayout:
     """Layout of the machine, which determines its data items.
 
     ``spindle_name`` is the name of the spindle component. ``is_spindle_positionable`` means that the
-    spindle can also be positioned at an angle, as a rotary axis.
+    spindle can also be used as a rotary axis.
     """
 
     linear_axes: tuple[str, ...]

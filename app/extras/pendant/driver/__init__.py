@@ -1,4 +1,4 @@
-"""Driver for a USB pendant, dial or gamepad, which uses the Linux input layer (evdev).
+"""Driver for a USB pendant, dial or gamepad that uses the Linux input layer (evdev).
 
 The device cannot start motion.
 """

@@ -1,4 +1,4 @@
-"""Linux input devices (evdev): find them by name or USB number, open them and read their events.
+"""Search, opening and reading of Linux input devices (evdev), by name or USB number.
 
 The kernel sends events as ``struct input_event`` entries, grouped into packets. The entry SYN_DROPPED marks
 lost events.
@@ -204,7 +204,7 @@ def _bits(words: str) -> Iterable[int]:
 def select_device_nodes(
     device: str, serial: str, required_controls: Mapping[str, PendantControl], entries: Sequence[DeviceEntry]
 ) -> tuple[DeviceEntry, ...]:
-    """Return the nodes of the only matching device that have a required control.
+    """Return those nodes of the matching device that have a required control.
 
     Raises DriverError if no device or more than one device matches, if a required control is missing, or if
     the device uses Bluetooth.

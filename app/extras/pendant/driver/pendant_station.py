@@ -1,8 +1,8 @@
 """Pendant of the operator station: reader thread, buttons, and implementations of ``core.ports``.
 
 The thread finds and reads the device, and searches for it again after it was unplugged. The pendant adds
-stops, feed hold and handwheel counts. A press that arrives late has no effect until the button is released
-and pressed again. A release always has an effect.
+stops, feed hold and handwheel counts to the operator station. A press that arrives late has no effect until
+the button is released and pressed again. A release always has an effect.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ CLOSE_TIMEOUT_S = 1.0  # seconds that closing waits for the thread
 
 @dataclass(frozen=True, slots=True)
 class PendantState:
-    """State of the pendant at one instant.
+    """State of the pendant at one point in time.
 
     ``input_states`` are by input name in the machine file. ``missing_reason`` is the reason why TurnDesk
-    does not read the pendant, or an empty string.
+    cannot read the pendant, or an empty string.
     """
 
     input_states: Mapping[str, bool]
@@ -96,7 +96,7 @@ class PendantReader:
     # --- thread ---------------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Search for the device once, so that its state is known. Then start the thread."""
+        """Search for the device once, so that its state is known, and then start the thread."""
         self.process_events(0.0)
         self._thread = threading.Thread(target=self._run, name="pendant", daemon=True)
         self._thread.start()
@@ -196,8 +196,8 @@ LOST_EVENTS_MESSAGE = "pendant events were lost; the handwheel may have turned f
 class PendantStation:
     """Implementation of ``core.ports.OperatorStation`` for an operator station with a pendant.
 
-    If the pendant has a stop button, no cycle can run without the pendant. If it has no stop button,
-    unplugging it causes one feed hold. The pendant cannot start motion.
+    If the pendant has a stop button, no cycle can run while the pendant is missing. Without a stop button,
+    unplugging the pendant causes one feed hold. The pendant cannot start motion.
     """
 
     def __init__(
@@ -208,7 +208,7 @@ class PendantStation:
 
     @property
     def missing_reason(self) -> str:
-        """Return the reason why TurnDesk does not read the pendant, or an empty string."""
+        """Return the reason why TurnDesk cannot read the pendant, or an empty string if it can."""
         return self._pendant.get_state().missing_reason
 
     def read_state(self) -> StationState:
@@ -375,7 +375,7 @@ class PendantButtons:
     def _share(self, control: PendantControl) -> float:
         """Return the deflection of an axis toward a control, as a fraction of half the axis range.
 
-        The result is negative if the axis is deflected in the opposite direction.
+        The result is negative if the axis is deflected away from the control.
         """
         reach = self.axis_ranges.get(control.event_code)
         if reach is None or reach.maximum <= reach.minimum:

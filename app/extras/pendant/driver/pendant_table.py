@@ -1,7 +1,7 @@
 """Table [pendant] of the machine file, which describes the USB device.
 
-The buttons of the device are inputs with addresses that begin with ``pendant.``. Keys, buttons, wheels and
-axes have their Linux names and numbers (linux/input-event-codes.h). A key without a name in this module is
+Inputs whose addresses begin with ``pendant.`` are buttons of the device. Keys, buttons, wheels and axes
+have their Linux names and numbers (linux/input-event-codes.h). A key without a name in this module is
 written with its number, such as ``KEY_0x1d3``.
 """
 

@@ -23,8 +23,8 @@ _MAX_REPETITIONS = 1000
 class RoughingValues:
     """Values from the first line of a two-line roughing cycle.
 
-    ``depth_mm`` is the depth of a pass. The retract and the relief (X and Z, of G73) are also in mm.
-    ``repetition_count`` is the number of repetitions of G73.
+    ``depth_mm`` is the depth of a pass. The retract, and the relief in X and Z (only of G73), are also in
+    mm. ``repetition_count`` is the number of repetitions of G73.
     """
 
     depth_mm: float = 0.0
@@ -37,7 +37,7 @@ class RoughingValues:
 def store_roughing_words(
     state: SourceState, statement: SourceStatement, code: SourceWord, rough: RoughingValues
 ) -> bool:
-    """Store the words of a roughing cycle's first line; return whether the line is a first line.
+    """Store the words of a line if it is the first line of a roughing cycle; return whether it is.
 
     Raises ProgramError if the contour would be repeated too often.
     """
@@ -131,7 +131,8 @@ def append_roughing_passes(
 class DepthLevel(NamedTuple):
     """One depth level of the roughing passes.
 
-    It contains the start point of the cycle, the signs of the depth and travel directions, and sizes in mm.
+    It contains the start point of the cycle, sizes in mm, and the signs of two directions: depth, and
+    travel along the pass.
     """
 
     start_point: Point
@@ -220,12 +221,12 @@ def _follow(state: SourceState, code: SourceWord, step: PathStep) -> None:
 
 
 def replace_line(code: SourceWord, line: int) -> SourceWord:
-    """Return the G word of a cycle with another line number, so that its moves refer to that line."""
+    """Return the G word of a cycle with another line number, to which its moves then refer."""
     return code._replace(line_number=line)
 
 
 def _swap(point: Point, *, across_x: bool) -> Point:
-    """Convert a point between (x, z) and (depth, travel), in either direction."""
+    """Exchange the coordinates of a point as needed: (x, z) to (depth, travel), or the reverse."""
     return point if across_x else (point[1], point[0])
 
 

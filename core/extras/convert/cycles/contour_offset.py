@@ -1,7 +1,7 @@
-"""Contours of the LinuxCNC cycles G70 to G72, and their offset by the distance that the cycle leaves.
+"""Contours of the LinuxCNC cycles G70 to G72, and their offset by the allowance of the cycle.
 
-A point is a complex number in mm. In the frame of a cycle, the contour runs toward smaller real parts, and
-the tool approaches it toward smaller imaginary parts.
+A point is a complex number in mm. In the coordinate system of a cycle, the contour runs toward smaller real
+parts, and the tool approaches it toward smaller imaginary parts.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class Segment:
 
     @property
     def size(self) -> float:
-        """Return the length of a line, or the smaller one of the chord and the radius of an arc."""
+        """Return the length of a line. For an arc, return its chord or its radius, whichever is smaller."""
         chord = abs(self.end - self.start)
         return chord if self.center is None else min(chord, abs(self.start - self.center))
 
@@ -89,7 +89,7 @@ def _offset_once(found: list[Segment], step: float, unit: float) -> None:
 
 
 def _join(one: Segment, other: Segment) -> None:
-    """Move the end of one segment and the start of the next one to their nearest intersection."""
+    """Move the end of one segment and the start of the next segment to their nearest intersection."""
     if abs(one.end - other.start) < _SAME:
         return
     points = _intersect(one, other)
@@ -120,7 +120,10 @@ def _intersect(one: Segment, other: Segment) -> list[complex]:
 
 
 def _intersect_line(line: Segment, arc: Segment) -> list[complex]:
-    """Return the intersections of a line with the circle of an arc; a missed circle has one point."""
+    """Return the intersections of a line with the circle of an arc.
+
+    If the line does not reach the circle, its point nearest to the center is returned twice.
+    """
     assert arc.center is not None
     axis = (line.end - line.start) / abs(line.end - line.start)
     local = (arc.center - line.start) / axis

@@ -74,7 +74,7 @@ class ContourPiece:
         return atan2(point[0] - self.center[0], point[1] - self.center[1])
 
     def _sweep(self, point: Point) -> float:
-        """Return the angle from the start to a point in the direction of the arc, from 0 to 2 pi."""
+        """Return the angle from the start of an arc to a point, along the arc, from 0 to 2 pi."""
         return (self._sense * (self._angle(point) - self._angle(self.start))) % (2 * pi)
 
 

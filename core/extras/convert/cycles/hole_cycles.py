@@ -62,7 +62,7 @@ def _bottom(state: SourceState, code: SourceWord, z0: float) -> float:
 
 
 def _plane(state: SourceState, z0: float) -> float:
-    """Return the Z of the R plane, at which the feed begins.
+    """Return the Z of the R plane, at which the move at feed rate begins.
 
     R is a distance on Fanuc controls and a coordinate on other controls.
     """

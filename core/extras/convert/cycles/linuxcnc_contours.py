@@ -21,14 +21,17 @@ _BACKWARD = 0.001  # program units
 
 @dataclass(frozen=True, slots=True)
 class _Frame:
-    """Frame of a cycle: X and Z exchanged for facing, and both directions reversed as needed."""
+    """Coordinate system of a cycle, in which facing is the same as turning.
+
+    X and Z are exchanged for facing, and both directions are reversed as needed.
+    """
 
     is_facing: bool = False
     flips_real: bool = False
     flips_imaginary: bool = False
 
     def to_frame(self, point: complex) -> complex:
-        """Convert a point with Z and X as its parts to the frame."""
+        """Convert a complex number (Z as real part, X as imaginary part) to the frame of the cycle."""
         found = point * -1j if self.is_facing else point
         return complex(
             -found.real if self.flips_real else found.real,
@@ -36,7 +39,7 @@ class _Frame:
         )
 
     def from_frame(self, point: complex) -> complex:
-        """Convert a point of the frame to Z and X."""
+        """Convert a point in the frame of the cycle to Z (real part) and X (imaginary part)."""
         found = complex(
             -point.real if self.flips_real else point.real,
             -point.imag if self.flips_imaginary else point.imag,
@@ -49,7 +52,7 @@ class _Frame:
         return self.flips_real != self.flips_imaginary
 
     def convert(self, segment: Segment) -> Segment:
-        """Return a segment with Z and X as its parts in the frame."""
+        """Convert a segment in Z (real part) and X (imaginary part) to the frame of the cycle."""
         center = None if segment.center is None else self.to_frame(segment.center)
         ccw = segment.is_ccw != self.is_mirrored
         return Segment(self.to_frame(segment.start), self.to_frame(segment.end), center, ccw)
@@ -132,7 +135,7 @@ class LinuxcncContourCycle:
         return found
 
     def _add_way_out(self, segments: list[Segment], *, is_facing: bool) -> None:
-        """Add a move straight out at the end, as newer versions of LinuxCNC do, unless the contour has it."""
+        """Add a straight retract at the end of the contour if it has none, as newer LinuxCNC versions do."""
         first, last = (each.end - each.start for each in (segments[0], segments[-1]))
         begin, end = self._begin, segments[-1].end
         if is_facing:
@@ -190,7 +193,7 @@ class LinuxcncContourCycle:
     # --- the moves
 
     def _finish(self, segments: Sequence[Segment], frame: _Frame) -> None:
-        """Append the passes of G70, from the distance D to the distance E."""
+        """Append the passes of G70, whose distance from the contour decreases from D to E."""
         first, last = self._length("D", 0.0), self._length("E", 0.0)
         word = self._statement.find_word("P")
         count = 1 if word is None else int(word.value)
@@ -299,7 +302,7 @@ def _list_extremes(segment: Segment, axis: int) -> list[float]:
 
 
 def _find_crossing(contour: Sequence[Segment], level: float) -> float | None:
-    """Return the first real part at which the contour reaches a level, or None."""
+    """Return the real part at which the contour first has the imaginary part ``level``, or None."""
     for each in contour:
         low, high = each.start.imag, each.end.imag
         if not low - _SAME <= level <= high + _SAME:

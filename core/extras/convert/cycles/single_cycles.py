@@ -129,7 +129,7 @@ def _check_sizes(
     distances: tuple[float, float],
     sizes: tuple[float, float, float],
 ) -> None:
-    """Raise ProgramError for a distance or a relief without a step, or for too many steps."""
+    """Raise ProgramError for a distance or a relief without a step size, or for too many steps."""
     (main, cross), (depth, shift, relief) = distances, sizes
     if not shift and (relief or abs(cross) > _SAME):
         raise make_error(code.line_number, code.column, "cycle-sideways", word=code.text)
@@ -154,7 +154,7 @@ def _sizes(state: SourceState, statement: SourceStatement, *, along_z: bool) -> 
 
 
 def _has_lengths(state: SourceState, statement: SourceStatement) -> bool:
-    """Return whether the steps are lengths in I, K and D, and not increments in P and Q."""
+    """Return whether the step sizes are lengths in I, K and D, not increments in P and Q."""
     return state.source_control is SourceControl.HAAS or not any(map(statement.find_word, "PQ"))
 
 

@@ -175,7 +175,10 @@ class SourceCycles:
         self._is_in_contour = False
 
     def _trace(self, lines: Sequence[SourceStatement]) -> list[PathStep]:
-        """Return the moves of a contour without the rapids at its end, and restore the modal state."""
+        """Return the moves of a contour without the rapids at its end.
+
+        The modal state is restored afterwards.
+        """
         state = self._state
         saved = (
             state.steps,

@@ -149,9 +149,9 @@ def _taper_of_cycle(state: SourceState, statement: SourceStatement) -> float:
 
 
 def _cut_depths(code: SourceWord, depth: float, first: float, least: float) -> list[float]:
-    """Return the depths of the passes, which are first·√n.
+    """Return the depths of the passes: pass n has the depth first·√n.
 
-    Each pass is at least ``least`` deeper than the previous pass. Raises ProgramError for too many passes.
+    The depth increases by at least ``least`` from pass to pass. Raises ProgramError for too many passes.
     """
     cuts = [min(first, depth)]
     count = 1

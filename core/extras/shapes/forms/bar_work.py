@@ -55,7 +55,7 @@ def _width(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
 
 
 def _corner(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Return the corner of the blade used for touch-off, according to the tool data.
+    """Return the corner of the blade with which it is touched off, according to the tool data.
 
     If the tool is unknown, the result is the corner nearest to the chuck.
     """

@@ -55,7 +55,7 @@ def _plunges(filled: ShapeInstance) -> int:
 
 
 def _slants(filled_shape: ShapeInstance) -> tuple[float, float]:
-    """Return the Z travel per unit of depth for the face-side wall and for the chuck-side wall."""
+    """Return the Z travel per unit of depth for the two walls: face side, then chuck side."""
     return math.tan(math.radians(filled_shape.get_number("FANGLE"))), math.tan(
         math.radians(filled_shape.get_number("CANGLE"))
     )

@@ -74,10 +74,10 @@ They are not fields, and proposals use them.
 
 
 def _extent(rows: Sequence[ContourPoint]) -> FieldValues:
-    """Return the smallest and the largest turned diameter of a contour (LOWEST and HIGHEST).
+    """Return the smallest and the largest turned diameter of a contour, as LOWEST and HIGHEST.
 
-    Moves square across the face are ignored. The result is empty if roughing along Z cannot cut the
-    contour.
+    Moves along X only are ignored. The result is empty if no other move exists, or if a move leads toward
+    Z+, so that roughing along Z cannot cut the contour.
     """
     there = resolve_contour_points(rows)
     turned = [r for a, b in pairwise(there) if abs(a[0] - b[0]) > POINT_TOLERANCE for r in (a[1], b[1])]
@@ -89,7 +89,7 @@ def _extent(rows: Sequence[ContourPoint]) -> FieldValues:
 def _stock_and_end(values: FieldValues) -> tuple[float, float]:
     """Return the diameter of the stock and the diameter of the deepest cut.
 
-    If one of them is unknown, both are equal.
+    If the bore (inside) or the smallest diameter (outside) is unknown, both are the largest diameter.
     """
     low = number(values, LOWEST) or number(values, "SMALL")
     high = max(number(values, each) for each in (HIGHEST, "LARGE", "DIAM"))
@@ -140,7 +140,7 @@ def write_spindle_start(
 ) -> None:
     """Write the tool call, the spindle start and the approach.
 
-    If a surface speed is specified, the lines also start constant surface speed.
+    If a surface speed is specified, constant surface speed is turned on as well.
     """
     code.cutting_edge = filled_shape.get_number("COMP") or 1.0
     code.write_tool_start(filled_shape.get_number("T"), filled_shape.get_number("RPM"), x, z)
@@ -243,7 +243,7 @@ def _contour_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator
 
 
 def _check_first_move(there: Sequence[tuple[float, float]], *, is_inside: bool) -> Iterator[FieldError]:
-    """Yield an error if the contour leads into the stock at its first point.
+    """Yield an error if the contour cuts deeper along X and toward Z- directly after its first point.
 
     The return moves of the roughing passes would cross such a contour.
     """
@@ -385,7 +385,7 @@ def _face(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter) -> 
 
 
 def _past_axis(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Propose an end diameter two nose radii past the axis, because an earlier end leaves a pip."""
+    """Propose an end diameter of minus twice the nose radius, so that facing leaves no center pip."""
     shape = settings.tool(number(values, "T"))
     nose = shape.nose_radius / settings.mm if shape is not None else 0.0
     return -math.ceil(2000.0 * (nose or 0.4 / settings.mm)) / 1000.0

@@ -31,10 +31,10 @@ class RadialHoles(NamedTuple):
 class FaceMilling(NamedTuple):
     """Data for milling around the end of a part, repeated at each depth.
 
-    ``path_points`` contains the positions of the tool center as (x, y) from the axis. ``entry_x`` is an X at
-    Y 0 that is clear of the part. If ``is_closed`` is False, the tool returns to it after each round. If
-    ``is_closed`` is True, the path leads around the part, and the tool moves directly to its first point,
-    which is also clear of the part.
+    ``path_points`` contains the positions of the tool center as (x, y) from the axis. ``entry_x`` is an X
+    at Y 0 that is clear of the part. If ``is_closed`` is False, the tool returns to ``entry_x`` after each
+    round. If ``is_closed`` is True, the path goes around the whole part. Its first point is then also clear
+    of the part, and the tool moves directly to it.
     """
 
     entry_x: float
@@ -155,9 +155,9 @@ class LiveToolWriter:
 
 
 def _wait(degrees: float, c_rpm: float) -> float:
-    """Return the dwell in seconds that the C axis needs for a rotation by ``degrees``.
+    """Return the dwell in seconds that the C axis needs to rotate by ``degrees``.
 
-    The dwell is necessary because the drive does not report that C is in position.
+    The program needs the dwell because the drive does not report when C is in position.
     """
     return math.ceil(10.0 * (abs(degrees) / (6.0 * c_rpm) + 0.5)) / 10.0
 
@@ -182,7 +182,7 @@ class SinumerikLiveToolWriter(LiveToolWriter):
         return f"{name}{'' if len(name) == 1 else '='}{format_sinumerik_number(degrees, 3)}"
 
     def _words(self, degrees: bool) -> None:
-        """Write DIAMON or DIAMOF, which switch X to diameters or to radii.
+        """Write DIAMON, which switches X to diameters, or DIAMOF, which switches X to radii.
 
         TRANSMIT needs radii, because it measures X and Y in the same unit.
         """

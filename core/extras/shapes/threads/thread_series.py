@@ -136,7 +136,7 @@ THREAD_SIZES: dict[ThreadSeries, tuple[ThreadSize, ...]] = {
 
 
 def find_thread_size(series: ThreadSeries, name: str) -> ThreadSize | None:
-    """Return the size with this name, or None.
+    """Return the size with this name, or None if the series does not contain it.
 
     Names are, for example, 1/2, 1/2-13, #10, M10X1.25, 10, 10-32 or 10X1.25. If a name is ambiguous, 1 is
     the size in inches and #1 is the numbered size.
@@ -243,10 +243,10 @@ def _middle(pair: tuple[float, float]) -> float:
 
 
 def _v_root(pitch_diameter: float, pitch: float, nose: float, *, is_inside: bool) -> float:
-    """Return the final diameter of a tool tip with the radius ``nose``.
+    """Return the diameter that the tip of the threading tool reaches on the last pass of a V thread.
 
-    The tip is at half the height of the sharp V thread, minus the tip truncation. If ``nose`` is 0, the
-    profile is standard: a truncation of H/6 outside (rounded root) and of H/8 inside (flat of P/8).
+    ``nose`` is the tip radius. If it is 0, the standard profile is assumed: a root truncation of H/6
+    outside (rounded root) or H/8 inside (flat of P/8).
     """
     high = V60_HEIGHT_FACTOR * pitch
     lack = nose or high / (8.0 if is_inside else 6.0)
@@ -395,9 +395,9 @@ def _parallel_pipe(size: ThreadSize, tolerance: str, nose: float, *, is_inside: 
 
 
 def _pipe_root(pitch_diameter: float, pitch: float, angle: float, nose: float, *, is_inside: bool) -> float:
-    """Return the diameter that the tip of the tool reaches.
+    """Return the diameter that the tip of the tool reaches on the last pass of a pipe thread.
 
-    ``nose`` is its radius, or 0 for the standard profile.
+    ``nose`` is the radius of the tip, or 0 for the standard profile.
     """
     if nose:
         sharp = _V55 if angle == 55.0 else V60_HEIGHT_FACTOR

@@ -64,7 +64,7 @@ def calculate_first_depth(filled_shape: ShapeInstance) -> float:
 
 
 def round_first_depth(filled_shape: ShapeInstance, settings: ProgramSettings) -> float:
-    """Return the depth of the first pass, rounded up to the resolution of its word."""
+    """Return the depth of the first pass, rounded up to the resolution of its program word."""
     deep, coarse = calculate_first_depth(filled_shape), find_coarse_feed_step(filled_shape, settings)
     return (
         math.ceil(deep / coarse - 1e-6) * coarse

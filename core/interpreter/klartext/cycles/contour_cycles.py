@@ -66,7 +66,7 @@ class ClearingData:
 
     @property
     def is_up_cut(self) -> bool:
-        """Return whether Q9 is negative, so that pockets are milled clockwise (up-cut with M3)."""
+        """Return whether pockets are milled clockwise: Q9=-1 (up-cut) with M3, or Q9=+1 with M4."""
         return (self.tool.read_choice(9, (-1, 0, 1), 1.0) < 0) != (self.tool.running_rpm < 0.0)
 
     @property
@@ -201,7 +201,7 @@ def run_roughing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator[Block
 def _move_to_depth(
     clearing: ClearingData, cut: ClearingRing, top: float, z: float, reduced_feed: float
 ) -> Iterator[Block]:
-    """Yield the moves to the start of a ring at the depth ``z``, with a plunge if necessary."""
+    """Yield the moves to the start of a ring at the depth ``z``, including a plunge if necessary."""
     tool = clearing.tool
     if not cut.moves_at_depth:
         yield from tool.move_above_position(cut.ramp_loop[0].start, clearing.clearance_z_mm)
@@ -309,9 +309,9 @@ def run_side_finishing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator
 def _add_approach_arcs(
     ring: ElementLoop, room: AreaChecker, offset_mm: float, radius: float, *, is_up_cut: bool
 ) -> tuple[ElementLoop, Arc | None, Arc | None]:
-    """Return a ring that starts where approach and departure arcs fit, and both arcs.
+    """Return a ring with a suitable start point, and the approach and departure arcs at this point.
 
-    If no such point exists, both arcs are None.
+    If the arcs fit at no point of the ring, both arcs are None.
     """
     order = sorted(range(len(ring)), key=lambda at: (isinstance(ring[at], Arc), -ring[at].length))
     for size in (radius / 2.0**tries for tries in range(_MAX_TRIES)):

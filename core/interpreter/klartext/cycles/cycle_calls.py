@@ -150,7 +150,7 @@ class ActiveCycle:
         )
 
     def _begin(self, number: int) -> None:
-        """Start the definition of a machining cycle and discard the previous definition."""
+        """Start the definition of a machining cycle, replacing the previous cycle definition."""
         self._number, self._lines, self.called_program = number, {}, ""
 
     def _preset(self, column: int) -> None:
@@ -187,10 +187,10 @@ class ActiveCycle:
         state.reset_transformations()
 
     def add_cycle_line(self, node: CycleLine) -> Iterator[Block]:
-        """Yield the blocks of one line of a cycle numbered below 200.
+        """Yield the blocks of one definition line of a cycle numbered below 200.
 
-        Cycles without machining are executed immediately. Raises ProgramError if the cycle is not
-        supported, but only at its first line, and for an invalid value of a cycle without machining.
+        Cycles without machining are executed immediately. Raises ProgramError for an invalid value of such
+        a cycle. For an unsupported cycle, raises ProgramError at the first line only.
         """
         if node.cycle_number in _TRANSFORMS and node.line_number == 0:
             return  # the next line has the values
@@ -208,7 +208,7 @@ class ActiveCycle:
 
     @property
     def contours(self) -> tuple[ContourPart, ...]:
-        """Return the contours of the active cycle, or an empty tuple if it is not a contour cycle."""
+        """Return the contour parts of the active cycle, or an empty tuple if it is not a contour cycle."""
         return self._contours if self._number in CONTOUR_CYCLES else ()
 
     def call_cycle(self, column: int, contours: ContourSequence = ()) -> Iterator[Block]:

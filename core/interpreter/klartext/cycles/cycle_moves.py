@@ -102,7 +102,7 @@ class CycleTool:
         return found
 
     def read_whole_number(self, q: int, default: float | None = None) -> int:
-        """Return a whole number.
+        """Return a parameter whose value must be a whole number.
 
         Raises ProgramError if the number is not whole, or if the parameter is missing and no ``default`` is
         given.
@@ -117,10 +117,10 @@ class CycleTool:
         return found
 
     def read_choice(self, q: int, choices: Sequence[int], default: float | None = None) -> int:
-        """Return a number that selects a variant of the cycle.
+        """Return the parameter that selects a variant of the cycle; it must be one of ``choices``.
 
-        Raises ProgramError for a number that is not in ``choices``, or if the parameter is missing and no
-        ``default`` is given.
+        Raises ProgramError for any other number, or if the parameter is missing and no ``default`` is
+        given.
         """
         found = self.read_whole_number(q, default)
         text = "{parameter}={value} of cycle {number} is not one of {choices}."
@@ -171,16 +171,16 @@ class CycleTool:
     def make_error(
         self, text: str, hint: str, code: str = INPUT_VALUE_INCORRECT, /, **values: object
     ) -> ProgramError:
-        """Return an error of this cycle.
+        """Return a ProgramError for this cycle.
 
-        The texts can use the placeholder ``number`` for the cycle number.
+        The placeholder ``number`` in the texts is replaced by the cycle number.
         """
         return self._state.make_error(self._column, code, text, hint, **{"number": self._number, **values})
 
     def check_condition(
         self, condition: object, text: str, hint: str, code: str = INPUT_VALUE_INCORRECT, /, **values: object
     ) -> None:
-        """Raise the error of ``make_error`` unless ``condition`` is true."""
+        """Raise the ProgramError that ``make_error`` returns, unless ``condition`` is true."""
         if not condition:
             raise self.make_error(text, hint, code, **values)
 
@@ -198,7 +198,7 @@ class CycleTool:
         return None if found is None else found / self._state.transformation.scale_factor
 
     def log_note(self, text: str) -> None:
-        """Log once that this cycle works differently on this control."""
+        """Log a note, only once, about a difference between this cycle and the original control."""
         self._tell(Severity.NOTE, "cycle-otherwise", "Cycle {number}: {what}", what=text)
 
     def _tell(self, severity: Severity, code: str, text: str, hint: str = "", /, **values: object) -> None:
@@ -367,10 +367,10 @@ class CycleTool:
         return [self.run_spindle(rpm) if rpm else self.stop_spindle()]
 
     def switch_coolant(self, q: int) -> list[Block]:
-        """Return a list with the block that switches the coolant, or an empty list for no change.
+        """Return a list with the block that switches the coolant as parameter ``q`` specifies.
 
-        The parameter contains an M function number (8 or 9), or 0 for no change. Raises ProgramError for
-        any other value.
+        The parameter contains an M function number (8 or 9), or 0 for no change; the list is then empty.
+        Raises ProgramError for any other value.
         """
         number, state = self.read_whole_number(q, 0.0), self._state
         if number == 0:
@@ -396,7 +396,7 @@ class CycleTool:
         return self._state.setup.limits.can_orient_spindle
 
     def orient_spindle(self, q: int) -> Block:
-        """Return the block that orients the spindle to the angle in a parameter.
+        """Return the block that orients the spindle to the angle in parameter ``q``, in degrees.
 
         Raises ProgramError for an invalid angle.
         """
@@ -418,9 +418,9 @@ _MIN_LENGTH_MM = 1e-6  # mm
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """The position and rotation of a pocket, slot or stud in the program's X and Y.
+    """The position and rotation of a pocket, slot or stud in program coordinates.
 
-    ``center`` is the center of the shape. ``angle_deg`` is the angle of its first side in degrees.
+    ``center`` is the center of the shape. ``angle_deg`` is the angle of its first side from X, in degrees.
     """
 
     center: Point

@@ -37,9 +37,10 @@ def run_reaming(tool: CycleTool) -> Iterator[Block]:
 def run_boring(tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 202 (boring).
 
-    The tool bores, stops at the spindle angle Q336, moves off the wall (Q214) and retracts. The spindle
-    then restarts. If the spindle cannot be oriented, it stops at any angle. If the tool must move off the
-    wall, the program then stops so that the operator can rotate the cutting edge away from the wall.
+    The tool bores, the spindle stops at the angle Q336, and the tool moves off the wall (Q214) and
+    retracts. The spindle then restarts. If the spindle cannot be oriented, it stops at any angle. If the
+    tool must also move off the wall, the program then stops so that the operator can rotate the cutting
+    edge away from it.
     """
     surface, clear, bottom = read_cycle_heights(tool)
     rpm, off_wall_direction = tool.running_rpm, read_lateral_direction(tool, (0, 1, 2, 3, 4))
@@ -163,10 +164,10 @@ def run_universal_drilling(tool: CycleTool) -> Iterator[Block]:
 
 
 def run_deep_drilling(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 205: cycle 203 with a deepened start point and stop distances.
+    """Yield the blocks of cycle 205, which is cycle 203 with additional parameters for deep holes.
 
-    Drilling starts at Q379. After a full retract, the rapid stops above the last depth, at a distance from
-    Q258 to Q259. Q257 is the depth between chip breaks.
+    Drilling starts at the depth Q379. After a full retract, the rapid back down stops above the last depth,
+    at a distance from Q258 to Q259. Q257 is the depth between chip breaks.
     """
     surface, clear, bottom = read_cycle_heights(tool)
     feed, begin = tool.read_feed(206), surface - max(tool.read_length_mm(379, 0.0), 0.0)
@@ -234,7 +235,7 @@ def run_chip_breaking_tapping(tool: CycleTool) -> Iterator[Block]:
 
 
 def _thread(tool: CycleTool) -> tuple[float, float]:
-    """Return the lead in mm/rev and the signed spindle speed in rpm for cutting the thread.
+    """Return the lead in mm/rev and the signed spindle speed in rpm for a tapping cycle.
 
     A warning is logged because Z is not synchronized with the spindle angle. Raises ProgramError if the
     pitch Q239 is missing or 0, or if S is not programmed.

@@ -69,7 +69,7 @@ class OlderCycleData:
         return word_values.evaluate_feed(self._state, line.feed if line else None, self._column)
 
     def read_cutting_feed(self, line_number: int) -> float:
-        """Return the cutting feed of a definition line per minute, or the active feed without an F word.
+        """Return the cutting feed of a line per minute, or the active feed if the line has no F word.
 
         Raises ProgramError for a rapid, or if there is no valid feed.
         """
@@ -134,8 +134,8 @@ def _tapping(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
 def _slot(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 3, a slot milled level by level.
 
-    The tool mills along the first side on each level. After the last level, it mills around the full width
-    once.
+    On each level, the tool mills along the first side. After the last level, it mills once around the slot
+    at the full width.
     """
     first, second = _sides(data, 4), _sides(data, 5)
     (x, y), clear = tool.xy_position, tool.z_position

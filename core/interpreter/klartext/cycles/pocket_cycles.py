@@ -345,7 +345,7 @@ def _stud(
 def _approach_level(
     milling: _MillingParameters, placement: Placement, outside: float, z: float, down: bool
 ) -> Iterator[Block]:
-    """Yield the rapid to a point next to the blank and the move down to the level."""
+    """Yield a rapid to a point next to the blank, and the move down to the current level."""
     tool = milling.tool
     if not down:
         return

@@ -39,7 +39,10 @@ def compute_points(state: State, node: PatternDefinition) -> list[Vector]:
 
 
 def _count_points(state: State, part: PatternPart, values: dict[str, float]) -> int:
-    """Return the number of points of a part. Raises ProgramError for an invalid number."""
+    """Return the number of points of one part of a PATTERN DEF.
+
+    Raises ProgramError for an invalid number.
+    """
     if part.pattern_kind == "POS":
         return 1
     if part.pattern_kind not in {"PAT", "FRAME"}:

@@ -54,7 +54,7 @@ class SlContour:
 
 
 class ContourCollector(PathRunner):
-    """Collector of the elements of a contour with its corners, which generates no blocks."""
+    """Path runner that collects the elements and corners of a contour and generates no blocks."""
 
     def __init__(self, state: State) -> None:
         super().__init__(state)

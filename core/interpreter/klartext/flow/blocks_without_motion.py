@@ -160,7 +160,7 @@ def execute_system_read(state: State, node: SystemRead) -> None:
 
 
 def execute_system_write(state: State, node: SystemWrite) -> None:
-    """Execute FN 17, which writes a system value without changing the control.
+    """Execute FN 17, which writes a system value, but leave the actual tool table unchanged.
 
     Values of the tool table that do not affect motion are stored, and FN 18 then returns them. A value that
     would change a path is an error, unless the table already contains this value. Raises ProgramError for
@@ -216,7 +216,7 @@ def _cell(state: State, column: int, number: int, index: int) -> float:
 
 
 def _row(state: State, tool: int) -> MillTool | None:
-    """Return the known data of a tool; data of TOOL DEF have priority over the tool table."""
+    """Return the known data of a tool, or None if no data exist. TOOL DEF overrides the tool table."""
     row = state.setup.mill_tools.get(tool)
     if tool in state.tool_definitions:
         length, radius = state.tool_definitions[tool]

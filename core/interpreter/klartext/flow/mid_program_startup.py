@@ -28,7 +28,7 @@ from core.message import Message
 
 
 class InterpreterParts(NamedTuple):
-    """The parts of an interpreter's state; ``pending_line`` is a line that is read but not executed."""
+    """The parts of an interpreter's state. ``pending_line`` was already read but not yet executed."""
 
     state: State
     path_runner: PathRunner

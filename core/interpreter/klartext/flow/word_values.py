@@ -36,7 +36,7 @@ CONTROL_Q_PARAMETERS: dict[int, Callable[[State], float]] = {
 
 
 def held(state: State, kind: str, number: int) -> float | None:
-    """Return the current value of a Q, QL or QR parameter, or None if it has no value."""
+    """Return the current value of a Q, QL or QR parameter, or None if no value has been assigned."""
     if kind != "Q":
         return state.ql_and_qr_values.get((kind, number))
     kept = CONTROL_Q_PARAMETERS.get(number)
@@ -175,10 +175,10 @@ def evaluate_length_mm(state: State, value: Value | None, description: str) -> f
 
 
 def evaluate_feed(state: State, feed: FeedWord | None, column: int) -> float | None:
-    """Return F per minute in mm, or in tenths of an inch in an INCH program, or None for a rapid.
+    """Return the programmed feed per minute, or None for a rapid.
 
-    Without an F word, the active feed is returned. Raises ProgramError in these cases:
-
+    The unit is mm, or tenths of an inch in an INCH program. Without an F word, the active feed is returned.
+    Raises ProgramError in these cases:
     - No feed is active, or the feed is not above 0.
     - FAUTO is programmed, but the last TOOL CALL has no F.
     - A feed per revolution or per tooth cannot be converted, because the spindle is stopped,

@@ -53,10 +53,7 @@ BlockGenerator = Callable[[], Iterator[Block]]
 
 @dataclass(slots=True)
 class _InsertedEvent:
-    """The blocks of an event, such as an M function, between two buffered elements.
-
-    ``line_number`` and ``text`` are the line and the text of the event's block.
-    """
+    """The blocks of an event, such as an M function, between two buffered path elements."""
 
     block_generator: BlockGenerator
     line_number: int
@@ -76,7 +73,7 @@ _CORNER_HINT = "Put RND or CHF between two contour elements."
 
 
 class PathRunner:
-    """Generator of the blocks of path functions, which buffers elements where necessary.
+    """Executor of path functions, with a buffer for path elements that later blocks may still change.
 
     The argument ``machine_datum`` of ``execute_move`` contains the machine positions to which M91 or M92
     refers. It is None if the block has neither M91 nor M92.
@@ -134,7 +131,7 @@ class PathRunner:
         self._corner, self._corner_line = node, self._state.line_number
 
     def execute_between_elements(self, event: BlockGenerator) -> Iterator[Block]:
-        """Yield the blocks of an event between two elements.
+        """Yield the blocks of an event, such as an M function, between two path elements.
 
         If an element is buffered, the event is also buffered and no blocks are yielded.
         """

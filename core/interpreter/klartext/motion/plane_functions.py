@@ -174,9 +174,9 @@ def _spatial(state: State, node: PlaneBlock) -> Matrix:
 
 
 def _relative(state: State, node: PlaneBlock) -> Matrix:
-    """Return the rotation of PLANE RELATIV, about an axis of the active plane.
+    """Return the rotation of PLANE RELATIV about an axis of the active plane.
 
-    If no plane is active, it is about an axis of the workpiece system.
+    If no plane is active, the axis belongs to the workpiece system.
     """
     (word,) = node.words
     return make_rotation(_ROTATION_AXES[word.axis], _angle(state, word))
@@ -235,7 +235,7 @@ LIMIT_CLEARANCE_MM = 0.001  # mm; distance of MB MAX from the software limit
 def plane(state: State, node: PlaneBlock) -> Iterator[Block]:
     """Yield the blocks of PLANE: the retract, if programmed, and a block of kind ``plane``.
 
-    Raises ProgramError before the state changes.
+    If ProgramError is raised, the state has not changed.
     """
     _demand_possible(state, node)
     made = None if node.definition_kind == "RESET" else make_working_plane(state, node)
@@ -357,9 +357,9 @@ def _swivel(
 
 
 def _warn_about_shift(state: State, plane: ActivePlane | None) -> None:
-    """Log a warning if a PLANE block follows a datum shift in a tilted plane.
+    """Log a warning if a PLANE block follows a datum shift that was programmed in a tilted plane.
 
-    The programmer usually did not intend this.
+    Programmers usually do not intend this.
     """
     if plane is None or state.active_plane is None or state.shift == ORIGIN_POINT:
         return

@@ -50,12 +50,12 @@ class CompensatedContour:
 
     @property
     def end_point(self) -> Point | None:
-        """Return the end point of the contour, or None without motion in the plane."""
+        """Return the end point of the contour, or None if the contour has no motion in the plane."""
         return self._flats[-1].end[:2] if self._flats else None
 
     @property
     def end_direction(self) -> Point | None:
-        """Return the direction at the end of the contour, or None without motion in the plane."""
+        """Return the direction at the end of the contour, or None if it has no motion in the plane."""
         return self._flats[-1].end_direction if self._flats else None
 
     def _beside(self, left: float) -> list[OffsetPiece]:
@@ -176,8 +176,8 @@ def _arc_in(
 ) -> Arc:
     """Return the approach arc, which ends tangentially at the offset contour.
 
-    The arc has the angle CCA. With ``tangent``, it starts instead where a line from the start is tangent to
-    it.
+    Its angle is CCA. If ``tangent`` is True, the start is instead the point where a line from the tool
+    position is tangent to the arc.
     """
     size, turn = _radius(state, entry)
     left = get_left_normal(direction)

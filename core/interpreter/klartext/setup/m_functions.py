@@ -69,9 +69,9 @@ _ADVICE = {
 
 
 def check(state: State, codes: Sequence[MFunction]) -> None:
-    """Raise ProgramError for M functions that are not available or must not be combined.
+    """Raise ProgramError for M functions that are unavailable or must not be combined.
 
-    Some M functions conflict in one block, and some are not permitted while M128 is active.
+    Some M functions must not be in the same block, and some are not permitted while M128 is active.
     """
     limits = state.setup.limits
     known = (

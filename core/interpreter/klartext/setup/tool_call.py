@@ -94,7 +94,7 @@ def _oversize(state: State, value: Value | None, what: str, most: float = 99.999
 
 
 def _change(state: State, tool: int, deltas_mm: ToolDeltas, usage: ToolUsage, column: int) -> Iterator[Block]:
-    """Yield the blocks of a tool change: spindle stop, tool, and a program stop for a manual change."""
+    """Yield the blocks of a tool change: spindle stop, new tool, and a program stop if manual."""
     before = state.modal.tool
     if state.modal.spindle:
         state.modal = state.modal._replace(spindle=0, oriented=None)

@@ -111,7 +111,7 @@ class RejectionCondition(Enum):
 
 
 class CodeEntryError(CodedError, ValueError):
-    """An error raised if an entry of the code table contradicts itself."""
+    """An error raised if an entry of the code table is inconsistent."""
 
 
 class ErrorTemplate(NamedTuple):
@@ -132,11 +132,11 @@ class ErrorTemplate(NamedTuple):
 class WordRule:
     """Meaning of a word on a line with a code, and the permitted range of its number.
 
-    - The range is from ``minimum`` to ``maximum``, without ``minimum`` if ``excludes_minimum`` is True.
+    - The range is from ``minimum`` to ``maximum``; ``excludes_minimum`` excludes ``minimum`` itself.
     - ``missing_error`` is the error if the word is missing.
     - ``invalid_error`` is the error for an invalid number.
     - ``too_large_error`` is a separate error for a number above the limit.
-    - ``value_without_number`` is the value of the letter without a number.
+    - ``value_without_number`` is the value that is assumed if the letter has no number.
     """
 
     description: str

@@ -1,4 +1,4 @@
-"""Checks of a line by the rules of the code table: word ranges and reject conditions.
+"""Checks of a line by the rules of the code table: word ranges and rejection conditions.
 
 Messages and remedies are in the entries of ``code_table``. The functions that execute codes call these
 checks when they need a word.
@@ -29,7 +29,7 @@ _ROUNDING = 1 + 1e-9
 def refused(
     statement: Statement, code: CodeEntry, refusal: ErrorTemplate, at: Word | None = None, **values: object
 ) -> ProgramError:
-    """Return the error for a code that an error template rejects.
+    """Return the error that an error template defines for a rejected code.
 
     ``values`` contains the values of further placeholders.
     """
@@ -50,11 +50,11 @@ def refused(
 
 
 def number(state: State, statement: Statement, letter: str, code: CodeEntry | None = None) -> float | None:
-    """Return the number of a word as written, or None if the line lacks the word.
+    """Return the number of a word as programmed, or None if the line lacks the word.
 
     For a letter without a number, the ``value_without_number`` of the rule is returned if it exists. The
-    rule is that of ``code``, or of the line's code if ``code`` is None. Raises ProgramError if the rule
-    rejects the number, or if the rule requires a word or number that the line lacks.
+    rule is that of ``code``, or of the line's code if ``code`` is None. Raises ProgramError if the number
+    violates the rule, or if a required word or number is missing.
     """
     code = code or statement.code_entry
     rule, word = code.word_rules[letter], statement.words.get(letter)
@@ -76,8 +76,8 @@ def check_word_number(
 
     The rule is that of ``code``, or of the line's code if ``code`` is None. The number may have been
     converted to mm, rounded, or stripped of its sign. ``extra_remedy`` is another remedy for a number above
-    the limit. Raises ProgramError if the rule rejects the number, or if the rule requires a word or number
-    that the line lacks.
+    the limit. Raises ProgramError if the number violates the rule, or if a required word or number is
+    missing.
     """
     code = code or statement.code_entry
     rule, word = code.word_rules[letter], statement.words.get(letter)
@@ -136,7 +136,8 @@ _LIMITS: dict[WordLimit, Callable[[State], float]] = {
 def check_word_groups(statement: Statement, code: CodeEntry) -> None:
     """Raise ProgramError if a line violates the word groups of its code.
 
-    The line must have at least one of the required words, and no two words that exclude each other.
+    The line must contain at least one of the required words. It must not contain two words that exclude
+    each other.
     """
     if code.required_words is not None and statement.words.keys().isdisjoint(code.required_words.letters):
         raise refused(statement, code, code.required_words.refusal)
@@ -149,7 +150,7 @@ def check_word_groups(statement: Statement, code: CodeEntry) -> None:
 def check_conditions(
     state: State, statement: Statement, code: CodeEntry, *only: RejectionCondition, word: Word | None = None
 ) -> None:
-    """Raise ProgramError for the first reject condition of a code that applies.
+    """Raise ProgramError for the first rejection condition of a code that is met.
 
     If ``only`` is not empty, only its conditions are checked. The error is located at ``word``, or at the
     code if ``word`` is None.

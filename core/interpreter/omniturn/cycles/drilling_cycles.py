@@ -98,7 +98,7 @@ def _retract(state: State, statement: Statement, first: float) -> float:
 
 
 def _rate(state: State, statement: Statement) -> float:
-    """Return the feed rate of the retract and return moves (L) in mm/s."""
+    """Return the feed rate L of the retract and return moves, or its default, in mm/s."""
     value = statement.get_value("L")
     if value is None:
         return min(_RETRACT_RATE, state.setup.limits.max_feed_mm_s)

@@ -281,7 +281,7 @@ def _passes(
 def _make_view(state: State, statement: Statement, contour: list[Element]) -> ContourFrame:
     """Return the contour in the frame for roughing.
 
-    Raises ProgramError if the start point does not suit the ends of the contour.
+    Raises ProgramError if the contour cannot be roughed from this start point.
     """
     start, first, last = (state.x, state.z), contour[0].start, contour[-1].end
     for axis, letter in ((0, "X"), (1, "Z")):

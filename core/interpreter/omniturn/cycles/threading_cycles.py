@@ -31,10 +31,12 @@ _NEAR = 1e-6  # mm
 class ThreadCycle:
     """The data of one threading cycle, in mm with X as a radius, and in radians.
 
-    ``start_x`` and ``start_z`` are the start point. ``x_outward_sign`` is the sign of X away from the part.
-    ``z_cutting_sign`` is the sign of Z in the cutting direction. ``depth_mm`` is the depth of the last pass
-    from the start point. ``first_infeed_mm`` is the I word per side. ``taper_mm`` is the change of X from
-    the start point to the end.
+    - ``start_x`` and ``start_z`` are the start point.
+    - ``x_outward_sign`` is the sign of X away from the part.
+    - ``z_cutting_sign`` is the sign of Z in the cutting direction.
+    - ``depth_mm`` is the depth of the last pass, measured from the start point.
+    - ``first_infeed_mm`` is the I word per side.
+    - ``taper_mm`` is the change of X from the start to the end of the thread.
     """
 
     start_x: float
@@ -52,7 +54,7 @@ class ThreadCycle:
 
     @property
     def retract_x(self) -> float:
-        """Return X of the return move, which is 3 I away from the part, as seen from the start point.
+        """Return X of the return move, farther from the part than the start point by 3 times I.
 
         The taper is added if the far end is farther from the part than the start point.
         """
@@ -133,7 +135,7 @@ def _check_spindle(state: State, statement: Statement, lead: float) -> None:
 
 
 def _cutting_direction(state: State, statement: Statement) -> tuple[float, float]:
-    """Return the sign of Z in the cutting direction, and Z of the thread end in mm."""
+    """Return the sign of Z in the cutting direction, and the Z coordinate of the thread end in mm."""
     z = check_word_number(state, statement, "Z", round_to_resolution(state, statement, "Z")) or 0.0
     z1 = (z if state.absolute else state.pz + z) + state.secondary_z
     if abs(z1 - state.z) <= _NEAR:
@@ -197,7 +199,7 @@ _FACE = 1e-9  # mm
 def generate_thread_blocks(state: State, statement: Statement) -> Iterator[Block]:
     """Generate the blocks of a G33 or G34 line, which start and end at the same point.
 
-    Raises ProgramError before the first block is generated.
+    If ProgramError is raised, no block has been generated.
     """
     thread = read_threading_cycle(state, statement)
     _warn(state, statement, thread)

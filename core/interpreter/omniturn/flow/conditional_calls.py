@@ -26,7 +26,7 @@ from core.interpreter.shared.job_setup import InterpreterSetup
 
 
 class BranchRecord(Protocol):
-    """Protocol of a record of the branches that interpreter passes have executed."""
+    """Interface of a record of the branches that interpreter passes have executed."""
 
     def is_state_known(self, branch_pass: BranchingPass) -> bool:
         """Return whether another pass was already in the same state as this pass.

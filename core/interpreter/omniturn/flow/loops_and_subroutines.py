@@ -34,7 +34,7 @@ class ProgramStructure(NamedTuple):
 
 
 class _Finder:
-    """Finder of the program structure, which processes each relevant statement once."""
+    """Parser that collects the loops, subroutines and contours of a program, one statement at a time."""
 
     def __init__(self, length: int) -> None:
         self.structure = ProgramStructure({}, {}, {}, {}, length, {})
@@ -206,7 +206,7 @@ class _Finder:
 def _ends_program(statement: Statement) -> bool:
     """Return whether the line ends the program.
 
-    An unreadable line also ends the program if it was probably intended to.
+    The result is also True for an unreadable line that was probably intended to contain M30 or M02.
     """
     return statement.ends_program or _is_probably(statement, "M0*(?:30|2)(?![0-9])")
 
@@ -267,7 +267,7 @@ def is_called_when_closed(statement: Statement) -> bool:
 
 
 class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
-    """The current position in a program, with an optional line at which execution stops."""
+    """Execution position in a program, with an optional line at which execution stops."""
 
     def __init__(self, structure: ProgramStructure) -> None:
         super().__init__(FlowFrame(structure, 0, structure.main_end_index))
@@ -286,7 +286,7 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
         self.end_index = self.next_index
 
     def stop_before(self, line: int) -> None:
-        """Stop execution when it next reaches this line (from 1), in any loop pass or call."""
+        """Stop execution when it next reaches this line (from 1), in any loop execution or call."""
         self._stop = line - 1
         self._update_end()
 
@@ -377,7 +377,7 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
     def skip_contour(self, statement: Statement) -> range | None:
         """Skip the contour of a G75 or G78, and return the indices of its lines.
 
-        Returns None if the contour is missing, because this error was already reported during parsing.
+        Returns None if the contour is missing; parsing has already reported this error.
         """
         structure = self.active_frame.routine
         if "P" not in statement.words:

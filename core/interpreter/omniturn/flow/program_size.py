@@ -134,9 +134,9 @@ def _sum(a: ProgramSize, b: ProgramSize) -> ProgramSize:
 
 
 def estimate_block_count(statement: Statement) -> int:
-    """Return an estimate of the elementary blocks of a line.
+    """Return an estimate of the number of elementary blocks of a line.
 
-    It is the maximum number, or the minimum number for a cycle.
+    The estimate is the maximum or, for a cycle, the minimum.
     """
     if statement.flow_code:
         return (

@@ -81,7 +81,7 @@ def read_c_axis_rpm(state: State, statement: Statement, code: CodeEntry) -> floa
 
 
 def _turn_to_zero(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the rotation of C to 0, where C starts counting again.
+    """Yield the rotation of C to 0, from which C then counts.
 
     The sign of S determines the direction. Without S, C moves in the shorter direction.
     """

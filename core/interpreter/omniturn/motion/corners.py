@@ -66,9 +66,9 @@ def read_corner_size_mm(state: State, statement: Statement, word: Word) -> float
 
 
 def check_radius_word(state: State, statement: Statement) -> None:
-    """Raise ProgramError if a line has an R word that would be a corner but cannot be one.
+    """Raise ProgramError if R of a line would have to be a corner but cannot be one.
 
-    Call this function only for a line without a straight move of only X and Z.
+    Call this function only for lines that are not a straight move of only X and Z.
     """
     word = statement.words.get("R")
     if word is not None:
@@ -88,8 +88,8 @@ class LineCornerStage(CornerStage[Corner, CompensationSwitch]):
     def check_line(self, statement: Statement) -> None:
         """Raise ProgramError if a line must not follow a move with a corner.
 
-        This is the case if the corner needs a following move, and the line has a one-shot code that is not
-        allowed there.
+        A corner may need a following move. A line with a one-shot code that is not allowed there is then an
+        error.
         """
         held = self._held
         if (

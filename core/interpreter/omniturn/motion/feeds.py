@@ -288,9 +288,9 @@ _COARSE_STEP = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)  # mm; the coarsest resol
 
 
 def needs_following_lines(statement: Statement) -> bool:
-    """Return whether the execution of a line needs the following lines.
+    """Return whether the following lines must be known to execute a line.
 
-    G35 and G36 need a following G92, and F needs to know whether tapping follows.
+    G35 and G36 need a G92 on the next line. F needs to know whether tapping follows.
     """
     return "F" in statement.words or not COARSE_FEED_CODES.isdisjoint(statement.modal_codes)
 
@@ -311,7 +311,7 @@ def execute_coarse_feed(
 
 
 def _change(state: State, statement: Statement, following_lines: Sequence[ExecutableLine]) -> None:
-    """Start or end the coarse feed."""
+    """Execute G35, which starts the coarse feed, or G36, which ends it."""
     code = 35 if 35 in statement.modal_codes else 36
     before = state.modal.coarse
     entry = G_CODES[code]
@@ -329,7 +329,7 @@ def _change(state: State, statement: Statement, following_lines: Sequence[Execut
 
 
 def _check_position(state: State, statement: Statement, code: int) -> None:
-    """Raise ProgramError if G36 is not at the position of its G35."""
+    """Raise ProgramError if G36 is programmed at another position than the preceding G35."""
     if code == 35 or state.coarse_start_point is None:
         return
     x, z = state.coarse_start_point

@@ -224,9 +224,9 @@ class SeriesReader:
         return make_move_series(self._state, part.select_lines(slice(0, count)), numbers, self._texts), count
 
     def _passes(self, start_index: int, lines: int, blocks: int) -> tuple[StraightMoveSeries, int] | None:
-        """Return the series of all passes of a loop except the last, or None if not possible.
+        """Return the series of all loop executions except the last, or None if the loop is unsuitable.
 
-        The passes must be within the limits ``lines`` and ``blocks``.
+        The executions must be within the limits ``lines`` and ``blocks``.
         """
         length = self._loops[start_index - 1] - start_index
         if not length or self._flow.end_index <= start_index + length:

@@ -91,9 +91,9 @@ def number(value: float, *, is_metric: bool) -> str:
 
 
 class OmniturnMoveFactory(AdjustedMoveFactory):
-    """Factory of moves that were changed by a corner or compensation.
+    """Factory of blocks whose moves were changed by a corner or by nose compensation.
 
-    The text of each move contains its new coordinates.
+    The text of each block contains the new coordinates.
     """
 
     def __init__(self, max_rpm: float) -> None:

@@ -113,7 +113,7 @@ _DISTANCE_TEXTS = {  # key: whether it is a departure, and whether it is closer 
 
 
 class _Contour(ContourStage):
-    """The contour between G41 or G42 and G40.
+    """Stage for the contour from G41 or G42 to G40.
 
     Both the contour and the compensated path include the secondary offset.
     """

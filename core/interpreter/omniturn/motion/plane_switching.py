@@ -166,7 +166,7 @@ def read_plane_length_mm(state: State, statement: Statement, letter: str, defaul
 
 
 def make_plane_error(statement: Statement, code: str, text: str, hint: str, letter: str = "") -> ProgramError:
-    """Return an error for a line of a plane switching section.
+    """Return an error for a line within coordinate transformation (plane switching).
 
     The error is located at the word ``letter`` if the line has this word.
     """
@@ -180,7 +180,7 @@ _SAME = 1e-9
 
 
 def execute_plane_line(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the blocks of one line of a plane switching section.
+    """Yield the blocks of one line within coordinate transformation (plane switching).
 
     Raises ProgramError for an invalid line.
     """

@@ -58,7 +58,7 @@ def make_statement_move(state: State, statement: Statement) -> Block:
 
 
 def make_straight_move(state: State, line: int, text: str, x: float | None, z: float | None) -> Block:
-    """Return the straight move to X and Z in mm, with None for a word that is not programmed.
+    """Return the straight move to X and Z in mm, where None is a word that is not programmed.
 
     If ``state.fast`` is True, an earlier move with this state passed all checks, so only the length is
     checked. Raises ProgramError if a check fails.
@@ -142,7 +142,7 @@ def round_to_resolution(state: State, statement: Statement, letter: str) -> floa
 
 
 def round_mill_length(state: State, line: int, word: Word) -> float:
-    """Return a length word of plane switching in mm, rounded to the resolution.
+    """Return a length word of the virtual mill in mm, rounded to the resolution.
 
     The length is never halved. A warning is logged if the number was rounded.
     """

@@ -18,7 +18,7 @@ from core.message import Message
 
 
 def _offset(state: State, line: int, word: Word, usage: ToolUsage) -> ToolOffset:
-    """Return the tool offset of a T word; if it was never set, it is 0 and a warning is logged."""
+    """Return the tool offset of a T word, or 0 with a logged warning if it was never set."""
     number = int(word.value or 0)
     offset = usage.use_tool_offset(number, state.setup.tools) if number else ToolOffset()
     if offset is None:

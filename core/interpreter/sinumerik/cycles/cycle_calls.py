@@ -1,4 +1,4 @@
-"""Calls of standard cycles, with the selection of the cycle and the contour of CYCLE95."""
+"""Calls of standard cycles: the selection of the cycle, and the contour of CYCLE95."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def _relocate_finding(line: LexedBlock, file_name: str, finding: Diagnostic) -> 
 
 
 def log_ineffective_cycle(state: SinumerikState, line: LexedBlock) -> None:
-    """Log a single note that a cycle has no effect on this machine.
+    """Log a note, only once, that a cycle has no effect on this machine.
 
     Raises ProgramError if the parameters of the cycle are not supported.
     """

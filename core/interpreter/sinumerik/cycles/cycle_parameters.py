@@ -44,8 +44,8 @@ _SAME = 1e-9  # mm
 class CycleStep(NamedTuple):
     """One motion or action of a cycle, in the program frame, in mm with X as a radius.
 
-    - ``feed`` is in the unit of ``modal.feed``, or is the lead of a screw thread, or None for a rapid.
-    - A step with ``action`` does not move.
+    - ``feed`` is the feed in the unit of ``modal.feed``, the lead of a screw thread, or None for a rapid.
+    - A step with ``action`` does not move an axis.
     - ``c_travel_deg`` is the simultaneous rotation of C in degrees; ``feed`` is then in mm/s.
     - A step with ``is_tapping`` follows the spindle.
     - ``ends_in_hole`` means that the tap is in the hole at the end of the step.
@@ -199,7 +199,7 @@ class CycleCall:
         self.check_parameter(value == round(value), name, text, "Enter a whole number.", value=value)
 
     def check_unsupported_parameter(self, name: str, reason: str) -> None:
-        """Raise ProgramError if a parameter for a function that TurnDesk does not support is not 0."""
+        """Raise ProgramError if the parameter of an unsupported function is not 0."""
         if self.read_number(name):
             raise self.make_parameter_error(
                 name, "{name} is not supported; {why}", "Omit {name}.", "not-in-subset", why=reason
@@ -257,7 +257,7 @@ class CycleCall:
     def require_feed(
         self, feed: float | None, alarm: int = NO_F, hint: str = "Program F before this block."
     ) -> float:
-        """Return the feed. Raises ProgramError if no feed is active (None)."""
+        """Return ``feed``. Raises ProgramError if it is None, because no feed is active."""
         if feed is None:
             raise self.make_call_error(alarm, "no feedrate is programmed.", hint)
         return feed
@@ -298,7 +298,7 @@ class CycleCall:
         /,
         **values: object,
     ) -> None:
-        """Raise the error of ``make_parameter_error`` unless ``condition`` is true."""
+        """Raise the ProgramError that ``make_parameter_error`` returns, unless ``condition`` is true."""
         if not condition:
             raise self.make_parameter_error(name, message, hint, code, **values)
 
@@ -315,7 +315,7 @@ class CycleCall:
     def require_condition(
         self, condition: object, code: _Alarm, text: str, hint: str, /, **values: object
     ) -> None:
-        """Raise the error of ``make_call_error`` unless ``condition`` is true."""
+        """Raise the ProgramError that ``make_call_error`` returns, unless ``condition`` is true."""
         if not condition:
             raise self.make_call_error(code, text, hint, **values)
 
@@ -338,7 +338,7 @@ class CycleCall:
             yield self.make_block(step, feed)
 
     def check_steps(self, steps: Sequence[CycleStep]) -> list[tuple[CycleStep, float]]:
-        """Return the steps that move or act, each with the feed of its block.
+        """Return the steps with their feeds, without steps that neither move nor execute an action.
 
         The feeds apply to the active modal state. Raises ProgramError for an invalid feed.
         """

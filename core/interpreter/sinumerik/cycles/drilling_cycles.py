@@ -41,7 +41,7 @@ _SAME = 1e-6  # mm
 
 
 class HolePositions(NamedTuple):
-    """The Z positions of one hole: retract plane, reference plane, safety clearance and bottom.
+    """The Z positions of one hole, including the retract plane, the reference plane and the bottom.
 
     ``drilling_sign`` is the sign of the drilling direction along Z. ``x`` is the current X position of the
     tool.
@@ -260,9 +260,10 @@ def run_boring_with_liftoff(cycle: CycleCall) -> Iterator[Block]:
 
 
 def _steps_to_bottom(cycle: CycleCall, hole: HolePositions) -> list[CycleStep]:
-    """Return the steps to the bottom, including the dwell there.
+    """Return the steps from the clearance position to the bottom, including the dwell there.
 
-    The spindle runs in the direction SDIR.
+    Before the feed to the bottom, the spindle is started in the direction SDIR, unless it already runs in
+    this direction.
     """
     steps = [hole.make_step(hole.clearance_z), *_turning(cycle), hole.make_step(hole.bottom_z, _feed(cycle))]
     return [*steps, *make_dwell_steps(read_dwell_s(cycle, "DTB"))]
@@ -334,10 +335,10 @@ def generate_pattern_moves(state: SinumerikState, line: LexedBlock) -> Iterator[
 
 
 def _row(cycle: CycleCall, number: int) -> list[tuple[float, float]]:
-    """Return the hole positions of HOLES1.
+    """Return the hole positions of HOLES1, a row of holes.
 
-    The holes are on a line through (SPCA, SPCO) at the angle STA1. The first hole is at the distance FDIS,
-    and the spacing is DBH.
+    The row passes through (SPCA, SPCO) at the angle STA1. The first hole is at the distance FDIS from this
+    point, and the spacing is DBH.
     """
     x, y, angle = (
         cycle.read_length_mm("SPCA"),

@@ -212,7 +212,7 @@ class _Plan:
     def plan_flank_plunges(
         self, z_position: float, flank_extent: float, width: float, bottom: float
     ) -> list[CycleStep]:
-        """Return plunges that remove the material in front of a tapered flank, with decreasing depth.
+        """Return plunges of decreasing depth that remove the material in front of a tapered flank.
 
         The plunges start at ``z_position`` and continue outward. ``flank_extent`` is the Z extent of the
         flank in mm.
@@ -257,10 +257,11 @@ _DIRECTION = {3: 1, 4: -1}  # spindle direction by _SDAC
 def run_part_off(cycle: CycleCall) -> Iterator[Block]:
     """Yield the blocks of CYCLE92 (part-off).
 
-    The tool feeds to _DIAG1 at _FF1, and then to _DIAG2 at _FF2 and _SS2 rpm. If the speed limit _SV2 is
-    specified, _SV1 is a surface speed as for G96. Otherwise, _SV1 is in rpm. After the cycle, the previous
-    speed is active again, or the last speed of the cycle if no speed was active before. Raises ProgramError
-    before the first block if a parameter is invalid.
+    - The tool feeds to _DIAG1 at _FF1, and then to _DIAG2 at _FF2 and _SS2 rpm.
+    - If the speed limit _SV2 is specified, _SV1 is a surface speed as for G96. Otherwise, it is in rpm.
+    - After the cycle, the previous speed is active again, or the cycle's last speed if there was none.
+
+    Raises ProgramError before the first block if a parameter is invalid.
     """
     cycle.check_unsupported_parameter("_RC", "cut the chamfer or the radius with G1 before the cycle")
     cycle.check_unsupported_parameter(
@@ -291,7 +292,7 @@ def run_part_off(cycle: CycleCall) -> Iterator[Block]:
 def _depths(cycle: CycleCall) -> tuple[float, float]:
     """Return the radius at which the feed is reduced and the radius at which the cut ends, in mm.
 
-    Raises ProgramError if the parameters contradict each other.
+    Raises ProgramError if the parameters are inconsistent.
     """
     surface, last = cycle.read_positive_length_mm("SPD"), cycle.read_required_length_mm("_DIAG2")
     slow = cycle.read_length_mm("_DIAG1", last) if cycle.has_argument("_DIAG1") else last

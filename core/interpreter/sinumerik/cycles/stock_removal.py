@@ -71,7 +71,7 @@ _END = frozenset({2, 17, 30})
 def find_contour_lines(
     contour_name: str, active_routine: Routine, contour_routine: Routine | None
 ) -> list[SourceLine] | None:
-    """Return the lines of a contour with this name, or None if the name does not exist."""
+    """Return the lines of the contour with this name, or None if no such contour exists."""
     if ":" in contour_name:
         first, last = (part.strip() for part in contour_name.split(":", 1))
         start = find_label_index(
@@ -228,7 +228,7 @@ def read_machining_type(cycle: CycleCall) -> MachiningType:
 
 
 def run_stock_removal(cycle: CycleCall, contour: list[Element]) -> Iterator[Block]:
-    """Return the blocks of CYCLE95. Raises ProgramError before the first block."""
+    """Return the blocks of CYCLE95. If ProgramError is raised, no block has been generated."""
     kind = read_machining_type(cycle)
     text = "{name} refers to a contour without lines or arcs"
     cycle.check_parameter(contour, "NPP", text, "Write the points of the contour.", WRONG_CONTOUR_DEFINITION)
@@ -249,7 +249,7 @@ def run_stock_removal(cycle: CycleCall, contour: list[Element]) -> Iterator[Bloc
 
 
 class _Plan:
-    """Planner of the motions in depth and length: X and Z, or Z and X for passes along X."""
+    """Planner of stock removal. Depth is X and length is Z, or the reverse for passes along X."""
 
     def __init__(self, cycle: CycleCall, kind: MachiningType, contour: list[Element]) -> None:
         self._cycle, self._kind = cycle, kind
@@ -277,7 +277,8 @@ class _Plan:
     def _extend_contour(self) -> list[Element]:
         """Return the contour with its ends extended by the nose radius where they lead straight outward.
 
-        The tip then reaches the programmed end.
+        Only an end that is a line along the depth toward the open side is extended. The tip then reaches
+        the programmed end.
         """
         *_, last = contour = list(self._contour)
         contour[-1] = self._straight_out(last)
@@ -314,7 +315,7 @@ class _Plan:
             raise self._cycle.make_parameter_error("FAL", text, hint, 61606) from None
 
     def plan_approach(self) -> list[CycleStep]:
-        """Return the steps to the start point, first in depth away from the part and then in length."""
+        """Return the steps to the start point: first in depth, away from the part, and then in length."""
         out, _ = self._signs
         depth, length = self._start
         x, z = self._cycle.x - self._tip[0], self._cycle.z - self._tip[1]
@@ -326,9 +327,9 @@ class _Plan:
                 self._step(CycleMove(depth, length, 1.0))]  # fmt: skip
 
     def plan_roughing(self) -> list[CycleStep]:
-        """Return the roughing steps.
+        """Return the roughing steps: equal passes of at most MID, then a pass along the contour.
 
-        The steps are equal passes of at most MID, and a pass along the contour that leaves the allowance.
+        The last pass leaves the allowance.
         """
         cycle = self._cycle
         infeed = cycle.read_unsigned_length_mm("MID")
@@ -407,7 +408,7 @@ class _Plan:
         return steps
 
     def _break_chips(self, position: Point, move: CycleMove, feed: float) -> list[CycleStep]:
-        """Return a cut that is interrupted by a dwell DT after each distance DAM to break chips."""
+        """Return a cut that breaks chips: after each distance DAM, the tool dwells for DT."""
         length, seconds = self._cycle.read_unsigned_length_mm("DAM"), self._cycle.read_number("DT")
         travel_mm = move.z - position[1]
         if (

@@ -2,7 +2,7 @@
 
 The passes have equal depths or equal chip cross sections, and each pass is a thread move as with G33.
 CYCLE98 cuts a chain of three threads in one pass, each with its own lead and taper. A start angle is
-equivalent to a start point that is farther away by a fraction of the lead.
+produced by a start point that is farther away by a fraction of the lead.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ COARSE_THREAD_LEADS_MM = {
 
 
 def get_coarse_thread_lead(nominal_size: float) -> float:
-    """Return the lead of a coarse metric thread in mm, or 0 if the size does not exist.
+    """Return the lead of a coarse metric thread in mm, or 0 if the standard has no such size.
 
-    Negative sizes specify left-hand threads.
+    A negative size specifies a left-hand thread.
     """
     return (
         COARSE_THREAD_LEADS_MM.get(round(abs(nominal_size)), 0.0)
@@ -46,7 +46,7 @@ def get_coarse_thread_lead(nominal_size: float) -> float:
 
 
 def check_lead_nonzero(cycle: CycleCall, lead: float, name: str) -> None:
-    """Raise ProgramError, naming the parameter, if the lead is 0."""
+    """Raise ProgramError if the lead is 0; the error names the parameter ``name``."""
     hint = "Enter PIT, or MPIT from 3 to 68 for M3 to M68."
     cycle.check_parameter(lead, name, "{name} does not define a lead", hint, WRONG_THREAD_LEAD)
 
@@ -94,9 +94,9 @@ def _depths(cycle: CycleCall, *, equal_chip: bool) -> tuple[float, ...]:
 
 
 def _shifts(cycle: CycleCall, depths: tuple[float, ...]) -> tuple[float, ...]:
-    """Return the shift of each pass along the flank according to IANG.
+    """Return the shift of each pass along the flank, as specified by the infeed angle IANG.
 
-    A negative IANG alternates the flanks.
+    With a negative IANG, the passes alternate between both flanks.
     """
     angle = cycle.read_number("IANG")
     if cycle.line.called_name == "CYCLE99" and cycle.read_number("VARI") // 100 % 10 == 2:
@@ -109,11 +109,13 @@ def _shifts(cycle: CycleCall, depths: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def _kind(cycle: CycleCall) -> int:
-    """Return the machining type of the thread, from 1 to 4, according to VARI.
+    """Return the machining type of the thread, from 1 to 4, as specified by VARI.
 
-    The type is 1 (outside) or 2 (inside) in equal depths, or 3 (outside) or 4 (inside) in equal chip cross
-    sections. In CYCLE99, VARI has more digits. For example, 300103 means type 3; a hundreds digit of 2
-    alternates the flanks.
+    - 1 is outside and 2 is inside, in passes of equal depth.
+    - 3 is outside and 4 is inside, in passes of equal chip cross section.
+
+    In CYCLE99, VARI has more digits. For example, 300103 means type 3. If the hundreds digit is 2, the
+    passes alternate between both flanks.
     """
     if cycle.line.called_name != "CYCLE99":
         return cycle.read_machining_type("VARI", range(1, 5))
@@ -213,7 +215,7 @@ def _passes(cycle: CycleCall, kind: int) -> list[tuple[float, float]]:
 
 
 def _start_delays(cycle: CycleCall, leads: list[float]) -> list[float]:
-    """Return the distance along Z by which each start of the thread is delayed, in mm.
+    """Return how far the start point of each thread start is moved back along Z, in mm.
 
     Raises ProgramError for invalid parameters, and if the spindle is stopped, is under G96, or is too fast
     for one of the leads.
@@ -237,8 +239,8 @@ def _cut(
     """Return the blocks of all passes.
 
     Each pass consists of the approach, the infeed, the threads to ``end_points`` with their leads, the
-    retract and the return. The function ``start`` returns the start point on the surface for a delay and a
-    shift. ``clearance_x`` is X of the retract.
+    retract and the return. The function ``start`` returns the start point of a pass on the surface, given
+    the delay along Z and the shift along the flank. ``clearance_x`` is X of the retract.
     """
     steps: list[CycleStep] = []
     for later in starts:

@@ -231,7 +231,7 @@ def _thread_size(cycle: CycleCall, form: str) -> UndercutSize:
 def _in_passes(
     cycle: CycleCall, undercut_position: UndercutPosition, size: UndercutSize, feed: float, clearance: float
 ) -> list[CycleStep]:
-    """Return the steps of roughing, finishing or both, for _VARI 1, 2 or 3.
+    """Return the steps that rough (_VARI 1), finish (2) or rough and finish (3) an undercut.
 
     Roughing passes have depths of at most _MID and leave the allowances _FALX and _FALZ.
     """
@@ -284,7 +284,7 @@ def read_direction_signs(cycle: CycleCall, position_number: int) -> tuple[float,
 
 
 def make_undercut_profile(undercut_position: UndercutPosition, size: UndercutSize) -> list[Element]:
-    """Return the profile: down the slope from outside, along the bottom, and up the shoulder."""
+    """Return the profile of an undercut: entry slope, bottom, and shoulder from the bottom outward."""
     slope = tan(radians(size.entry_angle_deg))
     begin = undercut_position.compute_point(-DEFAULT_RETRACT_MM, size.width + DEFAULT_RETRACT_MM / slope)
     foot = undercut_position.compute_point(size.depth, size.width - size.depth / slope)

@@ -28,7 +28,7 @@ from core.tool_edges import format_edge_name
 
 
 class InterpreterComponents(NamedTuple):
-    """The parts of an interpreter that contain its state, copied when a pass is saved.
+    """The parts of an interpreter that contain its state and are copied when a pass is saved.
 
     ``pending_line`` is a block that was read but not yet executed.
     """

@@ -41,7 +41,7 @@ _GOTO = frozenset(
 
 @dataclass(slots=True)
 class Routine:
-    """One program of a file; findings show its ``displayed_name`` if it is in another file."""
+    """One program of a file. Findings include its ``displayed_name`` if it is in another file."""
 
     source: ProgramSource
     line_range: range
@@ -197,10 +197,10 @@ def _structure(
 def _execute_for(
     line: LexedBlock, jump: ControlStatement, begin: ControlStatement, state: SinumerikState, value: float
 ) -> bool:
-    """Set the loop variable of FOR, and return whether the loop must be executed (again).
+    """Set the loop variable of FOR, and return whether the loop body must be executed.
 
-    It is executed while the variable does not exceed the end value. Raises ProgramError if the variable is
-    not defined or the end value cannot be evaluated.
+    The body is executed while the variable does not exceed the end value. Raises ProgramError if the
+    variable is not defined or the end value cannot be evaluated.
     """
     if not state.variables.set_value(begin.identifier, value):
         text = Message("the name {jump} is not defined with DEF.", jump=begin.identifier)
@@ -271,7 +271,7 @@ def _sizes(
 
 
 def _format_message(line: LexedBlock, jump: ControlStatement, state: SinumerikState) -> str:
-    """Return the text of MSG, in which numbers have no trailing zeros."""
+    """Return the text of MSG. Numbers in the text have no trailing zeros."""
     shown = []
     for piece in jump.message_parts:
         if isinstance(piece, str):
@@ -316,7 +316,7 @@ def find_label_index(
 ) -> int | None:
     """Return the index of the line with this label or block number.
 
-    Returns None if the line does not exist in the jump's search direction.
+    Returns None if no such line exists in the search direction of the jump.
     """
     places = program.find_label_lines(label)
     next_hit = next((place for place in places if place > start_index), None)

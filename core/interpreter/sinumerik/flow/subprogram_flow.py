@@ -222,7 +222,7 @@ class _Call(FlowFrame[Routine]):
 
     @property
     def comparison_key(self) -> tuple[object, ...]:
-        """Return the values that identify the position of the call, for the detection of endless loops."""
+        """Return the values that identify the execution position, for the detection of endless loops."""
         return (
             self.file_name,
             self.next_index,
@@ -256,7 +256,7 @@ class SinumerikProgramFlow(ControlFlow[_Call]):
 
     @property
     def is_in_modal_call(self) -> bool:
-        """Return whether the position is in a program that MCALL called, in which MCALL has no effect."""
+        """Return whether MCALL has called the active program; MCALL has no effect within it."""
         return self.active_frame.is_modal
 
     @property
@@ -390,9 +390,9 @@ class SinumerikProgramFlow(ControlFlow[_Call]):
                 raise line.make_error(control_statement.column, ENDLESS_LOOP_CODE, text, hint)
 
     def _check_loop_start(self, line: LexedBlock, end: ControlStatement) -> None:
-        """Raise ProgramError if FOR of the loop that ends in this line has not been executed.
+        """Raise ProgramError if this line ends a FOR loop whose FOR has not been executed.
 
-        Without FOR, the variable has no start value, so the number of repeats is unknown.
+        The loop variable then has no start value, so the number of repeats is unknown.
         """
         start = self.active_routine.map_structures()[self.next_index - 1][0]
         if start not in self.active_frame.started_loops:
@@ -401,10 +401,7 @@ class SinumerikProgramFlow(ControlFlow[_Call]):
             raise line.make_error(end.column, WRONG_NESTING, text, hint)
 
     def _is_repeated_state(self) -> bool:
-        """Return whether a backward jump occurs in the same state as an earlier jump.
-
-        If so, the loop is endless.
-        """
+        """Return whether a backward jump repeats an earlier state, so that the loop is endless."""
         if self._loops is None:
             return False
         state = self._state
@@ -415,8 +412,8 @@ class SinumerikProgramFlow(ControlFlow[_Call]):
     def _begin_repeat(self, line: LexedBlock, jump: ControlStatement, state: SinumerikState) -> None:
         """Start REPEAT or REPEATB.
 
-        The section extends from one label to another label or to this line, or is only the block with the
-        label.
+        The repeated section extends from one label to another label or to this line. For REPEATB, it is
+        only the block with the label.
         """
         routine, repeats, here = self.active_routine, self.active_frame.repeats, self.next_index - 1
         start = find_label_index(ControlKeyword.GOTO, jump.target_label, routine, here)
@@ -475,7 +472,7 @@ def _end_label(routine: Routine, start: int, repeat_index: int) -> int:
 
 
 def _reads_positions(source: ProgramSource) -> bool:
-    """Return whether a program reads axis positions, so that its jumps may depend on them."""
+    """Return whether a program reads axis positions, so that they may affect its jumps."""
     return any("$AA_I" in line.upper() or "$P_EP" in line.upper() for line in source.lines)
 
 

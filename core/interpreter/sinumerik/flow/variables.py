@@ -126,7 +126,7 @@ class Variables:
         return max(surplus, 0)
 
     def set_value(self, name: str, value: float) -> bool:
-        """Set a value, or return False if the variable is not defined."""
+        """Set the value of a variable and return True, or return False if the variable is not defined."""
         if name[0] == "R" and name[1:].isdigit():
             self.r_parameters[f"R{int(name[1:])}"] = value
         elif name in self.variable_scope.numbers:
@@ -219,7 +219,10 @@ _INDEX_HINTS = {"R": Message("Use a parameter from R0 to R{most_r}.", most_r=MAX
 
 
 def _check_repeat_count(count: float, make_error: ErrorFactory) -> int:
-    """Return the number of elements of REP, or raise the error for an invalid number."""
+    """Return the number of elements that REP fills.
+
+    Raises the error that ``make_error`` returns if the number is not a whole number of 0 or more.
+    """
     whole = convert_to_whole_number(count)
     if whole is None or whole < 0:
         text = Message("REP cannot fill {count} elements.", count=f"{count:g}")

@@ -29,10 +29,10 @@ _CUT = CONTOUR_KINDS - {BlockKind.RAPID}
 
 @dataclass(slots=True)
 class Corner:
-    """A corner at the end of a block.
+    """A chamfer or rounding at the end of a block.
 
     ``size_mm`` is the chamfer length (CHF), the chamfer leg (CHR) or the radius (RND). At an arc, the leg
-    is a chord. ``call_site`` is the location of its block, because another file may be active at the next
+    is a chord. ``call_site`` is the location of the block, because another file may be active at the next
     move.
     """
 
@@ -69,7 +69,7 @@ def make_corner(state: SinumerikState, statement: Statement, block: Block) -> Co
 
 
 def _modal_corner(state: SinumerikState, statement: Statement, block: Block) -> Corner | None:
-    """Return the corner rounding of modal RNDM, or None if it does not apply to the block.
+    """Return the rounding that RNDM inserts after a block, or None if RNDM does not apply.
 
     RNDM applies only to lines and arcs of a contour under G18.
     """

@@ -1,4 +1,4 @@
-"""Rapids to machine home (G74) or to a fixed point (G75) in machine coordinates, without offsets."""
+"""Rapids to machine home (G74) or to a fixed point (G75) in machine coordinates."""
 
 from __future__ import annotations
 

@@ -335,9 +335,9 @@ def store_end_direction(state: SinumerikState, arc: Block) -> Block:
 
 
 class PlainMoveFactory(AdjustedMoveFactory):
-    """Factory of moves that stages have changed, which retain their program text.
+    """Factory of blocks whose moves were changed by corners or nose compensation.
 
-    The slowest axis determines the time of a rapid.
+    The blocks retain their program text. In a rapid, the slowest axis moves at its maximum speed.
     """
 
     def __init__(self, state: SinumerikState) -> None:
@@ -358,5 +358,5 @@ class PlainMoveFactory(AdjustedMoveFactory):
         return replace(made, feed=travel.compute_rapid_rate(self._state.setup.limits.max_axis_speeds))
 
     def insert_move(self, block: Block, element: Element) -> Block:
-        """Return a new move of X and Z after a block that ends with C at its target."""
+        """Return a new move of X and Z, to be inserted after a block; C remains at the block's target."""
         return replace(self.replace_element(block, element), c0=block.c, text=f"{block.text} ›")

@@ -157,9 +157,9 @@ class CompensationStage:
             contour.moves.append(contour.last_move)
 
     def _close(self, contour: _Contour, block: Block) -> Iterator[Block]:
-        """Yield the contour and the departure move of G40.
+        """Yield the blocks of the contour and the departure move of G40.
 
-        At the program end, the nose does not move.
+        If ``block`` is the program end instead of a move, the nose does not move.
         """
         code = contour.approach_move.block.modal.compensation_code
         if block.moves and (block.kind not in STRAIGHT_KINDS or self._turns(block)):
@@ -186,8 +186,8 @@ class CompensationStage:
 class _ContourEnd(NamedTuple):
     """One end of the contour, at the point ``corner``.
 
-    The nose center moves from ``nose_start`` to ``nose_end``, which is perpendicular to the contour.
-    ``contour`` starts with the element at this end.
+    The nose center moves from ``nose_start`` to ``nose_end``. From ``corner``, ``nose_end`` is in the
+    direction perpendicular to the contour. ``contour`` starts with the element at this end.
     """
 
     name: str  # approach or departure

@@ -117,7 +117,7 @@ def _arc_by_point(
 
 
 def _clockwise(across: float) -> bool:
-    """Return whether this cross product of two directions is a clockwise rotation (view with X down)."""
+    """Return whether a cross product of two directions means clockwise rotation (X down)."""
     return across < 0.0
 
 

@@ -1,4 +1,4 @@
-"""Feed words F, FB and OVR, and the effect of G94 to G97 on the meaning of F."""
+"""Feed words F, FB and OVR. The codes G94 to G97 determine the meaning of F."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Travel and direction of the C axis from its current position to a target, in degrees.
+"""Calculation of the travel of the third axis from its current position to a target.
 
-The rules cover a modulo axis (0 to less than 360), a rotary axis without modulo (-360 to +360), and a
-linear axis in mm. This module does not depend on words, offsets and machines.
+The rules cover a modulo axis (0 to less than 360 degrees), a rotary axis without modulo (-360 to +360
+degrees), and a linear axis in mm. This module does not depend on words, offsets and machines.
 """
 
 from __future__ import annotations

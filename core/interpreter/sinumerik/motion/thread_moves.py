@@ -64,7 +64,7 @@ def generate_thread_blocks(state: SinumerikState, statement: Statement) -> Itera
 
 
 def _growth(state: SinumerikState, statement: Statement) -> float:
-    """Return the lead change per revolution in mm/rev.
+    """Return the change of the lead per revolution, in mm/rev.
 
     The change is F with G34, minus F with G35, and 0 with G33.
     """
@@ -188,9 +188,9 @@ def check_thread_spindle(state: SinumerikState, statement: Statement, lead: floa
 
 
 def _continues(state: SinumerikState, statement: Statement, travel: AxisTravel, lead: float) -> bool:
-    """Return whether the block continues the previous thread instead of leading out of the thread.
+    """Return whether the block continues the previous thread instead of leaving the thread.
 
-    Raises ProgramError if the block reverses along Z or follows a block that led out of the thread.
+    Raises ProgramError if the block reverses along Z or follows a block that has left the thread.
     """
     if not state.threads:
         return False

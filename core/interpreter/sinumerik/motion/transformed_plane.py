@@ -1,8 +1,8 @@
-"""Milling on the face (TRANSMIT) and on the side (TRACYL) with X, Y and Z, executed by the axes X, Z and C.
+"""Milling on the face (TRANSMIT) and side (TRACYL) in X, Y and Z with the axes X, Z and C.
 
 The program words define positions in a plane (abscissa and ordinate) and a depth perpendicular to the
 plane. Lines, arcs, corners and compensation are calculated in the plane as they are in X and Z on the
-lathe. The results are moves of the virtual mill (``core.geometry.virtual_mill``), as in plane switching.
+lathe. The results are moves of the virtual mill (``core.geometry.virtual_mill``).
 """
 
 from __future__ import annotations
@@ -101,9 +101,9 @@ class ActiveTransformation:
         return self._depth - self._plane.programmed_frame.shift_c
 
     def update_position(self) -> None:
-        """Set the position of the mill from the axis positions.
+        """Set the position of the virtual mill from the axis positions.
 
-        This is required at the start and after a change of tool or zero.
+        This is necessary at the start of the transformation and after a change of the tool or zero offset.
         """
         state, modal = self._state, self._state.modal
         self._offset = modal.drawing_zero_x, modal.drawing_zero_z
@@ -324,7 +324,7 @@ class ActiveTransformation:
         )  # fmt: skip
 
     def _set_end_position(self, block: Block) -> None:
-        """Set the lathe's state to the programmed end point without compensation."""
+        """Set the lathe's state to the programmed end point of a block, ignoring nose compensation."""
         state, frame = self._state, self._frame
         end = _spot(frame, block.x + block.offset_x, block.z + block.offset_z, block.c)
         if isinstance(frame, FacePlane):
@@ -355,7 +355,7 @@ class ActiveTransformation:
                 yield from self._to_lathe_blocks(compensated_block)
 
     def flush_corner(self) -> Iterator[Block]:
-        """Yield the buffered blocks when no further move can follow their corner.
+        """Yield the blocks that are buffered for a corner if no further move can follow.
 
         Raises ProgramError if the corner needs a following move.
         """
@@ -364,7 +364,7 @@ class ActiveTransformation:
                 yield from self._to_lathe_blocks(compensated_block)
 
     def flush_at_program_end(self) -> Iterator[Block]:
-        """Yield the remaining blocks at the end.
+        """Yield the remaining blocks at the end of the program.
 
         Raises ProgramError if a corner or a contour is unfinished.
         """
@@ -397,7 +397,10 @@ class ActiveTransformation:
             yield self._made(block, part)
 
     def _turn_at_axis(self, block: Block, part: PlaneMove) -> Iterator[Block]:
-        """Yield a rotation of C if the tool is on the axis, until the path leads outward along X."""
+        """Yield a rotation of C if the tool is on the spindle axis.
+
+        C rotates until the path leads outward along X.
+        """
         state, turn = self._state, replace(part, start_angle_rad=self._theta).find_start_rotation()
         if not needs_centerline_rotation(self._log, block.line, turn):
             return

@@ -1,4 +1,4 @@
-"""Conversion of axis letters in a transformed plane, and rejection of words not allowed."""
+"""Conversion of axis letters in a transformed plane, and rejection of words not allowed there."""
 
 from __future__ import annotations
 

@@ -26,11 +26,10 @@ _ISO_CODES = frozenset({98, 99})  # M98 and M99 of the ISO dialect, which call a
 def check_m_functions(
     state: SinumerikState, statement: Statement, missing_functions: list[MachineRequirement]
 ) -> None:
-    """Check the M functions of a block, and add the missing ones to ``missing_functions``.
+    """Check the M functions of a block, and add the missing functions to ``missing_functions``.
 
-    Missing functions are machine-builder functions that this machine lacks; the original control passes
+    A missing function is a machine-builder function that this machine lacks. The original control passes
     such a code to the builder's PLC without an alarm. Raises ProgramError in the following cases:
-
     - The machine file disables the code, or the code is M98 or M99 of the ISO dialect.
     - The code opens the chuck while the spindle turns.
     """
@@ -88,9 +87,9 @@ def _refused(state: SinumerikState, statement: Statement, code: int, word: Word)
 
 
 def _warn_missing_function(state: SinumerikState, statement: Statement, code: int, word: Word) -> None:
-    """Log a single warning that this machine lacks a machine-builder function.
+    """Log a warning, only once, that this machine lacks a machine-builder function.
 
-    A program with a missing function cannot be started.
+    A program that needs a missing function cannot be started.
     """
     if f"M{code}" in state.logged_functions:
         return

@@ -219,7 +219,7 @@ def log_ineffective_words(state: SinumerikState, statement: Statement) -> None:
 def log_ineffective_word(
     state: SinumerikState, statement: Statement, word: Word, name: str, reason: str
 ) -> None:
-    """Log a single note that a function has no effect because of ``reason``."""
+    """Log a note, only once, that a function has no effect because of ``reason``."""
     if reason and name not in state.logged_functions:
         state.logged_functions.add(name)
         found = statement.make_warning(

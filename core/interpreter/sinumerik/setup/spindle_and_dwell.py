@@ -128,7 +128,7 @@ def _position_spindle(state: SinumerikState, statement: Statement, word: Word) -
 
 
 def is_oriented_by_drive(state: SinumerikState) -> bool:
-    """Return whether the spindle drive orients the spindle, because the spindle is not the C axis."""
+    """Return whether the spindle drive can orient the spindle, and the spindle is not the C axis."""
     limits = state.setup.limits
     return limits.can_orient_spindle and not (limits.is_c_enabled and limits.is_spindle_c_axis)
 
@@ -318,8 +318,8 @@ def _check_start(state: SinumerikState, statement: Statement, word: Word) -> Non
 def make_dwell_block(state: SinumerikState, statement: Statement) -> Block:
     """Return the block of G4 with F in seconds or S in revolutions.
 
-    The active F and S do not change. Raises ProgramError for a negative dwell or a dwell longer than 3600
-    s. For a dwell in revolutions, raises ProgramError if the spindle is stopped or is not controlled.
+    The active F and S do not change. Raises ProgramError if the dwell is negative or longer than 3600 s.
+    For a dwell in revolutions, also raises ProgramError if the spindle is stopped or not controlled.
     """
     word = statement.words.get("F") or statement.words["S"]
     value = state.number(statement, word)

@@ -32,9 +32,8 @@ WRONG_EDGE_NUMBER = 17180
 def execute_tool_words(state: SinumerikState, statement: Statement, usage: ToolUsage) -> Iterator[Block]:
     """Yield the blocks of the tool words T and D.
 
-    T without D selects the tool with D1, and D0 cancels the offset. A tool without an offset only causes a
-    warning. Raises ProgramError in the following cases:
-
+    T without D selects the tool with D1, and D0 cancels the offset. For a tool without an offset, only a
+    warning is logged. Raises ProgramError in the following cases:
     - The tool number or the edge is invalid, or the tool does not have this edge.
     - D1 to D9 is programmed without an active tool.
     - G41 or G42 is active.
@@ -121,8 +120,8 @@ def _activate_edge(
 def _offset(state: SinumerikState, statement: Statement, key: int, usage: ToolUsage) -> ToolOffset:
     """Return the offset of a cutting edge.
 
-    Raises ProgramError if the tool has offsets but not for this edge. If the tool has no offset, a warning
-    is logged, and the offset is 0.
+    Raises ProgramError if the tool has offsets, but none for this edge. If the tool has no offset at all, a
+    warning is logged, and the offset is 0.
     """
     tools = state.setup.tools
     if key not in tools and get_tool_number(key) in tools:
