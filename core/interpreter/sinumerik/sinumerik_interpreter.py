@@ -78,7 +78,7 @@ from core.interpreter.sinumerik.sinumerik_statement import Statement, make_state
 from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.sinumerik.control_differences import find_missing_function
 from core.language.sinumerik.cycle_names import CYCLE_PARAMETERS, IGNORED_CYCLES
-from core.language.sinumerik.sinumerik_words import ARC_WORDS, LexedBlock
+from core.language.sinumerik.sinumerik_words import ARC_WORDS, LexedBlock, Word
 from core.language.sinumerik.subprogram_files import HEADER_PATTERN
 from core.language.sinumerik.word_table import (
     BLOCK_EXACT_STOP_GROUP,
@@ -378,6 +378,16 @@ class Interpreter(LinePass[LexedBlock]):
         else:
             yield from self._lathe_motion(statement)
 
+    def _find_unused_word(self, statement: Statement) -> Word | None:
+        """Return the first word that needs another function in its block, or None.
+
+        SINUMERIK stores SF for the next thread, but TurnDesk does not. An SF without a thread in its block
+        is therefore rejected. Otherwise, the next thread would start at a wrong angle.
+        """
+        is_thread = self._state.motion in THREAD_MOTIONS and statement.has_position_word
+        names = ("FP", "OFFN") if is_thread else ("FP", "OFFN", "SF")
+        return next((statement.words[name] for name in names if name in statement.words), None)
+
     def _lathe_motion(self, statement: Statement) -> Iterator[Block]:
         """Yield the move of a statement with the axes of the lathe, without a transformation."""
         state = self._state
@@ -387,12 +397,12 @@ class Interpreter(LinePass[LexedBlock]):
             yield make_home_move(state, statement)
         elif statement.get_g_code(NON_MODAL_GROUP) == 75:
             yield make_fixed_point_move(state, statement)
-        elif word := statement.words.get("FP") or statement.words.get("OFFN"):
-            of = "G75" if word.name == "FP" else "TRANSMIT"
+        elif word := self._find_unused_word(statement):
+            code = {"FP": "G75", "OFFN": "TRANSMIT", "SF": "G33"}[word.name]
             raise statement.make_error(
                 word,
                 "word-unused",
-                Message("{word} can be used only with {total}.", word=word.text, total=of),
+                Message("{word} can be used only with {total}.", word=word.text, total=code),
                 "Remove this text from the program.",
             )
         elif statement.has_position_word or (ARC_WORDS & statement.words.keys()):
