@@ -41,7 +41,7 @@ class Sketch:
 
 
 def make_sketch(*outlines: Outline, dimensions: Iterable[Dimension] = ()) -> Sketch:
-    """Return a sketch of these outlines and dimensions, and add the spindle axis."""
+    """Return a sketch with these outlines, their dimensions and the spindle axis."""
     ends = [p[0] for each in outlines for p in each.points]
     low, high = min(ends, default=0.0), max(ends, default=1.0)
     room = 0.05 * (high - low or 1.0)

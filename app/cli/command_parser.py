@@ -159,7 +159,10 @@ class CommandParser(argparse.ArgumentParser):
         )
 
     def print_help(self, file: Any = None) -> None:
-        """Print the help. Raises OSError if printing fails, although argparse would suppress the error."""
+        """Print the help.
+
+        Raises OSError if printing fails. The method of argparse would ignore this error.
+        """
         out = file or sys.stdout
         out.write(self.format_help())
         out.flush()

@@ -108,7 +108,10 @@ def _report_file(source: str, out: str | None, hal: GeneratedHalFiles) -> None:
 
 
 def _save_hal(output_path: Path, text: str, extra_files: Mapping[str, str]) -> None:
-    """Write all files. Raises CommandError if a file already exists or cannot be written."""
+    """Write the HAL file and its additional files, which are in the same folder.
+
+    Raises CommandError if a file already exists or cannot be written.
+    """
     files = {output_path: text, **{output_path.parent / name: more for name, more in extra_files.items()}}
     for path in files:
         if path.exists():
@@ -407,9 +410,9 @@ def simulate_devices(file: str) -> int:
 
 
 def _line_reader() -> Callable[[], Iterable[str]]:
-    """Return a function that reads lines from standard input.
+    """Return a function that returns the new lines from standard input.
 
-    If standard input is not available, the function returns ().
+    If standard input is not available, the function always returns an empty sequence.
     """
     from app.compose.backends.simulated_devices import LineReader
 

@@ -1,6 +1,7 @@
 """Proof of the part that the loaded program makes, with a severity for each finding.
 
-The part is proved after the program. Decision record 0011 specifies which functions wait for this proof.
+TurnDesk proves the program first, and then the part. Decision record 0011 specifies when a start must wait
+for the proof of the part.
 """
 
 from __future__ import annotations

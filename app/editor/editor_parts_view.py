@@ -105,7 +105,7 @@ class EditorPathView(PathView):
         }
 
     def make_pan_actions(self) -> dict[int, Callable[[], None]]:
-        """Return the actions of the arrow keys, each of which pans the view of the path."""
+        """Return the actions with which the arrow keys pan the view of the path, by Qt key code."""
         steps = {Qt.Key.Key_Left: (-1, 0), Qt.Key.Key_Right: (1, 0), Qt.Key.Key_Up: (0, -1)}
         steps[Qt.Key.Key_Down] = (0, 1)
         return {key: partial(self.pan_view, *step) for key, step in steps.items()}

@@ -38,7 +38,7 @@ class PanelSynchronizer:
         return not editor.message
 
     def synchronize(self) -> None:
-        """Prove the preview of the form, and copy the text that the form has written into the text field.
+        """Show new text of the panel's form in the text field, and prove the form's preview.
 
         This method is called once per frame.
         """

@@ -157,7 +157,7 @@ def find_strip_key_height(theme: ScreenTheme) -> float:
 
 
 class ManualFunctionStrip(TouchPanel):
-    """Strip below tool setting with keys for manual functions and for a skim cut.
+    """Strip with the keys for manual functions and skim cuts, below the tool setting panel.
 
     The strip is hidden while a question is open.
     """
@@ -302,7 +302,11 @@ class JogPage(HeldKeysPage):
         return {**common, **touch, "F4": model.tool_setting.ask_to_undo_change}
 
     def find_disabled_keys(self) -> frozenset[str]:
-        """Return the touch-off and undo keys, or 3D-ROT on a mill, that are currently disabled."""
+        """Return the function keys of this page that are currently disabled.
+
+        On a lathe, the touch-off keys F5 and F6 and the undo key F4 can be disabled. On a mill, the key F5
+        (3D-ROT) can be disabled.
+        """
         model, snapshot = self.model, self.desk.read_snapshot()
         if model.is_mill:
             return frozenset() if model.tilted_jog.is_available(snapshot) else frozenset({"F5"})

@@ -189,9 +189,9 @@ def _moved(
 def _check_new_master(
     table: Mapping[int, OffsetRow], new: Mapping[int, OffsetRow]
 ) -> Iterator[SuspiciousChange]:
-    """Yield a suspicious change for each tool that would become the master of existing tools.
+    """Yield a ``SuspiciousChange`` for each tool that would become the master of existing tools.
 
-    The other tools would then follow its touch-offs.
+    The existing tools would then follow the touch-offs of this tool.
     """
     for number, row in new.items():
         old = table.get(number)

@@ -62,7 +62,7 @@ class ComparedPaths:
 
 
 def compare_pictures(before: ProgramPicture, after: ProgramPicture) -> ComparedPaths:
-    """Compare the paths of two program pictures, and return both with their largest distance.
+    """Return two program pictures with the largest distance between their paths.
 
     The distance is in mm, or inf if the pictures do not contain the same moves.
     """

@@ -195,6 +195,6 @@ class Measurement:
 
 
 def _find_distance(pane: PathPane, spot: SnapPoint, z: float, x: float) -> float:
-    """Return the distance in pixels between two screen positions."""
+    """Return the distance on the screen from a snap point to the position (z, x), in pixels."""
     offset_px = pane.map_to_pane(spot.z, spot.x) - pane.map_to_pane(z, x)
     return float((offset_px.x() ** 2 + offset_px.y() ** 2) ** 0.5)

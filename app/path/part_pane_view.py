@@ -108,7 +108,7 @@ class PartPane(PathPane):
         return stock.back_z_mm if chuck is None else max(stock.back_z_mm, chuck)
 
     def set_projection(self, projection: Projection) -> None:
-        """Set the projection, and make the part player calculate a section instead of a 3D image."""
+        """Set the projection, and turn off 3D rendering, because this pane shows a section."""
         self.projection = projection
         self.part_player.set_image_request(None)
 

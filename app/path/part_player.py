@@ -312,9 +312,9 @@ class PartPlayer:
     def _find_instant(
         self, history: PartHistory, block: int, share: float, watch: Callable[[], None]
     ) -> PartState:
-        """Return the part at the requested moment.
+        """Return the part after ``block`` blocks and the fraction ``share`` of the next block.
 
-        The part is not calculated again if only the view was rotated.
+        The last result is reused if it is still valid, for example if only the view was rotated.
         """
         if self._solid is not None:
             last = self._solid[0]

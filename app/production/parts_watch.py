@@ -63,7 +63,10 @@ class ProductionMonitor:
         self._update_block(snapshot, loaded)
 
     def _update_block(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
-        """Send the reason that locks the next part to the executor before the current part ends."""
+        """Send the executor the reason why the next part must not start.
+
+        The reason is sent before the current part ends. An empty reason permits the next part.
+        """
         tools = loaded.proof.tool_numbers if loaded.proof is not None else ()
         bars = (
             self.tool_life_monitor.find_lock_reason(snapshot, tools),

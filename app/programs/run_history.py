@@ -247,11 +247,12 @@ class PartCounter:
         )
 
     def correct_count(self, change: int) -> None:
-        """Add to the count parts that were made elsewhere, or subtract scrapped parts.
+        """Correct the part count by ``change`` parts.
 
-        The count changes immediately and is written to the disk later. A later write error is not raised.
-        If no store has been opened, the count is not stored. Raises StoreError if the store was closed or
-        is read-only; the displayed count changes even then.
+        The change is positive for parts that were made elsewhere, and negative for scrapped parts. The
+        count changes immediately and is written to the disk later. A later write error is not raised. If no
+        store has been opened, the count is not stored. Raises StoreError if the store was closed or is
+        read-only; the displayed count changes even then.
         """
         self.part_count, self._announced = self.part_count + change, -1
         self.persistence.runs.add_parts(self.program_name, change)

@@ -32,7 +32,7 @@ _EMPTY: BlankCorners = ((-20.0, -20.0, -20.0), (20.0, 20.0, 0.0))
 
 
 class MoveStyle(IntEnum):
-    """Drawing style of a move, stored with the point of the tool path at its end."""
+    """Drawing style of the move that ends at a point of the tool path."""
 
     NO_LINE = 0  # not drawn: a new line starts at this point
     RAPID = 1

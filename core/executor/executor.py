@@ -488,7 +488,7 @@ class Executor:
                 self._raise_alarm(AlarmError(error.code, str(error)))
 
     def _raise_alarm(self, error: AlarmError) -> None:
-        """Raise an alarm, or handle the E-stop if the alarm results from the power-off by the E-stop."""
+        """Raise an alarm, or handle the E-stop if the E-stop has caused the alarm."""
         if error.code in _ESTOP_ALARM_CODES and self._ports.station.read_state().estop:
             self._control.handle_estop(True)
         else:

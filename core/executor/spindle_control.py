@@ -184,7 +184,7 @@ class SpindleControl:
             self.waiting_reason, self._withdrawn = reason, True
 
     def request_speed(self, demand: SpindleRequest) -> None:
-        """Request a spindle speed because of M03, M04 or S."""
+        """Request a spindle speed, as commanded by M03, M04 or S."""
         self._let_go()
         self._ask = demand
         self._forget_waiting()

@@ -329,10 +329,10 @@ class StartAnnouncement:
         return tuple(item.text for item in items)
 
     def find_refusal_reason(self, now: float, function_name: str = "") -> str:
-        """Return why a start is refused because an announcement was not shown long enough to be read.
+        """Return the message that refuses a start because an announcement was not shown long enough.
 
-        The result is an empty string if the start is permitted. ``function_name`` limits the check to one
-        function.
+        The result is an empty string if the start is permitted. A start is also refused if the value in an
+        announcement has changed considerably. ``function_name`` limits the check to one function.
         """
         for item in self._items(function_name):
             since, figure = self._since.get(item.function_name, (math.inf, 0.0))

@@ -1,7 +1,8 @@
 """Lines and arcs in X and Z, in mm with X as a radius, and their intersections.
 
-Angles are measured from Z+ toward X+. Seen from above (Z+ right, X+ down), this is clockwise, so a clockwise
-arc has a positive sweep. Z+ is to the left of the direction X+, and X+ is to the left of the direction Z-.
+Directions are as seen from above, with Z+ to the right and X+ down. Angles are measured from Z+ toward X+,
+which is clockwise. A clockwise arc therefore has a positive sweep. Left and right are relative to the
+direction of motion: for a motion toward X+, the left side is Z+, and for a motion toward Z-, it is X+.
 """
 
 from __future__ import annotations

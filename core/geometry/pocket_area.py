@@ -238,10 +238,10 @@ def _remove_duplicates(parts: Sequence[Element]) -> list[Element]:
 
 
 def _chain_loops(parts: Sequence[Element]) -> list[ElementLoop]:
-    """Connect the sections to closed loops, and return the loops.
+    """Connect the sections into closed loops, and return the loops.
 
-    The loops are sorted by their longest section, longest first. Raises PocketAreaError if a loop is not
-    closed.
+    The loops are sorted by the length of their longest section, in descending order. Raises PocketAreaError
+    if a loop is not closed.
     """
     parts = _remove_tails(parts)
     starts = np.array([part.start for part in parts]).reshape(-1, 2)

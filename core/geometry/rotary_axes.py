@@ -171,9 +171,10 @@ class Kinematics:
         return apply_matrix(transpose_matrix(turn), subtract_vectors(point, shift))
 
     def move_to_table_zeros(self, point: Vector) -> Vector:
-        """Return the position of a workpiece point after the tables rotate from angle 0 to their zeros.
+        """Return the position of a workpiece point after the tables rotate to their zeros.
 
-        Both positions are in machine coordinates in mm.
+        ``point`` is its position with the tables at machine angle 0. The zeros are the machine angles at
+        which the tables read 0. Both positions are in machine coordinates in mm.
         """
         turn, shift = self._table_transform(self.zero_angles)
         return add_vectors(apply_matrix(turn, point), shift)
@@ -253,9 +254,10 @@ class Kinematics:
         return turn, shift
 
     def _nose_to_tip(self, angles: Mapping[str, float], tool_length: float) -> Vector:
-        """Return the vector from the spindle nose to the tip in machine coordinates, in mm.
+        """Return the vector from the spindle nose to the tool tip in machine coordinates, in mm.
 
-        The vector starts at the spindle nose with the heads at 0.
+        The start of the vector is the position of the spindle nose with all heads at angle 0. The end is
+        the position of the tip with the heads at ``angles``.
         """
         tip = scale_vector(Z_AXIS, -tool_length)
         for axis in reversed(self._heads):

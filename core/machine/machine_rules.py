@@ -1,4 +1,7 @@
-"""Rules for related values of a machine file, which are checked only if these values are valid."""
+"""Rules for related values in a machine file.
+
+A rule is checked only if all values that it needs are valid.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +28,10 @@ class ValueRule(NamedTuple):
 
 
 def check_rules(values: FileValues) -> Iterator[FileFinding]:
-    """Yield a finding for every rule that valid values break."""
+    """Yield a finding for every violated rule.
+
+    A rule is checked only if all values that it needs are valid.
+    """
     for rule in VALUE_RULES:
         if values.has_values(rule.key_path, *rule.required_keys) and (expected := rule.find_error(values)):
             yield FileFinding(rule.key_path, "", expected, "broken-rule")

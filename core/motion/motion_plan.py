@@ -346,7 +346,11 @@ class _PieceRun:
 
 
 def _squared_speeds(run: _PieceRun, soft: FloatArray, v: float) -> FloatArray:
-    """Return the squared speeds (n+1,) at the ends of the pieces; the first value is v²."""
+    """Return the squared speeds at the ends of n pieces, as an array (n+1,).
+
+    ``soft`` contains the squared feed of each piece, and ``v`` is the speed at the start. If ``v`` exceeds
+    the limits, the motion first brakes fully.
+    """
     limit = run.max_squared_speeds.copy()
     np.minimum(limit[:-1], soft, out=limit[:-1])
     np.minimum(limit[1:], soft, out=limit[1:])
@@ -359,9 +363,11 @@ def _squared_speeds(run: _PieceRun, soft: FloatArray, v: float) -> FloatArray:
 
 
 def _brake_to_limits(run: _PieceRun, allowed: FloatArray, square: float, slack: float) -> FloatArray:
-    """Return the squared speeds of a motion that brakes fully until it is within the new feed limits.
+    """Return the squared speeds of a motion that first brakes fully to meet the limits.
 
-    From there on, the speeds are those of a normal plan.
+    After that, the speeds are those of a normal plan. ``allowed`` contains the squared speed limits at the
+    ends of the pieces, and ``square`` is the squared start speed. Raises MotionError if the axes cannot
+    meet the limits within the remaining distance.
     """
     braked = square - np.concatenate([[0.0], np.cumsum(run.squared_speed_gains)])
     fits = np.flatnonzero(braked <= allowed + slack)

@@ -43,11 +43,12 @@ class RayCut(NamedTuple):
 
 
 class RadialMillMove(NamedTuple):
-    """A position or a straight move of a mill whose axis is parallel to a radius of the part.
+    """Move of a radial mill along Z or around the part's axis.
 
-    The end of the mill is at the radius ``end_radius_mm``. The mill moves from Z ``back_z_mm`` to
-    ``front_z_mm``, or around the part's axis by ``rotation_rad``. ``angle_rad`` and ``rotation_rad`` are in
-    radians in the part's frame.
+    The axis of the mill is parallel to a radius of the part. The end of the mill is at the radius
+    ``end_radius_mm``. The mill moves between Z ``back_z_mm`` and ``front_z_mm``, and around the part's axis
+    by ``rotation_rad``, starting at ``angle_rad``. If these moves are both 0, the mill is at one position.
+    Angles are in radians in the part's frame.
     """
 
     end_radius_mm: float

@@ -1,9 +1,10 @@
-"""The surfaces of a part as points one pixel apart, ready for rotation: walls, faces and flanks.
+"""Points on the surfaces of a part, one pixel apart, for drawing a rotated part.
 
-Walls have one point per ray and column. If the next column has less material, the exposed face is filled
-with points. If the next ray has less material, the exposed flank of a slot or a flat is filled with points.
-The points are cached until the part or the scale changes. Rotating them only requires multiplication by
-sines and cosines.
+The part is divided into columns along Z and into rays around its axis. A wall is an inner or outer surface,
+with one point per ray and column. A face is the exposed side of a column whose next column has less
+material. A flank is the exposed side of a slot or a flat, where the next ray has less material. Faces and
+flanks are filled with points. The points are cached until the part or the scale changes. Rotating them only
+requires multiplication by sines and cosines.
 """
 
 from __future__ import annotations
@@ -354,9 +355,10 @@ def _interpolate_rays(r: Float32Array, there: npt.NDArray[np.bool_], times: int)
 def _differing_cells(
     low: list[Float32Array], high: list[Float32Array], min_difference: float, *, round_: bool
 ) -> tuple[CellIndices, CellIndices]:
-    """Return the cells that differ by over ``min_difference`` from the next cell, and the next cells.
+    """Return the pairs of adjacent cells whose radii differ by over ``min_difference`` pixels.
 
-    The next cell is along Z, or around the part if ``round_`` is True.
+    The first result contains the first cell of each pair. The second result contains the next cell along Z,
+    or the next cell around the part if ``round_`` is True.
     """
     differs = np.zeros(low[0].shape, np.bool_)
     change = np.zeros(low[0].shape, np.float32)
@@ -376,7 +378,11 @@ def _differing_cells(
 def _uncovered_cells(
     low: list[Float32Array], high: list[Float32Array], own: CellIndices, other: CellIndices, min_length: float
 ) -> tuple[IntArray, Float32Array, Float32Array]:
-    """Return the cells of ``own`` with material that ``other`` does not cover, and its limits of r."""
+    """Return the material sections of the ``own`` cells that the ``other`` cells do not cover.
+
+    The results are the index of the cell in ``own``, the inner radius and the outer radius of each section,
+    with the radii in pixels. Sections of up to ``min_length`` pixels are omitted.
+    """
     deep = np.zeros(len(own[0]), np.bool_)
     for r in high[1:]:
         if r.any():

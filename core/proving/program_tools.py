@@ -216,10 +216,10 @@ class ProgramTools:
         return min(deepest, default=None)
 
     def find_feeds_without_cut(self, stock: Stock | None) -> Iterator[tuple[int, int, str]]:
-        """Yield the line, block number and message for each tool or feed that cuts nothing.
+        """Yield the line, block number and message for each cutting tool that makes only rapids.
 
-        The results include each cutting tool that makes only rapids. If ``stock`` is None, they also
-        include ``longest_feed_from_chuck`` and the first feed of each live tool.
+        If ``stock`` is None, also yield them for ``longest_feed_from_chuck`` and for the first feed of each
+        live tool, because these feeds cut nothing.
         """
         cutting = [use for n, use in self.tool_uses.items() if self.find_tool_shape(n) is not None]
         for use in cutting:

@@ -1,8 +1,9 @@
-"""Check of the first move of a start against the current part, up to the first known position.
+"""Check of the moves from Cycle Start to the first known position of a program.
 
 The proof of a program starts at its first known position. The moves before this position depend on the axis
 positions at Cycle Start. For example, after an E-stop in a bore, the straight line to the first position
-passes through the wall of the bore. The check runs on a worker thread.
+passes through the wall of the bore. The check compares these moves with the current part, the chuck and the
+tailstock, and runs on a worker thread.
 """
 
 from __future__ import annotations
@@ -236,9 +237,10 @@ class StartCheck:
         return None
 
     def _find_bore_hit(self, metal: TurnedPart, start_state: StartState) -> tuple[int, float, bool] | None:
-        """Return the hit of a tool that is inside a bore, or None if no material is outside its tip.
+        """Return the hit of a tool that is inside a bore, or None if the tool is not in a bore.
 
-        Even if the first move stays in the bore, a later move would take the tool through the wall.
+        The hit contains the tool number, the Z of the tip in mm, and True. Even if the first move stays in
+        the bore, a later move would take the tool through the wall.
         """
         zero = self._part_zero_for_tool(start_state.active_tool_number)
         if zero is None:

@@ -182,7 +182,11 @@ class CanopenAxes:
         self._on = True
 
     def stop(self, mode: StopMode) -> None:
-        """Stop all axes: brake along the path for RAMP_HOLD, or else send a stop command at one SYNC."""
+        """Stop all axes at the same time, either along the path or by a command to the drives.
+
+        With RAMP_HOLD, powered axes brake along the path. Otherwise all drives receive the stop command
+        with the same SYNC: OFF removes their power, and the other modes start a quick stop.
+        """
         if mode is StopMode.RAMP_HOLD and self._powered():
             self._brake_on_path()
             return

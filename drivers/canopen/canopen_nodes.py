@@ -142,7 +142,10 @@ def resolve_terminal(file: MachineFileReading, text: str) -> CanTerminal | None:
 
 
 def generate_input_addresses() -> Iterator[str]:
-    """Yield the input addresses of the first I/O module, bit by bit, as an endless sequence."""
+    """Yield addresses for the inputs of the first I/O module, bit by bit and without end.
+
+    The sequence does not depend on the number of inputs of the module.
+    """
     return (f"{FIRST_MODULE_ADDRESS}.{INPUT:04X}.{n // BITS + 1}.{n % BITS}" for n in itertools.count())
 
 

@@ -97,10 +97,11 @@ def _asked(bus: CanBus, config: CanNode, axis: AxisConfig | None, mode: str) -> 
 def _list_mismatches(
     setup: NodeSetup, family: DriveProfile, axis: AxisConfig | None, mode: str, bus: CanBus
 ) -> Iterator[str]:
-    """Yield a text with the drive's motion mode, and a text with its missing objects, if any.
+    """Yield texts about an axis drive: its motion mode, and any objects that are missing.
 
-    Raises DriverError if the drive does not support the mode, or lacks the object that receives the
-    setpoints in this mode.
+    The first text contains the motion mode. The second text exists only if objects are missing. Raises
+    DriverError if the drive does not support the mode, or lacks the object that receives the setpoints in
+    this mode.
     """
     if axis is None:
         return

@@ -13,7 +13,10 @@ from drivers.setpoint_queue import AxisProperties
 
 @dataclass(frozen=True, slots=True)
 class HalAxis(AxisProperties):
-    """One axis of the machine; without ``pins``, it has no drive and only its position is counted."""
+    """One axis of the machine.
+
+    An axis without ``pins`` has no drive. Its position is the commanded position.
+    """
 
     pins: HalAxisPins | None = None
     home_method: int = 0
@@ -99,7 +102,10 @@ class HalConfig:
 
     @property
     def probe_input(self) -> HalInput | None:
-        """Return the probe or tool setter input that is sampled with the axes, or None without one."""
+        """Return the input of the probe or tool setter, or None if it is not configured.
+
+        HAL samples this input together with the axis positions.
+        """
         return self.inputs.get(PROBE_INPUT)
 
     @property

@@ -80,7 +80,7 @@ class InverterTable:
 def _check_family(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield a finding if the family is neither a shipped family nor the name of a TOML file.
 
-    A file is read only when the line is opened.
+    The TOML file itself is read only when the serial line to the inverter is opened.
     """
     path = f"{_TABLE_PATH}.family"
     if (

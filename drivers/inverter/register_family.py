@@ -24,7 +24,7 @@ class RegisterInverter:
 
     @property
     def is_stop_pending(self) -> Callable[[], bool]:
-        """Return the function that reports whether a stop is pending."""
+        """Return the function with which the serial line checks whether a stop is pending."""
         return self._line.is_stop_pending
 
     @is_stop_pending.setter

@@ -260,7 +260,7 @@ class DeviceNode:
         return value.to_bytes(size, "little", signed=value < 0)
 
     def _get_communication(self) -> _Communication:
-        """Return the communication settings, and read them again after a change."""
+        """Return the communication settings, after reading them again if they have changed."""
         if self._communication is None:
             self._communication = self._read()
         return self._communication

@@ -23,11 +23,14 @@ _MIN_POINTS = 4  # Grid points; fewer are faster to calculate step by step.
 def predict_motion(
     servos: Sequence[SimulatedServo], piece: MotionPiece, end_time: float, first_point: int, step_s: float
 ) -> PredictedMotion | None:
-    """Return the predicted motion from grid point ``first_point`` along ``piece``.
+    """Return the predicted motion along ``piece`` from grid point ``first_point``, or None.
 
-    The piece is valid until ``end_time`` in seconds, and ``step_s`` is the grid interval in seconds. Return
-    None if a fault or a limit may act, or if the piece is short. Also return None after the last piece,
-    because the axes may then come to rest at any grid point.
+    The piece is valid until ``end_time`` in seconds, and ``step_s`` is the grid interval in seconds. The
+    result is None in these cases:
+
+    - A fault or a limit could affect the motion.
+    - The piece contains too few grid points for a prediction to save time.
+    - The piece is the last one, so that the axes may come to rest at any grid point.
     """
     if end_time == INFINITY:
         return None

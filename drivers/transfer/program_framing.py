@@ -158,7 +158,10 @@ class ProgramParser:
 
     @property
     def is_input_noise(self) -> bool:
-        """Return whether most characters before the first % are not text in seven or eight bits."""
+        """Return whether over half of the characters stored from before the first % are not text.
+
+        A character is text if it is printable or white space, as eight bits or as seven bits with parity.
+        """
         return sum(len(one) > 1 for one in self._told()) * 2 > len(self._before)
 
     def _told(self) -> list[str]:

@@ -53,10 +53,10 @@ class ControlSlot:
                 raise
 
     def create_listener(self) -> ScreenListener | None:
-        """Return a listener at the socket of the slot, which replaces an old socket.
+        """Create the socket through which screens find this control, and return its listener.
 
-        The result is None if the socket cannot be created. Other screens cannot find a control without a
-        listener.
+        An old socket is replaced. The result is None if the socket cannot be created. Other screens cannot
+        find the control in this case.
         """
         if self._path is None or not list_socket_paths(self._path.parent):
             return None

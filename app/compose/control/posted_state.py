@@ -1,4 +1,4 @@
-"""Record of the state that the screen sent to the control, used to restore a replacement control."""
+"""Record of the state that the screen sent to the control, used to set up its replacement."""
 
 from __future__ import annotations
 

@@ -91,9 +91,10 @@ class ScreenOutbox:
         self._ready.set()
 
     def send_messages(self, connection: Connection, screen_gone: threading.Event) -> None:
-        """Send waiting messages to a screen until ``screen_gone`` is set or the machine is closed.
+        """Send waiting messages to a screen until the screen disconnects or the control closes.
 
-        Raises OSError if the connection ends.
+        ``screen_gone`` is set when the screen disconnects. The last message reports that the machine is
+        closed. Raises OSError if the connection ends.
         """
         self._shown, self._sent = None, 0
         while not screen_gone.is_set():

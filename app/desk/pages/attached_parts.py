@@ -23,7 +23,7 @@ DRIVERS_CLOSE_TIMEOUT_S = 10.0  # Seconds for stopping an inverter and for a dri
 
 
 class AttachedModel(Protocol):
-    """Model of a page or of a background worker. It is closed together with TurnDesk."""
+    """Page model or background worker that is closed when TurnDesk closes."""
 
     def close(self) -> None:
         """End the work of the model when TurnDesk closes."""

@@ -8,13 +8,13 @@ from app.desk.pages.table_content import FunctionKey
 
 
 class EditorPanelModel:
-    """Interface of the editor's optional panel, with default members that have no effect.
+    """Interface of the editor's optional panel. The default members have no effect.
 
     The feature that provides a panel overrides all members.
 
     - ``text`` is the program with the lines that the panel writes.
-    - ``text_number`` counts the texts to prove.
-    - ``write_count`` counts the texts that replace the editor's text.
+    - ``text_number`` increases with each new text that must be proved.
+    - ``write_count`` increases with each text that replaces the editor's text.
     - ``cursor_line`` is the line to which the cursor moves after each replacement.
     """
 
@@ -30,7 +30,10 @@ class EditorPanelModel:
 
     @property
     def is_list_shown(self) -> bool:
-        """Return whether the panel shows a list and no form, so that leaving the page loses no input."""
+        """Return whether the panel shows a list instead of a form.
+
+        Leaving the page loses no input while the list is shown.
+        """
         return True
 
     def open_file(self, file: Path) -> None:

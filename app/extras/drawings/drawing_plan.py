@@ -312,7 +312,10 @@ _FIELDS = frozenset(
 
 
 def _find_form_field(word: str) -> str:
-    """Return the field of the drawing form that shows the error of a shape's field ``word``."""
+    """Return the field of the drawing form at which an error of a shape is shown.
+
+    ``word`` is the name of the field of the shape that has the error.
+    """
     return word if word in _FIELDS else "CONTOUR" if word.startswith("#") else "T"
 
 

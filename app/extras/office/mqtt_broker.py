@@ -1,6 +1,7 @@
-"""Receiver that publishes the status and the announcements to an MQTT broker.
+"""MQTT client that publishes the status and the announcements to a broker.
 
-The topics are TOPIC/state, TOPIC/event and TOPIC/available. The last will sets TOPIC/available to offline.
+TOPIC is the topic in the table [announce]. The client publishes to TOPIC/state, TOPIC/event and
+TOPIC/available. The last will sets TOPIC/available to offline.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Receiver that posts each announcement to a webhook until the webhook accepts or rejects it."""
+"""Webhook client that posts each announcement until the server accepts or rejects it."""
 
 from __future__ import annotations
 

@@ -336,9 +336,10 @@ class TrendsSection(QualitySection):
         return True
 
     def accept_entry(self, text: str) -> bool:
-        """Set the start and end hour of the shift, and return whether they were accepted.
+        """Set the start and end hour of the shift from a text such as 6-14.
 
-        Raises InvalidEntryError if the text is not a valid pair of hours.
+        Return False if the operator is not permitted to change the hours. Raises InvalidEntryError if the
+        text is not a valid pair of hours.
         """
         first, _, last = text.partition("-")
         if not (first.isdecimal() and last.isdecimal() and int(first) < 24 and int(last) <= 24):

@@ -216,7 +216,10 @@ class ShapesModel(EditorPanelModel):
 
     @property
     def _adder(self) -> AdditionalForm | None:
-        """Return the additional form to which the open form belongs, or None if the open form is a shape."""
+        """Return the additional form that is open, or None.
+
+        The result is None if no form is open, or if the open form belongs to a shape.
+        """
         return self._adder_of(self.form.shape) if self.form is not None else None
 
     def _open_piece(self, piece: ProgramShape) -> None:

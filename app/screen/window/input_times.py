@@ -80,9 +80,10 @@ class InputTimes:
         self._dropped = max(self._dropped, self.find_event_time(time_ms, event_source))
 
     def follows_dropped_answer(self, time_ms: int, event_source: str = "") -> bool:
-        """Return whether a press follows a dropped answer to a question.
+        """Return whether a press must also be dropped because an answer to a question was dropped.
 
-        It does if it is in the same stall, or if there was no pause of 1 s.
+        This applies to a press in the same stall of the screen as the dropped answer. It also applies to a
+        press less than 1 s after the dropped answer.
         """
         at = self.find_event_time(time_ms, event_source)
         same_stall = self._behind - self.stall_duration_s < self._dropped and at <= self._behind

@@ -219,9 +219,9 @@ class SpindlePanel(ReadoutPanel):
     """Display of commanded and measured speed in rpm, surface speed, override and the spindle switch."""
 
     def draw(self, painter: ThemedPainter) -> None:
-        """Draw the spindle speeds in rpm, the direction, the surface speed, the override and the switch.
+        """Draw the spindle speeds, direction, surface speed, override and spindle switch.
 
-        If the spindle state is unknown, draw a warning instead.
+        The spindle speeds are in rpm. If the spindle state is unknown, draw a warning instead.
         """
         view = self.value
         if not isinstance(view, SpindleReadout):

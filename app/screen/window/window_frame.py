@@ -452,7 +452,7 @@ class WindowFrame(QWidget):
     def _make_times(
         self, snapshot: Snapshot, view: MachineStatus, loaded: LoadedProgram
     ) -> tuple[tuple[str, str], ...]:
-        """Return the part count and the times, which the run line shows as well."""
+        """Return the part count and times for the times panel and the run status row."""
         left = formats.format_duration(find_remaining_time_s(snapshot, loaded))
         return (
             ("PARTS", self.desk.program_runs.part_counter.part_count_text),

@@ -122,10 +122,10 @@ class HoldController:
         return not self._retracting
 
     def resume(self, last_executed_block: Block | None, *, starts_spindle: bool) -> None:
-        """Resume after Cycle Start, as soon as a requested spindle is at speed.
+        """Resume after Cycle Start, but first wait until the spindle is at speed if it should turn.
 
-        With single block, ``last_executed_block`` is the last block that was executed. Otherwise it is
-        None.
+        Between two path sections, this wait is omitted if ``starts_spindle`` is False. In single block,
+        ``last_executed_block`` is the block after which the motion resumes. Otherwise it is None.
         """
         self.hold_reason = ""
         within = self.will_resume_in_section
@@ -419,12 +419,12 @@ class Cycle:
     def _check_spindle(self, block: Block) -> None:
         """Check the spindle in a block that moves at feed rate.
 
-        If the spindle loses its speed:
+        If the spindle loses its speed, the reaction depends on the block:
 
-        - A thread pass that has started is retracted immediately.
-        - The cycle is put in feed hold if the thread pass is still waiting.
-        - The same applies in a block with feed per revolution if C is not locked.
-        - In other blocks, the cycle is put in feed hold only if the spindle is requested.
+        - Thread pass that has started: it is retracted immediately.
+        - Thread pass that is still waiting: the cycle is put in feed hold.
+        - Block with feed per revolution while C is not locked: the cycle is put in feed hold.
+        - Other block: the cycle is put in feed hold only if the spindle is requested.
         """
         spindle = self._context.spindle
         if (

@@ -41,7 +41,7 @@ class ThreadCurve(NamedTuple):
 
     @property
     def length_mm(self) -> float:
-        """Return the value of s at the end of the curve."""
+        """Return the value of the curve parameter s at the end of the curve, in mm."""
         return float(self.curve_positions_mm[-1])
 
     def evaluate_curve(self, s: float) -> tuple[float, float, float, float]:

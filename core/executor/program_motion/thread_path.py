@@ -210,7 +210,10 @@ class ThreadPath(NamedTuple):
         return _axis_motion(self.start_z + along * s, along * v, [(dt, along * acc) for dt, acc in phases])
 
     def _join_axes(self, t: float, x: _AxisMotion, z: _AxisMotion) -> MotionSegments:
-        """Return the motion of both axes with common phases, in which both accelerations are constant."""
+        """Combine the motions of X and Z into segments in which both accelerations are constant.
+
+        A segment ends wherever a phase of X or of Z ends. ``t`` is the start time in seconds.
+        """
         joints = np.unique(np.concatenate([x.times_s, z.times_s]).round(12))
         joints = joints[np.concatenate([[True], np.diff(joints) > _SHORT_TIME_S])]
         starts, dt = joints[:-1], np.diff(joints)

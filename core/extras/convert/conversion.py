@@ -39,7 +39,10 @@ class Conversion:
 
 
 def group_findings(findings: Sequence[Diagnostic]) -> list[tuple[Diagnostic, str]]:
-    """Return each different finding once, with the numbers of the other lines with the same text."""
+    """Return the first of each group of equal findings, with the line numbers of the others.
+
+    Findings are equal if they have the same code and message. The line numbers are separated by commas.
+    """
     first: dict[tuple[str, str], tuple[Diagnostic, list[int]]] = {}
     for each in findings:
         _, lines = first.setdefault((each.code, each.message), (each, []))

@@ -47,7 +47,10 @@ def report_unused_tool(state: SourceState) -> None:
 
 
 def _check_offset_number(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
-    """Execute G43, whose offset number H selects the tool like the offset number of T."""
+    """Check the offset number H of G43, and change to the tool with this number.
+
+    If H is missing or is the number of the current tool, only a note is added.
+    """
     word = statement.find_word("H")
     if word is None or word.value == state.tool_number:
         state.add_note(code, "no-change", word=code.text)

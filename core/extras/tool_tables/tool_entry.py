@@ -106,9 +106,9 @@ class TableReader:
         self.mistakes.append(CodedError(Message("{place}: {text}", place=place, text=text), code))
 
     def parse_number(self, place: str, text: str) -> float | None:
-        """Return the number in a text.
+        """Return the number in a text, or None if the text is not a finite number.
 
-        If the text is not a finite number, a mistake of the file is reported and the result is None.
+        In that case, a mistake at the position ``place`` in the file is also reported.
         """
         words = text.strip()
         if len(words) <= _LONGEST_NUMBER and _NUMBER.fullmatch(words) and isfinite(value := float(words)):

@@ -141,7 +141,10 @@ def _unknown(cut_record: CutRecord, present: CurrentMachineState) -> Retract:
 def _find_stale_position(
     cut_record: CutRecord, interruption: Interruption, x: float, z: float
 ) -> ToolPosition | None:
-    """Return the tool position on the first row from the saved row on that passes (x, z), or None."""
+    """Search the rows from the interrupted block on for the first that passes through (x, z).
+
+    Returns None if there is none before the tool changes, or within ``_MAX_LATER_ROWS`` rows.
+    """
     row = max(0, cut_record.find_last_row(interruption.block_number))
     for each in range(row, min(row + _MAX_LATER_ROWS, len(cut_record))):
         if int(cut_record.tool_numbers[each]) != interruption.tool_number:

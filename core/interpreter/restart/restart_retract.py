@@ -220,7 +220,10 @@ class _Search:
         return bool((feeds & ((upper > level) | here | held)).any())
 
     def _outward_travels(self, rows: slice) -> FloatArray:
-        """Return the outward travel of each cut in these rows in mm, with 0 for threads and rapids."""
+        """Return how far each of these rows moves outward along X, in mm.
+
+        The travel is negative for a move toward the centerline, and 0 for threads and rapids.
+        """
         cut = self.cut_record
         out = np.abs(cut.end_x[rows]) - np.abs(cut.start_x[rows])
         return np.where((cut.move_kinds[rows] & (FEED | THREAD)) == FEED, out, 0.0)
@@ -253,16 +256,18 @@ class _Search:
         return self._made(legs)
 
     def _has_left_part(self, leg: RetractLeg) -> bool:
-        """Return whether the tool has left the part if a rapid ends at this point."""
+        """Return whether the tool is clear of the part at the end point of this rapid."""
         return (
             leg.z >= self.cut_record.max_cut_start_z - SAME_POINT_MM
             or self.cut_record.is_outside_material(leg.x, leg.z, self.position.tool_number)
         )
 
     def _is_cleared(self, end: float) -> bool:
-        """Return whether completed passes of this tool have cleared the material up to this radius.
+        """Return whether this tool has cleared the material from its position out to a radius.
 
-        Adjacent passes must be closer than the tool width, or a pass must have retracted through the gap.
+        ``end`` is the radius in mm. The material between two adjacent completed passes counts as cleared if
+        the passes are closer than the minimum tool width. It also counts as cleared if the tool has cut
+        outward through it before the rapid of a pass.
         """
         cut, z, side = self.cut_record, self.z, -1.0 if self.x < 0.0 else 1.0
         low, high = np.minimum(cut.start_z, cut.end_z), np.maximum(cut.start_z, cut.end_z)
@@ -393,7 +398,7 @@ class _Search:
         return first and cut.is_clear_after_rapid(float(cut.end_x[row]), float(cut.end_z[row]))
 
     def _direction_only(self) -> Retract:
-        """Return a retract without moves, with only the direction of the next rapid or of the entry."""
+        """Return the direction of the next rapid or of the entry, because no safe moves are known."""
         cut, row = self.cut_record, self.row
         rapids = (segment for segment in self._following_segments() if not segment.move_kind & FEED)
         ways = [(segment.end_x - segment.start_x, segment.end_z - segment.start_z) for segment in rapids]

@@ -192,10 +192,11 @@ class OmniturnRestartSearch:
         )
 
     def _pass_to_line(self, line: int, *, position_known: bool = True) -> str:
-        """Run both passes to the line, and return the reason why the line is unsuitable.
+        """Run to a line, and return the reason why the program cannot resume there.
 
-        The result is an empty string for a suitable line. If ``position_known`` is False, the position may
-        still depend on the start position, because later blocks may determine the position.
+        The result is an empty string if the program can resume. Two passes with different start positions
+        run to the line. If their states differ at the line, the state is unknown. This is a reason only if
+        ``position_known`` is True. Otherwise later blocks may still determine the position.
         """
         if line < self._at:
             self._begin_anew()

@@ -147,9 +147,9 @@ class RoughingPlanner:
         self._go(level, target)
 
     def _sink(self, depth: float) -> None:
-        """Add a move down to the distance ``lift`` above a depth in mm.
+        """Add a move down to a point ``lift`` mm above a depth, unless the tool is already that low.
 
-        The depth has already been cut at this position.
+        ``depth`` is in mm. The material at this position has already been cut to this depth.
         """
         if depth - self._lift > self._at[0]:
             self._go(depth - self._lift, self._at[1])

@@ -226,11 +226,12 @@ _END_CLEARANCE_RATIO = 0.5
 
 
 def is_gouging_contour(path: Element, contour: Iterable[Element], nose_radius_mm: float) -> bool:
-    """Return whether the tool nose would gouge the contour on this path.
+    """Return whether the tool nose would gouge the contour on this approach or retract path.
 
-    The nose has the radius ``nose_radius_mm``. The elements of the contour start with the nearest element.
-    Near the end of the contour, only ``_END_CLEARANCE_RATIO`` times the radius is required as a distance,
-    because an approach that is not perpendicular always comes closer than the radius.
+    ``contour`` contains the elements in order, starting at the end of the contour to which the path is
+    connected. An approach that is not perpendicular always comes closer to this end than the nose radius.
+    Within two nose radii of the end, the minimum distance is therefore only ``_END_CLEARANCE_RATIO`` times
+    the radius.
     """
     if path.length < SAME_POINT_TOLERANCE_MM:
         return False

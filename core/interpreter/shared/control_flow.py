@@ -115,7 +115,10 @@ class ControlFlow(Generic[FrameType]):
         self.next_index = self.end_index
 
     def get_displayed_line(self, number: int) -> int:
-        """Return the line of the main file at which line ``number`` of the active program is displayed."""
+        """Return the line of the main file that is displayed for a line of the active program.
+
+        In a called program, this is the line of the call. Otherwise it is ``number``.
+        """
         return self.active_frame.call_line or number
 
     @property

@@ -29,9 +29,10 @@ MAX_CALL_DEPTH = 16
 
 
 class ToolUsage:
-    """Record of the tool numbers used so far, in the order of first use.
+    """Record of the tools used so far.
 
-    The record also contains the used tools whose offsets were never set.
+    ``used_tools`` contains their tool numbers in the order of first use. ``tools_without_offset`` contains
+    the numbers of the used tools whose offsets were never set.
     """
 
     def __init__(self) -> None:
@@ -171,7 +172,10 @@ LineType = TypeVar("LineType", bound=NumberedLine)
 
 
 class LinePass(InterpreterPass, Generic[LineType]):
-    """Base class of passes that execute a program line by line, up to the limits of a program."""
+    """Base class of passes that execute a program line by line.
+
+    The number of lines and blocks is limited.
+    """
 
     def __init__(self, log: DiagnosticLog) -> None:
         super().__init__(log)

@@ -1,4 +1,7 @@
-"""Statement of SINUMERIK: the words of one block, sorted by function and checked for conflicts."""
+"""SINUMERIK statement: the words of one block, sorted by function.
+
+The words are checked for conflicts.
+"""
 
 from __future__ import annotations
 

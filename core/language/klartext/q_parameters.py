@@ -207,7 +207,11 @@ def _arithmetic(cursor: LineCursor, number: int, column: int) -> Assignment:
 
 
 def _operand(cursor: LineCursor, q: int) -> Formula:
-    """Read a number or a parameter with its sign, because FN functions do not accept formulas."""
+    """Read an operand of an FN function: a number or a Q parameter, with an optional sign.
+
+    FN functions do not accept formulas as operands. ``q`` is the number of the Q parameter that is shown if
+    the operand is missing.
+    """
     value = cursor.read_value(f"Q{q}")
     return value.as_formula
 

@@ -17,9 +17,10 @@ from core.message import Message
 
 
 class ForeignCode(NamedTuple):
-    """A code of another control in a line.
+    """Code of another type of control, found in a line of a program.
 
-    The values are the index of its first character, the diagnostic code, the message and the remedy.
+    ``start_index`` is the index of its first character in the line. The other attributes describe the
+    diagnostic.
     """
 
     start_index: int

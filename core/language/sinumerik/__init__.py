@@ -1,4 +1,4 @@
-"""Parser of the SINUMERIK turning dialect, with words, lines and syntax errors."""
+"""Syntax of the SINUMERIK turning dialect: parsing of lines into words, and syntax errors."""
 
 from core.language.sinumerik.sinumerik_lexer import lex_line
 from core.language.sinumerik.sinumerik_words import LexedBlock, PositionMode, Word

@@ -95,7 +95,7 @@ class AirCutChecks:
     _went_in: TipMove | None = None  # a rapid next to the part after which nothing has been cut
 
     def record_pause(self) -> None:
-        """Record a wait or a switched output, for which the program may have moved the tool here."""
+        """Record a wait or a switched output, which explains an earlier rapid without a cut."""
         self._went_in = None
 
     def check_rapid_move(self, move: TipMove, cut: Cut, tool: int) -> Iterator[Found]:

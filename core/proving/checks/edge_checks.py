@@ -74,9 +74,9 @@ class EdgeChecks:
         part: TurnedPart,
         tool: int,
     ) -> Iterator[Found]:
-        """Yield the faults of a feed that has just been cut.
+        """Yield the faults of a feed move after its cut has been removed from the part.
 
-        ``cuts`` are the cuts of the straight pieces of the feed, and ``cut`` is their total.
+        ``cuts`` are the cuts of the straight sections of the move, and ``cut`` is their total.
         """
         if shape is None or not cut:
             return

@@ -232,9 +232,9 @@ class PartFindings:
         self._add("through-part" if behind_cut else "rapid-into-stock", move, text, certain=is_certain)
 
     def _check_rubbing(self, move: TipMove, cut: Cut, cutter: Cutter, part: TurnedPart, tool: int) -> None:
-        """Check for an insert that rapids back along the surface that it has just turned.
+        """Check whether an insert rapids back along the surface that it has just turned.
 
-        Only a specified insert is checked.
+        An insert is checked only if its holder is known, which is not the case for an assumed tool.
         """
         (z0, r0), (z1, r1) = move.points[0], move.points[-1]
         before, shape = self._before, self.find_tool_shape(tool)

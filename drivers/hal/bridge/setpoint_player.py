@@ -64,9 +64,10 @@ class PlayerCam(NamedTuple):
 
 
 class SetpointPlayer:
-    """Player that calculates the setpoint row for any time from its queue or cam.
+    """Source of the setpoint row for any time, from queued motion or from a cam.
 
-    For each axis, a row contains the position at spindle position 0 and the travel per revolution.
+    With a cam, the axes follow the spindle. For each axis, a row contains the position at spindle position
+    0 and the travel per revolution.
     """
 
     def __init__(self, axes: int) -> None:

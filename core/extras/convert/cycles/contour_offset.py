@@ -56,9 +56,10 @@ class Segment:
 def offset_contour(contour: Sequence[Segment], distance: float, unit: float) -> list[Segment]:
     """Return the contour offset by ``distance`` mm.
 
-    An outer corner becomes an arc, and at an inner corner, the segments end at their intersection. LinuxCNC
-    offsets in steps of at most half of the smallest segment, which decides whether a narrow gap becomes an
-    arc. ``unit`` is the length unit of the program in mm. Raises OffsetError if a segment disappears.
+    An outer corner becomes an arc. At an inner corner, the segments end at their intersection. As in
+    LinuxCNC, the contour is offset in steps of at most half of the smallest segment. The size of these
+    steps decides whether a narrow gap becomes an arc. ``unit`` is the length unit of the program in mm.
+    Raises OffsetError if a segment disappears.
     """
     found = [each.copy() for each in contour]
     done = 0.0

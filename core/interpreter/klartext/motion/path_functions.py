@@ -107,7 +107,7 @@ class PathRunner:
         return self._state.programmed_position if self._end is None else self._end
 
     def set_pole(self, node: Pole) -> None:
-        """Set the pole of CC to its axis words, or to the end of the path if CC has no axis words."""
+        """Set the pole of a CC block; an axis without a word keeps the coordinate of the path's end."""
         here = dict(zip(LINEAR_AXES, self.path_end, strict=True))
         for word in node.axis_words:
             value = word_values.evaluate_coordinate(self._state, word)

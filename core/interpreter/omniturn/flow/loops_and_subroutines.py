@@ -34,7 +34,7 @@ class ProgramStructure(NamedTuple):
 
 
 class _Finder:
-    """Parser that collects the loops, subroutines and contours of a program, one statement at a time."""
+    """Collector of the loops, subroutines and contours of a program, statement by statement."""
 
     def __init__(self, length: int) -> None:
         self.structure = ProgramStructure({}, {}, {}, {}, length, {})

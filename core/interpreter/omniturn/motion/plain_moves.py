@@ -304,10 +304,10 @@ def _joined(lines: Sequence[str], these: range) -> str:
 def parse_lines(
     lines: Sequence[str], parse_line: Callable[[int, str], ExecutableLine], *, reads_every_line: bool
 ) -> ExecutableLines:
-    """Return the lines ready for execution.
+    """Parse the lines of a program, and return them ready for execution.
 
-    ``parse_line`` is called with the number (from 1) and the text of each line that is not parsed together
-    with similar lines. If ``reads_every_line`` is True, it is called for every line, because the meaning of
+    Plain moves are parsed together. ``parse_line`` parses each other line from its number, counted from 1,
+    and its text. If ``reads_every_line`` is True, ``parse_line`` parses every line, because the meaning of
     a line depends on earlier lines.
     """
     columns = LineColumns.make_empty(len(lines))

@@ -235,10 +235,11 @@ def _r_places() -> list[str]:
 
 
 def read_system_value(name: str, modal: ModalState, edge: ToolOffset) -> float | None:
-    """Return the value of a system variable, or None if it is not supported or not known.
+    """Return the value of a system variable, or None if it is unsupported or unknown.
 
-    ``edge`` is the offset of the active T and D. $P_TOOL is D, and $P_TOOLR is the nose radius in mm, or 0
-    with D0. The radius is unknown under G70. The tool number is unknown for a tool without a number.
+    ``edge`` is the offset of the active T and D. $P_TOOL is the D number. $P_TOOLR is the nose radius in
+    mm, or 0 with D0; it is unknown under G70. $P_TOOLNO is the number of the tool; it is unknown if the
+    tool has only a name.
     """
     if name == "$P_TOOL":
         return float(modal.edge or 0)
