@@ -17,7 +17,9 @@ from pathlib import Path
 
 PACKAGES = ("app", "core", "drivers", "resources")
 PACKAGE_NAME = "turndesk"
-GUIDE_FILES = ("guide/screen.md", "guide/special-functions.md", "guide.es.md")
+GUIDE_FILES = tuple(
+    f"{folder}/{page}" for folder in ("guide", "guide/es") for page in ("screen.md", "special-functions.md")
+)
 """Files of the guide in ``docs`` that ``app.desk.pages.guide_text`` reads."""
 _LAUNCHER = Path(__file__).with_name("launcher.py")
 _ENTRY_POINTS = f"[console_scripts]\n{PACKAGE_NAME} = {PACKAGE_NAME}:console\n"

@@ -34,8 +34,8 @@ GENERATED = frozenset(
     }
 )
 """Pages that a program writes; their sentences and tables come from its source."""
-TRANSLATED = "docs/guide.es.md"
-"""Made from an earlier English guide, and made again later."""
+TRANSLATED_FOLDER = "docs/guide/es/"
+"""Folder of the pages in Spanish, to which rules about English words do not apply."""
 _FENCE = re.compile(r"^\s*```\s*(\w*)")
 _ITEM = re.compile(r"^\s*(?:[-*+]|\d+\.)\s+")
 _LINK = re.compile(r"!?\[(?:[^\]`]|`[^`]*`)*\]\(([^)\s]+)\)")

@@ -161,7 +161,8 @@ def test_command_of_an_editable_installation_exists() -> None:
 
 def test_the_guide_is_a_part_of_the_wheel() -> None:
     guide = wheel_merge.read_guide_files(PROJECT_FOLDER)
-    assert {"resources/guide/guide/screen.md", "resources/guide/pictures/es/jog.png"} <= guide.keys()
+    names = ("guide/screen.md", "guide/es/screen.md", "guide/es/special-functions.md", "pictures/es/jog.png")
+    assert {f"resources/guide/{name}" for name in names} <= guide.keys()
     made = zipfile.ZipFile(io.BytesIO(merge_packages(wheel(FILES), guide)))
     text = (PROJECT_FOLDER / "docs" / "guide" / "screen.md").read_bytes()
     assert made.read("turndesk/resources/guide/guide/screen.md") == text

@@ -16,38 +16,32 @@ from pathlib import Path
 from app.desk.translation import ENGLISH_CODE
 
 REFERENCE_FILE, FUNCTIONS_FILE = "guide/screen.md", "guide/special-functions.md"
-_SPANISH_FILE = "guide.es.md"
 COMMON_KEYS, ALARM_LOG = "EVERY PAGE", "ALARMS AND STOPS"  # Topics that are not pages.
-_SETUP, _PROGRAMMING = (
-    "Preparación: herramientas, correctores, mover a mano",
-    "Programador: escribir y comprobar",
-)
-_ALWAYS, _SCOPE, _JOB = "Lo que siempre está", "El osciloscopio", "Operador: hacer un trabajo"
-# Headings of the English reference and of the Spanish guide, whose sections are larger, by page name.
+# Headings of the English reference by page name.
 _PAGE_HEADINGS = {
-    COMMON_KEYS: ("Keys that act on every page", _ALWAYS),
-    ALARM_LOG: ("Alarms and stops, F7", _ALWAYS),
-    "MAIN MENU": ("Main menu, F1", _ALWAYS),
-    "AUTOMATIC": ("Automatic", _JOB),
-    "EDITOR": ("Editor", _PROGRAMMING),
-    "MDI": ("MDI", _SETUP),
-    "JOG": ("Jog", _SETUP),
-    "SEARCHTO": ("SEARCHTO", _JOB),
-    "PROGRAMS": ("Programs", "La lista de programas"),
-    "JOBS": ("Jobs", "Trabajos"),
-    "SHARED PROGRAMS": ("Shared programs", "Programas compartidos"),
-    "TOOL OFFSETS": ("Tool offsets, F8", _SETUP),
-    "TOOL SHAPE": ("Tool shape", _SETUP),
-    "SECONDARY OFFSETS": ("Secondary offsets, F9", _SETUP),
-    "ZERO OFFSETS": ("Zero offsets", _SETUP),
-    "TOOL TABLE": ("Tool table and presets of a mill", _SETUP),
-    "PRESETS": ("Tool table and presets of a mill", _SETUP),
-    "PART": ("Part", _PROGRAMMING),
-    "SPECIAL FUNCTIONS": ("Special functions, F10", "F10, funciones especiales"),
-    "MEASURED PARTS": ("Measured parts", "Piezas medidas, vida de herramienta, tendencias"),
-    "SCOPE": ("Scope", _SCOPE),
-    "ANALYSES": ("Analyses", _SCOPE),
-    "DRIVE TEST": ("Drive test", _SCOPE),
+    COMMON_KEYS: "Keys that act on every page",
+    ALARM_LOG: "Alarms and stops, F7",
+    "MAIN MENU": "Main menu, F1",
+    "AUTOMATIC": "Automatic",
+    "EDITOR": "Editor",
+    "MDI": "MDI",
+    "JOG": "Jog",
+    "SEARCHTO": "SEARCHTO",
+    "PROGRAMS": "Programs",
+    "JOBS": "Jobs",
+    "SHARED PROGRAMS": "Shared programs",
+    "TOOL OFFSETS": "Tool offsets, F8",
+    "TOOL SHAPE": "Tool shape",
+    "SECONDARY OFFSETS": "Secondary offsets, F9",
+    "ZERO OFFSETS": "Zero offsets",
+    "TOOL TABLE": "Tool table and presets of a mill",
+    "PRESETS": "Tool table and presets of a mill",
+    "PART": "Part",
+    "SPECIAL FUNCTIONS": "Special functions, F10",
+    "MEASURED PARTS": "Measured parts",
+    "SCOPE": "Scope",
+    "ANALYSES": "Analyses",
+    "DRIVE TEST": "Drive test",
 }
 
 _HEADING = re.compile(r"(#+) (.*)")
@@ -89,24 +83,33 @@ def read_page_help(topic: str, language: str) -> tuple[GuideBlock, ...]:
     ``topic`` is the name of the page, ``COMMON_KEYS`` or ``ALARM_LOG``. The result is empty if the guide
     does not describe the page.
     """
-    english, spanish = _PAGE_HEADINGS.get(topic, ("", ""))
-    if language == ENGLISH_CODE:
-        return read_section(REFERENCE_FILE, english)
-    return read_section(_SPANISH_FILE, spanish)
+    return _read_translated_section(REFERENCE_FILE, _PAGE_HEADINGS.get(topic, ""), language)
 
 
 def read_function_help(name: str, language: str) -> tuple[GuideBlock, ...]:
     """Return the section about a special function, or an empty tuple if the guide does not describe it.
 
-    The Spanish guide describes all functions in one section, which ``read_page_help`` returns.
+    ``name`` is the English name of the function.
     """
-    if language != ENGLISH_CODE:
-        return ()
     wanted = name.casefold()
     for heading in _list_headings(find_guide_folder(), FUNCTIONS_FILE):
         if heading.lstrip("0123456789 ").casefold() == wanted:
-            return read_section(FUNCTIONS_FILE, heading)
+            return _read_translated_section(FUNCTIONS_FILE, heading, language)
     return ()
+
+
+def _read_translated_section(name: str, heading: str, language: str) -> tuple[GuideBlock, ...]:
+    """Return the section with this English heading in a language.
+
+    The folder of a translated file has the code of the language, and its headings are in the same order.
+    """
+    if language == ENGLISH_CODE:
+        return read_section(name, heading)
+    folder = find_guide_folder()
+    path = Path(name)
+    translated = (path.parent / language / path.name).as_posix()
+    pairs = zip(_list_headings(folder, name), _list_headings(folder, translated), strict=False)
+    return read_section(translated, dict(pairs).get(heading, ""))
 
 
 @cache
