@@ -127,8 +127,9 @@ ADDITIONAL_TEXTS = (
     "a drill",
     "a reamer",
     "a tap",
-    "POINT +",
-    "POINT -",
+    # Labels of function keys, heads of tables and names of functions that look like codes.
+    *("POINT +", "POINT -", "CHAPTER +", "CHAPTER -", "COUNT +1", "COUNT -1", "SAV+LOAD", "SAV+MENU"),
+    *("TOUCH L", "TOUCH X", "TOUCH Z", "USE", "BY", "X IS", "R PARAMETERS"),
     "M03 FWD",
     "M04 REV",
     "M05 OFF",

@@ -360,6 +360,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>BY</source>
+      <translation>DE</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Back boring, slots and older cycles</source>
       <translation>Mandrinado inverso, ranuras y ciclos antiguos</translation>
     </message>
@@ -405,6 +410,16 @@
     </message>
     <message>
       <location filename="" />
+      <source>CHAPTER +</source>
+      <translation>CAPÍT. +</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>CHAPTER -</source>
+      <translation>CAPÍT. -</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>CONNECTION TO THE I/O BOARD LOST</source>
       <translation>CONEXIÓN CON LA PLACA DE E/S PERDIDA</translation>
     </message>
@@ -447,6 +462,16 @@
       <location filename="" />
       <source>CORNERS: SHARP</source>
       <translation>VIVAS</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>COUNT +1</source>
+      <translation>PIEZA +1</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>COUNT -1</source>
+      <translation>PIEZA -1</translation>
     </message>
     <message>
       <location filename="" />
@@ -2070,6 +2095,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>R PARAMETERS</source>
+      <translation>PARÁMETROS R</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>R must be greater than 0.</source>
       <translation>R debe ser mayor que 0.</translation>
     </message>
@@ -2407,6 +2437,16 @@
       <location filename="" />
       <source>S(VC=…) in TOOL CALL sets the spindle speed from a cutting speed in m/min and the tool radius.</source>
       <translation>S(VC=…) en TOOL CALL fija la velocidad del husillo según una velocidad de corte en m/min y el radio de la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>SAV+LOAD</source>
+      <translation>GUA+CARG</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>SAV+MENU</source>
+      <translation>GUA+MENÚ</translation>
     </message>
     <message>
       <location filename="" />
@@ -2940,6 +2980,21 @@
     </message>
     <message>
       <location filename="" />
+      <source>TOUCH L</source>
+      <translation>PALPAR L</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>TOUCH X</source>
+      <translation>TOCAR X</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>TOUCH Z</source>
+      <translation>TOCAR Z</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>TRANSFER SETTINGS</source>
       <translation>AJUSTES DE TRANSFERENCIA</translation>
     </message>
@@ -3335,6 +3390,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>USE</source>
+      <translation>USAR</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>USERS AND PINS</source>
       <translation>USUARIOS Y PIN</translation>
     </message>
@@ -3642,6 +3702,11 @@
       <location filename="" />
       <source>Write {letter} without a number.</source>
       <translation>Escriba {letter} sin número.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>X IS</source>
+      <translation>X ES</translation>
     </message>
     <message>
       <location filename="" />
@@ -8966,7 +9031,7 @@
     <message>
       <location filename="app/extras/drawings/drawing_form.py" />
       <source>READ</source>
-      <translation>LEÍDAS</translation>
+      <translation>LEER</translation>
     </message>
     <message>
       <location filename="app/extras/drawings/drawing_form.py" />

@@ -256,6 +256,27 @@ def _pages(page: type[Page]) -> Iterator[type[Page]]:
         yield from _pages(kind)
 
 
+def find_key_labels(tree: ast.AST) -> Iterator[str]:
+    """Yield the labels of function keys that contain two letters side by side."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "FunctionKey":
+            found = node.args[:1]
+        elif isinstance(node, ast.Assign) and any(ast.unparse(target) == "LABELS" for target in node.targets):
+            found = [node.value]
+        else:
+            continue
+        texts = [each.value for value in found for each in ast.walk(value) if isinstance(each, ast.Constant)]
+        yield from (text for text in texts if isinstance(text, str) and re.search(r"[A-Z]{2}", text))
+
+
+def test_every_key_label_has_spanish_translation() -> None:
+    """CSV and PIN are the same in Spanish."""
+    files = Path(app.__file__).parent.rglob("*.py")
+    labels = {label for path in files for label in find_key_labels(ast.parse(path.read_text("utf-8")))}
+    assert len(labels) > 100
+    assert sorted(labels - written("es").keys()) == ["CSV", "PIN"]
+
+
 def test_every_text_has_spanish_translation() -> None:
     """Run ``python -m resources.translations.collect``, then write what it has put in as unfinished."""
     known = written("es")
