@@ -6796,7 +6796,7 @@
     <message>
       <location filename="app/desk/status/machine_status.py" />
       <source>THE GUARD IS OPEN: CLOSE IT</source>
-      <translation>LA PROTECCIÓN ESTÁ ABIERTA: CIÉRRELA</translation>
+      <translation>LA GUARDA ESTÁ ABIERTA: CIÉRRELA</translation>
     </message>
     <message>
       <location filename="app/desk/status/machine_status.py" />
@@ -15216,7 +15216,7 @@
     <message>
       <location filename="app/special/backup_and_restore.py" />
       <source>Y: RESTORE {name} OVER ALL CURRENT DATA (DIFFERENCES: {what})   N: CANCEL</source>
-      <translation>Y: RESTAURAR {name} SOBRE TODOS LOS DATOS ACTUALES (DIFERENCIAS: {what})   N: CANCELAR</translation>
+      <translation>Y: RESTAURAR {name} SOBRE TODOS LOS DATOS ACTUALES (CAMBIOS: {what})   N: CANCELAR</translation>
     </message>
     <message>
       <location filename="app/special/backup_and_restore.py" />
