@@ -42,6 +42,19 @@ def test_the_single_thread_cycle_has_one_g33_for_each_pass() -> None:
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize(
+    ("control", "body"),
+    [
+        # X moves .3 per side and Z .4, so the path is .5 long: K along it is .04 along Z
+        ("linuxcnc", "G00X1.2Z.4\nX1.\nG33X1.6Z0K.05\nG00X2.2\nZ.4"),
+        # X moves .5 per side and Z .4: F along X is .04 along Z
+        ("fanuc-a", "G00X1.2Z.4\nX.6\nG32X1.6Z0F.05\nG00X2.2\nZ.4"),
+    ],
+)
+def test_lead_of_a_steep_taper_is_converted_to_the_lead_along_z(control: str, body: str) -> None:
+    assert "K.04O" in lines_after(body, control)[-1]
+
+
 def test_tapered_thread_uses_a() -> None:
     # R -.05 is a radius: the thread starts at X1.9 - .1 and grows by .1 of the diameter.
     assert lines_after("G92X1.9Z-1.R-.05F.05") == ["X1.8997", "G33X1.8Z-1I.0001A.1K.05O"]

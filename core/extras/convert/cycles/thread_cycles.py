@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import copysign, radians, sqrt, tan
+from math import copysign, hypot, radians, sqrt, tan
 
 from core.extras.convert.conversion_messages import make_error
 from core.extras.convert.cycles.cycle_limits import MAX_PASS_COUNT, MIN_INFEED_MM, require_positive
 from core.extras.convert.cycles.single_cycles import read_cycle_target, read_taper
 from core.extras.convert.path_steps import StepKind
 from core.extras.convert.source_lines import SourceStatement, SourceWord
+from core.extras.convert.source_options import SourceControl
 from core.extras.convert.source_state import SourceState
 
 
@@ -18,7 +19,24 @@ def append_thread_pass(state: SourceState, statement: SourceStatement, code: Sou
     state.get_position(code)
     lead = read_lead(state, statement, code)
     x, z = state.find_target(statement)
-    state.append_move(StepKind.THREAD, statement.line_number, x, z, feed=lead, per_rev=True)
+    append_thread(state, statement.line_number, x, z, lead)
+
+
+def append_thread(
+    state: SourceState, line_number: int, x: float | None, z: float | None, lead_mm: float
+) -> None:
+    """Append a thread pass with its lead along Z.
+
+    The programmed lead ``lead_mm`` of LinuxCNC is measured along the path of the tool. On Fanuc controls, it
+    is measured along the axis with the longer travel, with X as a radius.
+    """
+    if x is not None and z is not None and state.x is not None and state.z is not None:
+        dx, dz = abs(x - state.x), abs(z - state.z)
+        along_path = state.source_control is SourceControl.LINUXCNC
+        longest = hypot(dx, dz) if along_path else max(dx, dz)
+        if dz and longest > dz:
+            lead_mm *= dz / longest
+    state.append_move(StepKind.THREAD, line_number, x, z, feed=lead_mm, per_rev=True)
 
 
 def read_lead(state: SourceState, statement: SourceStatement, code: SourceWord) -> float:
@@ -55,7 +73,7 @@ def append_single_thread_cycle(state: SourceState, statement: SourceStatement, c
     x, z = read_cycle_target(state, statement, code)
     line = statement.line_number
     state.append_rapid(line, x + taper, z0)
-    state.append_move(StepKind.THREAD, line, x, z, feed=lead, per_rev=True)
+    append_thread(state, line, x, z, lead)
     state.append_rapid(line, x0, z)
     state.append_rapid(line, x0, z0)
 
@@ -116,7 +134,7 @@ def append_thread_cycle(
         if state.z != begin:
             state.append_rapid(statement.line_number, x0, begin)
         state.append_rapid(statement.line_number, end - taper, begin)
-        state.append_move(StepKind.THREAD, statement.line_number, end, z, feed=lead, per_rev=True)
+        append_thread(state, statement.line_number, end, z, lead)
         state.append_rapid(statement.line_number, x0, z)
         state.append_rapid(statement.line_number, x0, begin)
     state.append_rapid(statement.line_number, x0, z0)
@@ -204,7 +222,7 @@ def append_linuxcnc_thread_cycle(state: SourceState, statement: SourceStatement,
         end = z - along * left * tan(radians(angle))
         state.append_rapid(statement.line_number, clear, begin)
         state.append_rapid(statement.line_number, x, begin)
-        state.append_move(StepKind.THREAD, statement.line_number, x, end, feed=lead, per_rev=True)
+        append_thread(state, statement.line_number, x, end, lead)
         state.append_rapid(statement.line_number, clear, end)
     state.append_rapid(statement.line_number, x0, z)
 
