@@ -8940,8 +8940,8 @@
     </message>
     <message>
       <location filename="app/extras/convert/extra.py" />
-      <source>convert a turning program of another control to OmniTurn</source>
-      <translation>convertir a OmniTurn un programa de torneado de otro control</translation>
+      <source>convert a turning program from or to another control</source>
+      <translation>convertir un programa de torneado de otro control o para otro control</translation>
     </message>
     <message>
       <location filename="app/extras/drawings/drawing_form.py" />
@@ -19555,8 +19555,18 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>A position preset of another control cannot be written for this target.</source>
+      <translation>Un preajuste de posición de otro control no se puede escribir para este destino.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>Add G20 or G21 at the start, or use --unit.</source>
       <translation>Añada G20 o G21 al principio, o use --unit.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Add M03 or M04 after the tool change.</source>
+      <translation>Añada M03 o M04 después del cambio de herramienta.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
@@ -19630,6 +19640,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check that the turret can index there, or move to machine home before T{number}.</source>
+      <translation>Compruebe que la torreta puede girar allí, o muévase al origen de máquina antes de T{number}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>Check that these lines are not needed.</source>
       <translation>Compruebe que estas líneas no hacen falta.</translation>
     </message>
@@ -19637,6 +19652,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>Check that this is the function of the code on the other control.</source>
       <translation>Compruebe que esta es la función del código en el otro control.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check that this speed is permitted on the other lathe.</source>
+      <translation>Compruebe que el otro torno permite esta velocidad.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
@@ -19672,6 +19692,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>Check the speed.</source>
       <translation>Compruebe la velocidad.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check the spindle speed at large diameters.</source>
+      <translation>Compruebe la velocidad del husillo en los diámetros grandes.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
@@ -19740,8 +19765,23 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>D{number} of T{tool} is left out, because the other control has one offset for each tool.</source>
+      <translation>D{number} de T{tool} se omite, porque el otro control tiene un corrector por herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>End the thread with a rapid in X.</source>
       <translation>Termine la rosca con un rápido en X.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Enter the correction in the wear offset of T{tool}.</source>
+      <translation>Introduzca la corrección en el corrector de desgaste de T{tool}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Enter the nose radius and the tip orientation of T{number} on the other control.</source>
+      <translation>Introduzca el radio de punta y la orientación de la punta de T{number} en el otro control.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
@@ -19770,6 +19810,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Mount the tool on that side too, or mirror its moves and reverse the spindle by hand.</source>
+      <translation>Monte la herramienta también en ese lado, o refleje sus movimientos e invierta el husillo a mano.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>No G code for a move is active here.</source>
       <translation>Aquí no hay ningún código G de movimiento activo.</translation>
     </message>
@@ -19795,11 +19840,6 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
-      <source>OmniTurn rejects the converted line {made}: {message}</source>
-      <translation>OmniTurn rechaza la línea convertida {made}: {message}</translation>
-    </message>
-    <message>
-      <location filename="core/extras/convert/conversion_messages.py" />
       <source>Reduce the distance, or write the contour with longer segments.</source>
       <translation>Reduzca la distancia, o escriba el contorno con tramos más largos.</translation>
     </message>
@@ -19820,6 +19860,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Replace the arc with a straight move.</source>
+      <translation>Sustituya el arco por un movimiento recto.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>Replace the code with moves, or remove it if it is not needed.</source>
       <translation>Sustituya el código por movimientos, o elimínelo si no hace falta.</translation>
     </message>
@@ -19832,6 +19877,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>R{radius} is too small for an arc between these points.</source>
       <translation>R{radius} es demasiado pequeño para un arco entre estos puntos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Select a tool before this move, or move to X0 and Z0.</source>
+      <translation>Seleccione una herramienta antes de este movimiento, o muévase a X0 y Z0.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
@@ -19850,8 +19900,18 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>S{speed} is rounded to S{whole}.</source>
+      <translation>S{speed} se redondea a S{whole}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>The arc has neither R nor a center.</source>
       <translation>El arco no tiene R ni centro.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The arc is shorter than the resolution of the other control.</source>
+      <translation>El arco es más corto que la resolución del otro control.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
@@ -19880,6 +19940,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The coordinates of the converted program contain the work shift or the preset of this line.</source>
+      <translation>Las coordenadas del programa convertido contienen el desplazamiento de pieza o el preajuste de esta línea.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>The cycle starts inside its contour.</source>
       <translation>El ciclo empieza dentro de su contorno.</translation>
     </message>
@@ -19900,6 +19965,26 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The line depends on an input of this lathe.</source>
+      <translation>La línea depende de una entrada de este torno.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The line uses the C axis, a live tool or a move that a lathe with only X and Z does not have.</source>
+      <translation>La línea usa el eje C, una herramienta motorizada o un movimiento que no tiene un torno con solo X y Z.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The move without a tool offset does not end at machine home.</source>
+      <translation>El movimiento sin corrector de herramienta no termina en el origen de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The other control rejects the converted line {made}: {message}</source>
+      <translation>El otro control rechaza la línea convertida {made}: {message}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>The position in {axis} is unknown here, because no earlier line programs it.</source>
       <translation>Aquí no se conoce la posición en {axis}, porque ninguna línea anterior la programa.</translation>
     </message>
@@ -19912,6 +19997,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>The program executes more than {most} lines.</source>
       <translation>El programa ejecuta más de {most} líneas.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The program has no maximum spindle speed (G77); {rpm} rpm of this lathe is used.</source>
+      <translation>El programa no tiene velocidad máxima del husillo (G77); se usan las {rpm} rpm de este torno.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
@@ -19950,6 +20040,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The tool change stops the spindle, so the converted program starts it again after T{number}.</source>
+      <translation>El cambio de herramienta para el husillo, así que el programa convertido lo arranca de nuevo después de T{number}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>The variable {word} has no value, or its value comes from the other machine.</source>
       <translation>La variable {word} no tiene valor, o su valor viene de la otra máquina.</translation>
     </message>
@@ -19957,6 +20052,21 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>Turn on Cycle Repeat to make several parts.</source>
       <translation>Active la repetición de ciclo para hacer varias piezas.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>T{number} cuts only at negative X, so it is on the other side of the part.</source>
+      <translation>T{number} corta solo en X negativa, así que está al otro lado de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>T{number} is changed at the last position of T{before}; this lathe does not move for a tool change.</source>
+      <translation>T{number} se cambia en la última posición de T{before}; este torno no se mueve para cambiar de herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>T{number} uses nose compensation.</source>
+      <translation>T{number} usa compensación de punta.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
@@ -20035,6 +20145,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write the code of the other lathe by hand, and leave this code out with --skip-m {number}.</source>
+      <translation>Escriba a mano el código del otro torno y omita este código con --skip-m {number}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>Write the contour with moves only.</source>
       <translation>Escriba el contorno solo con movimientos.</translation>
     </message>
@@ -20047,6 +20162,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>Write the end point with X and Z.</source>
       <translation>Escriba el punto final con X y Z.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write the moves in the coordinates of part zero.</source>
+      <translation>Escriba los movimientos en las coordenadas del cero de pieza.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
@@ -20067,6 +20187,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>Write these lines for the C axis of this control by hand.</source>
       <translation>Escriba a mano estas líneas para el eje C de este control.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write this line for the other control by hand.</source>
+      <translation>Escriba a mano esta línea para el otro control.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
@@ -20200,6 +20325,16 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} stops the spindle, and neither M03 nor M04 follows before the cut.</source>
+      <translation>{word} para el husillo, y ni M03 ni M04 siguen antes del corte.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word} switches a function of this lathe.</source>
+      <translation>{word} conmuta una función de este torno.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>{word}: OmniTurn cannot cut a thread with a tapered entry.</source>
       <translation>{word}: OmniTurn no puede cortar una rosca con entrada cónica.</translation>
     </message>
@@ -20260,6 +20395,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: the other control has no minimum spindle speed, so the code is left out.</source>
+      <translation>{word}: el otro control no tiene velocidad mínima del husillo, así que el código se omite.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>{word}: the spindle cannot turn at this speed.</source>
       <translation>{word}: el husillo no puede girar a esta velocidad.</translation>
     </message>
@@ -20317,6 +20457,16 @@
       <location filename="core/extras/convert/conversion_proof.py" />
       <source>the step</source>
       <translation>el paso</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/targets/read_back_proof.py" />
+      <source>the maximum spindle speed</source>
+      <translation>la velocidad máxima del husillo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/targets/read_back_proof.py" />
+      <source>the nose compensation</source>
+      <translation>la compensación de punta</translation>
     </message>
     <message>
       <location filename="core/extras/drawings/contour_tracing.py" />

@@ -1,4 +1,4 @@
-"""Command ``turndesk convert FILE``, which converts a program of another control to OmniTurn.
+"""Command ``turndesk convert FILE``, which converts a turning program from or to another control.
 
 The command also proves the converted program.
 """
@@ -17,30 +17,37 @@ from app.cli.store_command import open_store
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, convert_to_command_error
 from app.extras.convert.conversion_settings import ConversionSettings, make_options
 from core.access.access_table import ProtectedChange
-from core.extras.convert.source_options import ConversionOptions, SourceControl
+from core.extras.convert.source_options import ConversionOptions, SourceControl, TargetControl
 from core.json_keys import JsonOutput, declare_keys
-from core.language.source import SourceError, load_source
+from core.language.source import Dialect, ProgramSource, SourceError, load_source
 from core.message import Message
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
     from core.extras.convert.conversion import Conversion
+    from core.interpreter.shared.job_setup import ControlLimits
     from core.machine.machine_model import Machine
 
 _MM_PER_INCH = 25.4
+_OMNITURN = str(Dialect.OMNITURN)
 
 
 def add_parser(subparsers: SubParsers) -> None:
     """Declare the options of the command."""
     parser = subparsers.add_parser("convert")
-    parser.add_argument("file", metavar="FILE", help="program of the other control")
+    parser.add_argument("file", metavar="FILE", help="program to convert")
     parser.add_argument(
         "--from",
         dest="control",
-        choices=[str(each) for each in SourceControl],
+        choices=[*(str(each) for each in SourceControl), _OMNITURN],
         help="control of the program; fanuc-a and fanuc-b are G-code systems A and B (default: recognized)",
     )
-    parser.add_argument("--to", choices=("omniturn",), default="omniturn", help="language of the result")
+    parser.add_argument(
+        "--to",
+        choices=[str(each) for each in TargetControl],
+        default=_OMNITURN,
+        help="control of the result; linuxcnc and fanuc need an OmniTurn program",
+    )
     parser.add_argument(
         "--no-point",
         choices=("1", "0.001"),
@@ -90,23 +97,64 @@ def run(args: argparse.Namespace) -> int:
     """
     from app.compose.machine.machine_setup import get_control_limits, read_machine
     from core.extras.convert.conversion import convert_program
-    from core.extras.convert.recognition import recognize_control
 
     machine = read_machine(args.machine)
     who = _may_write(args)
     with convert_to_command_error(SourceError):
         source = load_source(Path(args.file))
+    limits = get_control_limits(machine)
+    control: str = _OMNITURN
+    if args.to == TargetControl.OMNITURN:
+        control = found = _find_control(args, source)
+        done = convert_program(source.lines, _options(args, found, machine), limits)
+    else:
+        done = _convert_from_omniturn(args, source, machine, limits)
+    if args.out is not None and not done.errors:
+        _write(args, done.text, who)
+    _print(args, control, done)
+    return EXIT_ERRORS if done.errors else EXIT_OK
+
+
+def _find_control(args: argparse.Namespace, source: ProgramSource) -> SourceControl:
+    """Return the control of a program that is converted to OmniTurn.
+
+    Raises CommandError if the control is unknown, or if the program already is an OmniTurn program.
+    """
+    from core.extras.convert.recognition import recognize_control
+
+    if args.control == _OMNITURN:
+        raise CommandError(
+            Message("{file} is an OmniTurn program already; name another control with --to", file=args.file),
+            "same-control",
+        )
     control = SourceControl(args.control) if args.control else recognize_control(source.lines)
     if control is None:
         raise CommandError(
             Message("{file} is not recognized; name its control with --from", file=args.file),
             "control-unknown",
         )
-    done = convert_program(source.lines, _options(args, control, machine), get_control_limits(machine))
-    if args.out is not None and not done.errors:
-        _write(args, done.text, who)
-    _print(args, control, done)
-    return EXIT_ERRORS if done.errors else EXIT_OK
+    return control
+
+
+def _convert_from_omniturn(
+    args: argparse.Namespace, source: ProgramSource, machine: Machine, limits: ControlLimits
+) -> Conversion:
+    """Convert an OmniTurn program to another control.
+
+    Raises CommandError for a program of another control, and for an option that has no effect.
+    """
+    from core.extras.convert.targets.outward_conversion import convert_from_omniturn
+
+    if args.control not in {None, _OMNITURN} or source.dialect is not Dialect.OMNITURN:
+        text = "--to {target} needs an OmniTurn program; convert {file} to OmniTurn first"
+        raise CommandError(Message(text, target=args.to, file=args.file), "not-omniturn")
+    for option, value in (("--no-point", args.no_point), ("--unit", args.unit), ("--x", args.x)):
+        if value is not None:
+            text = "{option} has no effect on an OmniTurn program; leave it out"
+            raise CommandError(Message(text, option=option), "option-without-effect")
+    options = _options(args, SourceControl.LINUXCNC, machine)
+    title = Path(args.file).name
+    return convert_from_omniturn(source.lines, TargetControl(args.to), options, limits, title)
 
 
 def _options(args: argparse.Namespace, control: SourceControl, machine: Machine) -> ConversionOptions:
@@ -152,7 +200,7 @@ def _write(args: argparse.Namespace, text: str, who: str) -> None:
     )
 
 
-def _print(args: argparse.Namespace, control: SourceControl, done: Conversion) -> None:
+def _print(args: argparse.Namespace, control: str, done: Conversion) -> None:
     from core.extras.convert.conversion import group_findings
 
     if args.json:
@@ -166,15 +214,17 @@ def _print(args: argparse.Namespace, control: SourceControl, done: Conversion) -
     sys.stderr.write(f"{_summary(args, control, done)}\n")
 
 
-def _summary(args: argparse.Namespace, control: SourceControl, done: Conversion) -> str:
+def _summary(args: argparse.Namespace, control: str, done: Conversion) -> str:
     if done.errors:
-        return Message("{file}: not converted from {control}", file=args.file, control=control)
+        text = "{file}: not converted from {control} to {target}"
+        return Message(text, file=args.file, control=control, target=args.to)
     proof = done.proof
     return Message(
-        "{file}: converted from {control}, {lines} lines, {compared} steps proved equal, {rounded} values "
-        "rounded by at most {most} in",
+        "{file}: converted from {control} to {target}, {lines} lines, {compared} steps proved equal, "
+        "{rounded} values rounded by at most {most} in",
         file=args.file,
         control=control,
+        target=args.to,
         lines=len(done.lines),
         compared=proof.compared_step_count,
         rounded=proof.rounded_move_count,
@@ -182,7 +232,7 @@ def _summary(args: argparse.Namespace, control: SourceControl, done: Conversion)
     )
 
 
-def _in_json(args: argparse.Namespace, control: SourceControl, done: Conversion) -> dict[str, object]:
+def _in_json(args: argparse.Namespace, control: str, done: Conversion) -> dict[str, object]:
     return {
         "file": args.file,
         "from": str(control),

@@ -22,7 +22,7 @@ class ConvertExtra(OptionalFeature):
     """Optional feature with the command ``turndesk convert`` and the special function CONVERT PROGRAM."""
 
     subcommands = {
-        "convert": Subcommand("serial", "convert a turning program of another control to OmniTurn"),
+        "convert": Subcommand("serial", "convert a turning program from or to another control"),
     }
 
     def attach_models(

@@ -17,6 +17,10 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "The arc's radius is {first} at its start and {last} at its end.",
         "Correct the end point or the center.",
     ),
+    "arc-short": (
+        "The arc is shorter than the resolution of the other control.",
+        "Replace the arc with a straight move.",
+    ),
     "arc-too-small": (
         "R{radius} is too small for an arc between these points.",
         "Correct R or the end point.",
@@ -25,6 +29,10 @@ ERRORS: Mapping[str, tuple[str, str]] = {
     "c-axis": (
         "{word} moves the C axis or a live tool; this conversion supports only turning.",
         "Write these lines for the C axis of this control by hand.",
+    ),
+    "c-axis-target": (
+        "The line uses the C axis, a live tool or a move that a lathe with only X and Z does not have.",
+        "Write this line for the other control by hand.",
     ),
     "code-unknown": (
         "{word} is not supported by the conversion.",
@@ -80,11 +88,23 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "{word} drills along Y while G18 is active.",
         "Write G17 before the cycle.",
     ),
+    "input-of-lathe": (
+        "The line depends on an input of this lathe.",
+        "Write this line for the other control by hand.",
+    ),
     "inverse-time": ("G93 (inverse time feed) is not supported.", "Write feeds with G94 or G95."),
     "label": ("The target {word} does not exist in this file.", "Add the line number, or correct the jump."),
     "m-code": (
         "{word} has no meaning on this machine.",
         "Define the M code under [m_codes] in the machine file, or leave it out with --skip-m {number}.",
+    ),
+    "m-code-target": (
+        "{word} switches a function of this lathe.",
+        "Write the code of the other lathe by hand, and leave this code out with --skip-m {number}.",
+    ),
+    "machine-point": (
+        "The move without a tool offset does not end at machine home.",
+        "Select a tool before this move, or move to X0 and Z0.",
     ),
     "motion-missing": (
         "No G code for a move is active here.",
@@ -102,6 +122,14 @@ ERRORS: Mapping[str, tuple[str, str]] = {
     "position": (
         "The position in {axis} is unknown here, because no earlier line programs it.",
         "Write an absolute X and Z before this line.",
+    ),
+    "preset-target": (
+        "A position preset of another control cannot be written for this target.",
+        "Write the moves in the coordinates of part zero.",
+    ),
+    "spindle-start": (
+        "{word} stops the spindle, and neither M03 nor M04 follows before the cut.",
+        "Add M03 or M04 after the tool change.",
     ),
     "subprogram": (
         "The subprogram {word} is not in this file.",
@@ -176,6 +204,10 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
         "{word}: the unit of a dwell is a setting of the Mach control; seconds are assumed.",
         "Check the dwell.",
     ),
+    "far-side-tool": (
+        "T{number} cuts only at negative X, so it is on the other side of the part.",
+        "Mount the tool on that side too, or mirror its moves and reverse the spindle by hand.",
+    ),
     "feed-limited": (
         "{word} is above the maximum feed of this machine; the maximum is used.",
         "Check the feed.",
@@ -189,9 +221,21 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
         "{word} does what the machine file of this machine defines.",
         "Check that this is the function of the code on the other control.",
     ),
+    "maximum-speed-added": (
+        "The program has no maximum spindle speed (G77); {rpm} rpm of this lathe is used.",
+        "Check that this speed is permitted on the other lathe.",
+    ),
+    "minimum-speed": (
+        "{word}: the other control has no minimum spindle speed, so the code is left out.",
+        "Check the spindle speed at large diameters.",
+    ),
     "nose-offset": (
         "Nose compensation uses D{number}.",
         "Enter the nose radius in secondary offset D{number}.",
+    ),
+    "nose-table": (
+        "T{number} uses nose compensation.",
+        "Enter the nose radius and the tip orientation of T{number} on the other control.",
     ),
     "not-executed": (
         "The program does not execute the lines {first} to {last}, so that they are not converted.",
@@ -214,13 +258,25 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
         "Turn on Cycle Repeat to make several parts.",
     ),
     "replaced": ("{word} is replaced by {replacement}.", "Check that the codes have the same function."),
+    "secondary-offset": (
+        "D{number} of T{tool} is left out, because the other control has one offset for each tool.",
+        "Enter the correction in the wear offset of T{tool}.",
+    ),
     "speed-limited": (
         "{word} is above the maximum spindle speed of this machine; the maximum is used.",
         "Check the speed.",
     ),
+    "speed-rounded": (
+        "S{speed} is rounded to S{whole}.",
+        "No action is needed.",
+    ),
     "thread-pull-out": (
         "The thread's pull-out at an angle is replaced by a pull-out straight in X at the end of the thread.",
         "Check that the thread has a relief groove.",
+    ),
+    "tool-change-place": (
+        "T{number} is changed at the last position of T{before}; this lathe does not move for a tool change.",
+        "Check that the turret can index there, or move to machine home before T{number}.",
     ),
     "tool-of-offset": (
         "{word}: the tool of the converted program is T{number}, because OmniTurn has one number for both.",
@@ -230,6 +286,14 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
 NOTES: Mapping[str, tuple[str, str]] = {
     "no-change": (
         "{word} changes nothing at this point, so the converted program does not contain it.",
+        "No action is needed.",
+    ),
+    "shift-contained": (
+        "The coordinates of the converted program contain the work shift or the preset of this line.",
+        "No action is needed.",
+    ),
+    "spindle-restarted": (
+        "The tool change stops the spindle, so the converted program starts it again after T{number}.",
         "No action is needed.",
     ),
     "work-offset-used": (
@@ -246,7 +310,7 @@ PROOF_ERRORS: Mapping[str, tuple[str, str]] = {
         "The converted program has {made} steps instead of {wanted}.",
         "Report this program; the converted program is not written.",
     ),
-    "target": ("OmniTurn rejects the converted line {made}: {message}", "{hint}"),
+    "target": ("The other control rejects the converted line {made}: {message}", "{hint}"),
 }
 
 

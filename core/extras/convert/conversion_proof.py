@@ -16,8 +16,7 @@ from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, ProgramSource
 
 EQUAL_TOLERANCE_MM = 1e-6 * 25.4  # mm
-_HALF_STEP = 0.000025 * 25.4  # mm; half of the resolution of OmniTurn in inches, of the radius and of Z
-_HALF_STEP_METRIC = 0.00005  # mm
+_RESOLUTION_MM = (0.00005 * 25.4, 0.0001)  # of OmniTurn in inches and in mm, of the radius and of Z
 _CLEARANCE = 0.0002 * 25.4  # mm; retract of a thread pass
 _OFFSET = ToolOffset(12.7, -76.2)
 _KINDS = {
@@ -63,12 +62,13 @@ def prove(
     blocks = list(done.generate_blocks())
     errors = [each for each in done.diagnostics if each.severity is Severity.ERROR]
     if errors:
-        return Proof(tuple(_of_target(each, text, source_line_numbers) for each in errors))
-    return _Comparison(blocks, steps, metric=is_metric).compare_steps()
+        return Proof(tuple(make_target_error(each, text, source_line_numbers) for each in errors))
+    comparison = PathComparison(blocks, steps, metric=is_metric, resolution_mm=_RESOLUTION_MM[is_metric])
+    return comparison.compare_steps()
 
 
-def _of_target(found: Diagnostic, text: str, sources: Sequence[int]) -> Diagnostic:
-    """Convert a finding about the converted program to a finding about the source line it comes from."""
+def make_target_error(found: Diagnostic, text: str, sources: Sequence[int]) -> Diagnostic:
+    """Convert a finding about the converted program to a finding about the corresponding source line."""
     line = sources[found.line - 1] if found.line else 0
     made = text.splitlines()[found.line - 1] if found.line else ""
     error = make_error(line, 0, "target", made=made, message=found.message, hint=found.hint)
@@ -83,8 +83,14 @@ class _DifferenceError(Exception):
         self.diagnostic = diagnostic
 
 
-class _Comparison:
-    """Comparison of the converted program's blocks with the steps of the source, in program order."""
+class PathComparison:
+    """Comparison of elementary blocks with the steps of another program, in program order.
+
+    Usually, the blocks belong to the converted program and the steps to the source. With
+    ``has_source_blocks``, the blocks belong to the source. ``resolution_mm`` is the resolution to which the
+    control rounds coordinates. ``has_thread_cycles`` means that the rapids around a thread pass are those
+    of a cycle, so that they are compared only within the retract of the cycle.
+    """
 
     def __init__(
         self,
@@ -92,17 +98,22 @@ class _Comparison:
         steps: Sequence[PathStep],
         *,
         metric: bool,
+        resolution_mm: float,
+        has_source_blocks: bool = False,
+        has_thread_cycles: bool = True,
     ) -> None:
-        self._blocks = [each for each in blocks if not _is_idle(each)]
+        self._blocks = [each for each in blocks if not is_idle(each)]
+        self._has_source_blocks, self._has_thread_cycles = has_source_blocks, has_thread_cycles
         self._metric = metric
         self._steps = list(_known(steps))
         self._at = 0
         self._tool = 0
         self._rounded = 0
         self._most = 0.0
-        self._near = EQUAL_TOLERANCE_MM + (_HALF_STEP_METRIC if metric else _HALF_STEP)
+        self._near = EQUAL_TOLERANCE_MM + resolution_mm / 2
 
     def compare_steps(self) -> Proof:
+        """Return the result of the comparison, with the first difference as an error."""
         try:
             compared = self._compare()
         except _DifferenceError as found:
@@ -138,6 +149,8 @@ class _Comparison:
         return self._blocks[self._at - 1]
 
     def _differs(self, line: int, code: str, made: object, wanted: object, what: str = "") -> None:
+        if self._has_source_blocks:
+            made, wanted = wanted, made
         raise _DifferenceError(make_error(line, 0, code, made=made, wanted=wanted, what=what).diagnostic)
 
     def _same(self, step: PathStep, what: str, made: float, wanted: float, near: float) -> None:
@@ -195,7 +208,10 @@ class _Comparison:
             if block.clockwise != step.clockwise:
                 self._differs(step.line, "proof-differs", block.clockwise, step.clockwise, "clockwise")
         if step.kind is StepKind.THREAD:
-            self._same(step, "the lead", block.feed, step.feed, 1e-6)
+            # The lead of a taper depends on its rounded end points.
+            rounding = 2 * self._near / max(abs(block.z - block.z0), self._near)
+            near = 1e-6 + (block.feed * rounding if block.x != block.x0 else 0.0)
+            self._same(step, "the lead", block.feed, step.feed, near)
             return
         if block.per_rev != step.per_rev:
             self._differs(step.line, "proof-differs", block.per_rev, step.per_rev, "feed per revolution")
@@ -230,8 +246,10 @@ class _Comparison:
     def _thread_zone(self, at: int) -> int:
         """Compare a thread pass and the rapids before and after it; return the number of steps compared.
 
-        The number is 0 if the next step does not belong to a thread.
+        The number is 0 if the next step does not belong to a thread of a cycle.
         """
+        if not self._has_thread_cycles:
+            return 0
         steps, blocks = self._steps, self._blocks
         infeed = at
         while infeed < len(steps) and steps[infeed].kind is StepKind.RAPID:
@@ -281,7 +299,7 @@ class _Comparison:
         return abs(block.x - step.x) <= _CLEARANCE and abs(block.z - step.z) <= self._near
 
 
-def _is_idle(block: Block) -> bool:
+def is_idle(block: Block) -> bool:
     """Return whether a block is excluded from the comparison.
 
     Tool changes, presets and moves of zero length are excluded.

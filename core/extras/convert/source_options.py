@@ -34,6 +34,14 @@ class SourceControl(StrEnum):
         return self not in {SourceControl.LINUXCNC, SourceControl.MACH}
 
 
+class TargetControl(StrEnum):
+    """Control for which a program is written. The values are the choices of the option ``--to``."""
+
+    OMNITURN = "omniturn"
+    LINUXCNC = "linuxcnc"
+    FANUC = "fanuc"
+
+
 @dataclass(frozen=True, slots=True)
 class ConversionOptions:
     """Options of a conversion, mainly facts that the text of the source program does not contain.

@@ -21,6 +21,7 @@ def execute_spindle_words(state: SourceState, statement: SourceStatement) -> Non
     spindle = _set_speed(state, statement, _select_mode(state, statement))
     for code in statement.find_words("M"):
         if code.value in {3, 4}:
+            state.start_request = None
             spindle = replace(spindle, direction=1 if code.value == 3 else -1)
             if not spindle.speed and spindle.direction != before.direction:
                 state.speed_request = make_error(
@@ -35,7 +36,7 @@ def execute_spindle_words(state: SourceState, statement: SourceStatement) -> Non
 
 def stop_spindle(state: SourceState, word: SourceWord) -> None:
     """Execute M05."""
-    state.speed_request = None
+    state.speed_request = state.start_request = None
     if not state.spindle.direction:
         state.add_note(word, "no-change", word=word.text)
         return

@@ -14,6 +14,7 @@ MM_PER_INCH = 25.4
 _LEAST = (0.0001, 0.001)  # least increment in inches and in mm
 _SAME = 1e-9  # mm
 MAX_STEP_COUNT = 300_000
+_CUTS = frozenset({StepKind.FEED, StepKind.ARC, StepKind.THREAD})
 _NEED_SPEED = frozenset({StepKind.FEED, StepKind.ARC, StepKind.THREAD, StepKind.DWELL, StepKind.END})
 
 
@@ -40,6 +41,7 @@ class SourceState:
     plane_code: float = 18
     spindle: SpindleState = field(default_factory=SpindleState)
     speed_request: ProgramError | None = None  # raised by the next cut; S clears it
+    start_request: ProgramError | None = None  # raised by the next cut; M03 and M04 clear it
     tool_number: int = 0
     nose_code: int = 40
     work_offset: float = 0
@@ -155,13 +157,15 @@ class SourceState:
     def append_step(self, step: PathStep) -> None:
         """Append a step, and attach the comment that precedes it.
 
-        Raises ProgramError if the program makes too many steps, or if a step needs a spindle speed that is
+        Raises ProgramError if the program makes too many steps, or if a speed or a start of the spindle is
         missing.
         """
         if len(self.steps) >= MAX_STEP_COUNT:
             raise make_error(step.line, 1, "too-many-moves", most=MAX_STEP_COUNT)
         if self.speed_request is not None and step.kind in _NEED_SPEED:
             raise self.speed_request
+        if self.start_request is not None and step.kind in _CUTS:
+            raise self.start_request
         if self.pending_comment:
             object.__setattr__(step, "comment", self.pending_comment)
             self.pending_comment = ""

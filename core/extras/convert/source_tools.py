@@ -26,6 +26,7 @@ def execute_tool_words(state: SourceState, statement: SourceStatement) -> None:
             _select_tool(state, word)
     change = next((each for each in statement.find_words("M") if each.value == 6), None)
     if change is not None and state.uses_tool_change:
+        _require_spindle_start(state, change)
         if state.prepared_tool is None:
             state.add_note(change, "no-change", word=change.text)
         else:
@@ -37,6 +38,12 @@ def execute_tool_words(state: SourceState, statement: SourceStatement) -> None:
         elif code.value == 49:
             known = "no-change" if not state.tool_number else "offset-cancelled"
             (state.add_note if not state.tool_number else state.add_warning)(code, known, word=code.text)
+
+
+def _require_spindle_start(state: SourceState, change: SourceWord) -> None:
+    """Require M03 or M04 before the next cut, because M06 of LinuxCNC stops the spindle."""
+    if state.source_control is SourceControl.LINUXCNC and state.spindle.direction:
+        state.start_request = make_error(change.line_number, change.column, "spindle-start", word=change.text)
 
 
 def report_unused_tool(state: SourceState) -> None:

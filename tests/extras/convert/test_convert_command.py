@@ -69,6 +69,45 @@ def test_source_options_are_applied(turndesk: Turndesk, part: Path) -> None:
     assert told.status in {0, 1}
 
 
+OMNITURN = "G90G94F300G70G72\nT1\nM03S500\nX1.Z.1\nG95F.01Z-1.\nM25\nM30\n"
+
+
+@pytest.mark.parametrize(("target", "first"), [("linuxcnc", "(part.nc)"), ("fanuc", "%")])
+def test_omniturn_program_is_written_for_another_control(
+    turndesk: Turndesk, tmp_path: Path, target: str, first: str
+) -> None:
+    source, made = tmp_path / "part.nc", tmp_path / "other.nc"
+    source.write_text(OMNITURN)
+    assert turndesk("convert", source, "--to", target, "--out", made).status == 1  # M25
+    assert not made.exists()
+    done = turndesk("convert", source, "--to", target, "--skip-m", "25", "--out", made)
+    assert done.status == 0
+    assert f"converted from omniturn to {target}" in done.err
+    assert made.read_text().splitlines()[0] == first
+    again = turndesk("convert", source, "--to", target, "--skip-m", "25", "--out", made)
+    assert (again.status, again.code) == (2, "file-exists")
+
+
+@pytest.mark.parametrize(
+    ("name", "words", "code"),
+    [
+        ("part.nc", ("--to", "omniturn", "--from", "omniturn"), "same-control"),
+        ("part.nc", ("--to", "fanuc", "--from", "haas"), "not-omniturn"),
+        ("part.mpf", ("--to", "fanuc"), "not-omniturn"),
+        ("part.nc", ("--to", "linuxcnc", "--unit", "mm"), "option-without-effect"),
+        ("part.nc", ("--to", "linuxcnc", "--x", "radius"), "option-without-effect"),
+        ("part.nc", ("--to", "linuxcnc", "--no-point", "1"), "option-without-effect"),
+    ],
+)
+def test_option_that_contradicts_the_target_is_rejected(
+    turndesk: Turndesk, tmp_path: Path, name: str, words: tuple[str, ...], code: str
+) -> None:
+    source = tmp_path / name
+    source.write_text(OMNITURN)
+    told = turndesk("convert", source, *words)
+    assert (told.status, told.code) == (2, code)
+
+
 @pytest.mark.parametrize(
     ("words", "code"),
     [

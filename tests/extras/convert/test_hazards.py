@@ -7,7 +7,7 @@ from unittest.mock import patch
 import pytest
 
 from core.extras.convert import source_state
-from tests.extras.convert.sources import FANUC, converted, lines_after, refused
+from tests.extras.convert.sources import FANUC, LINUXCNC, converted, lines_after, refused
 
 CONTOUR = "\nN10G00X1.\nG01Z-.5\nN20X2."
 LINUXCNC_THREAD = "G76 P.05 Z-1 I-.1 J.01 K.03"
@@ -130,3 +130,21 @@ def test_the_variables_of_a_macro_call_are_local_to_it() -> None:
 
 def test_hazards_of_the_beginning_do_not_occur_in_a_correct_program() -> None:
     assert not converted(f"{FANUC}G71P10Q20U.02W.01D.1F.01{CONTOUR}\nM30\n").errors
+
+
+@pytest.mark.parametrize(
+    ("body", "found"),
+    [
+        ("T2M6\nG0X1.Z.1\nG1Z0", (3, "spindle-start")),
+        ("T2M6\nS800\nG0X1.Z.1\nG1Z0", (4, "spindle-start")),
+        ("T2M6\nG0X1.Z.1M3\nG1Z0", None),
+        ("M5\nT2M6\nG0X1.Z.1\nG94G1Z0F10.", None),  # the program itself has stopped the spindle
+    ],
+)
+def test_cut_after_m6_of_linuxcnc_needs_a_start_of_the_spindle(
+    body: str, found: tuple[int, str] | None
+) -> None:
+    """M6 of LinuxCNC stops the spindle, as rs274 shows with STOP_SPINDLE_TURNING."""
+    done = converted(f"{LINUXCNC}{body}\nM30\n", "linuxcnc")
+    wanted = [] if found is None else [(LINUXCNC.count("\n") + 1, found[1])]
+    assert [(each.line, each.code) for each in done.errors] == wanted

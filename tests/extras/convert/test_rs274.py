@@ -11,8 +11,12 @@ from typing import NamedTuple
 import pytest
 
 from core.extras.convert.path_steps import MOVE_KINDS, StepKind
-from core.extras.convert.source_options import ConversionOptions, SourceControl
+from core.extras.convert.source_options import ConversionOptions, SourceControl, TargetControl
 from core.extras.convert.source_reader import SourceReader
+from core.extras.convert.targets.omniturn_steps import interpret_source
+from core.extras.convert.targets.outward_conversion import convert_from_omniturn
+from core.interpreter.shared.elementary_blocks import BlockKind
+from core.interpreter.shared.job_setup import ControlLimits
 
 RS274 = shutil.which("rs274")
 INI = "[RS274NGC]\nPARAMETER_FILE = {folder}/rs.var\nLATHE = 1\n[EMCIO]\nTOOL_TABLE = {folder}/rs.tbl\n"
@@ -94,6 +98,37 @@ G7X = [
 ]
 
 
+OMNITURN = """\
+G90G94F300G71G72
+T1
+M03S500
+X50Z2
+G95F.2G01Z-25
+G02X62Z-31R6
+X70C1
+Z-40
+G00X80Z4
+X32
+G33X29Z-20I.5K1.5P
+G33X28Z-20I.5A2K1.5C
+G94F100X30Z0
+G74X20Z-10I1U.2
+G83Z-15K3F50
+M30
+"""
+OMNITURN_RADIUS = """\
+G90G94F300G71G73
+T1
+M03S500
+X25Z2
+G95F.2G01Z-25
+G02X31Z-31R6
+X35C1
+Z-40
+M30
+"""
+
+
 class Move(NamedTuple):
     """A move in mm: X is a radius; the center is 0 for straight moves."""
 
@@ -151,11 +186,11 @@ def test_the_reader_moves_as_linuxcnc_does(text: str, tmp_path: Path) -> None:
     assert len(wanted) > 6
 
 
-def assert_same_moves(made: list[Move], wanted: list[Move]) -> None:
+def assert_same_moves(made: list[Move], wanted: list[Move], near: float = NEAR) -> None:
     assert [(each.kind, each.turn) for each in made] == [(each.kind, each.turn) for each in wanted]
     for one, other in zip(made, wanted, strict=True):
         assert (one.x, one.z, one.cx, one.cz) == pytest.approx(
-            (other.x, other.z, other.cx, other.cz), abs=NEAR
+            (other.x, other.z, other.cx, other.cz), abs=near
         )
 
 
@@ -181,6 +216,24 @@ def test_missing_way_out_is_added_as_newer_versions_do(
     """Version 2.9.0 of rs274 does not add the move straight out, so it is written for rs274."""
     text = f"{G7X_BEGIN}O100 SUB\n{{}}\nO100 ENDSUB\n{call}\nM2\n"
     assert_same_moves(ours(text.format(contour)), canon(text.format(f"{contour}\n{out}"), tmp_path))
+
+
+@pytest.mark.parametrize(("text", "count"), [(OMNITURN, 50), (OMNITURN_RADIUS, 6)])
+def test_program_from_omniturn_moves_the_same_in_linuxcnc(text: str, count: int, tmp_path: Path) -> None:
+    """The elementary blocks of the OmniTurn program and the moves of rs274 are equal."""
+    texts = text.splitlines()
+    options = ConversionOptions(SourceControl.LINUXCNC)
+    program = interpret_source(texts, options, ControlLimits())
+    wanted = []
+    for each in program.blocks:
+        if each.moves:
+            kind = {BlockKind.RAPID: "rapid", BlockKind.ARC: "arc"}.get(each.kind, "cut")
+            center = (each.cx, each.cz, 1 if each.clockwise else -1) if kind == "arc" else (0.0, 0.0, 0)
+            wanted.append(Move(kind, each.x, each.z, *center))
+    done = convert_from_omniturn(texts, TargetControl.LINUXCNC, options, ControlLimits(), "part.nc")
+    assert not done.errors
+    assert_same_moves(canon(done.text, tmp_path), without_standstill(wanted), 2 * NEAR)  # rounded twice
+    assert len(wanted) >= count
 
 
 def test_comparison_detects_a_difference(tmp_path: Path) -> None:

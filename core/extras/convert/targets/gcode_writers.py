@@ -1,0 +1,136 @@
+"""Writers of programs for the lathe controls LinuxCNC and Fanuc (G-code system A)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import hypot
+from typing import ClassVar
+
+from core.extras.convert.conversion_messages import make_note, make_warning
+from core.extras.convert.omniturn_writer import number
+from core.extras.convert.path_steps import PathStep, SpindleState, StepKind
+from core.extras.convert.targets.program_writer import ProgramWriter
+
+
+class LinuxCncWriter(ProgramWriter):
+    """Writer of a program for a lathe with LinuxCNC.
+
+    M6 of LinuxCNC stops the spindle, so that the writer starts it again after a tool change.
+    """
+
+    coordinate_places: ClassVar[tuple[int, int]] = (5, 4)
+    feed_modes: ClassVar[tuple[str, str]] = ("G94", "G95")
+    motions: ClassVar[Mapping[StepKind, str]] = {
+        StepKind.RAPID: "G0",
+        StepKind.FEED: "G1",
+        StepKind.THREAD: "G33",
+    }
+    arcs: ClassVar[tuple[str, str]] = ("G2", "G3")
+
+    def write_beginning(self) -> None:
+        """Write the modes that the program needs. G64 limits the rounding of corners."""
+        self.append_raw_line(self.make_comment(self.form.title))
+        unit, tolerance = ("G21", "P0.01") if self.form.is_metric else ("G20", "P0.0005")
+        self.append_line(unit, "G18", "G7" if self.form.is_diameter else "G8", "G90", "G40", "G97", "G54")
+        self.append_line("G64", tolerance)
+
+    def write_tool(self, _step: PathStep) -> None:
+        """Write T, M6 and G43, and start the spindle again if it was running."""
+        self.append_line(f"T{self.tool_number}", "M6", "G43")
+        if self.spindle.direction:
+            self.findings.append(make_note(self.line_number, 0, "spindle-restarted", number=self.tool_number))
+            self.write_spindle(SpindleState())
+
+    def write_home(self, step: PathStep) -> None:
+        """Write G53 with the axes that move."""
+        self.append_line("G53", "G0", "X0" if step.x is not None else "", "Z0" if step.z is not None else "")
+
+    def write_dwell(self, seconds: float) -> None:
+        """Write G4 with P in seconds."""
+        self.append_line("G4", f"P{self.format_number(seconds, 6)}")
+
+    def write_surface_speed(self, spindle: SpindleState, start: str) -> None:
+        """Write G96 with the maximum rpm in D."""
+        most = f"D{self.format_speed(spindle.max_rpm)}"
+        self.append_line("G96", most, f"S{self.format_speed(spindle.speed)}", start)
+
+    def format_lead(self, lead_mm: float, dx: float, dz: float) -> Sequence[str]:
+        """Return K, which LinuxCNC measures along the path of the tool."""
+        return (f"K{self.format_number(lead_mm / self.unit_mm * (hypot(dx, dz) / dz if dz else 1.0), 8)}",)
+
+    def write_stop(self, code: float, text: str) -> None:
+        """Write M0 or M1 after a line with a message for the operator."""
+        if text:
+            self.append_raw_line(self.make_comment(f"MSG, {text}"))
+        super().write_stop(code, "")
+
+
+class FanucWriter(ProgramWriter):
+    """Writer of a program for a Fanuc lathe in G-code system A."""
+
+    coordinate_places: ClassVar[tuple[int, int]] = (4, 3)
+    feed_modes: ClassVar[tuple[str, str]] = ("G98", "G99")
+    motions: ClassVar[Mapping[StepKind, str]] = {
+        StepKind.RAPID: "G00",
+        StepKind.FEED: "G01",
+        StepKind.THREAD: "G32",
+    }
+    arcs: ClassVar[tuple[str, str]] = ("G02", "G03")
+
+    def write_beginning(self) -> None:
+        """Write the program number and the modes that the program needs."""
+        self.append_raw_line("%")
+        self.append_raw_line(f"O0001 {self.make_comment(self.form.title)}")
+        self.append_line("G21" if self.form.is_metric else "G20", "G18", "G40", "G97", "G99")
+        self.feed = ("G99", "")
+
+    def write_ending(self) -> None:
+        """Write the end of the file."""
+        self.append_raw_line("%")
+
+    def write_tool(self, _step: PathStep) -> None:
+        """Write T with the tool and its offset; both have the same number."""
+        self.append_line(f"T{self.tool_number:02d}{self.tool_number:02d}")
+
+    def write_home(self, step: PathStep) -> None:
+        """Write G28 with increments of 0 for the axes that move."""
+        self.append_line("G28", "U0" if step.x is not None else "", "W0" if step.z is not None else "")
+
+    def write_dwell(self, seconds: float) -> None:
+        """Write G04 with U in seconds."""
+        self.append_line("G04", f"U{self.format_number(seconds, 6)}")
+
+    def write_surface_speed(self, spindle: SpindleState, start: str) -> None:
+        """Write the maximum rpm in G50, and then G96."""
+        self.append_line("G50", f"S{self.format_speed(spindle.max_rpm)}")
+        self.append_line("G96", f"S{self.format_speed(spindle.speed)}", start)
+
+    def format_lead(self, lead_mm: float, dx: float, dz: float) -> Sequence[str]:
+        """Return F, which a Fanuc control measures along the axis with the longer travel."""
+        return (f"F{self.format_number(lead_mm / self.unit_mm * (max(dx, dz) / dz if dz else 1.0), 8)}",)
+
+    def after_thread(self) -> None:
+        """Forget the feed, because the lead has replaced it."""
+        self.feed = None if self.feed is None else (self.feed[0], "")
+
+    def format_number(self, value: float, places: int) -> str:
+        """Return a number with a decimal point, as a Fanuc control needs it for lengths."""
+        text = number(value, places)
+        return text if "." in text else f"{text}."
+
+    def format_speed(self, speed: float) -> str:
+        """Return S as a whole number. A warning reports a rounded speed."""
+        whole = round(speed)
+        if abs(speed - whole) > 1e-3:
+            self.findings.append(
+                make_warning(self.line_number, 0, "speed-rounded", speed=number(speed, 3), whole=whole)
+            )
+        return str(whole)
+
+    def format_m_code(self, code: float) -> str:
+        """Return an M code with two digits."""
+        return f"M{round(code):02d}"
+
+    def make_comment(self, text: str) -> str:
+        """Return a comment in capitals."""
+        return super().make_comment(text.upper())

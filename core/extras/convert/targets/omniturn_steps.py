@@ -1,0 +1,314 @@
+"""Steps of an OmniTurn program, made from its elementary blocks.
+
+Coordinates are relative to part zero of the tool, so that the work shift (G10) and the preset (G92) are
+contained in them. All offsets D and all nose radii are zero.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+from core.extras.convert.conversion_messages import make_error, make_note, make_warning
+from core.extras.convert.path_steps import PathStep, SpindleState, StepKind
+from core.extras.convert.source_options import ConversionOptions
+from core.interpreter.dialects import interpret_program
+from core.interpreter.shared import actions
+from core.interpreter.shared.elementary_blocks import Block, BlockKind
+from core.interpreter.shared.job_setup import ControlLimits, InterpreterSetup, SecondaryOffset, ToolOffset
+from core.interpreter.shared.units import MM_S_PER_FT_MIN, MM_S_PER_M_MIN
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.source import Dialect, ProgramSource
+
+MAX_TOOL_NUMBER = 32
+_ANY_OFFSET = ToolOffset(12.7, -76.2)
+_NEAR = 1e-6  # mm
+_OTHER_SIDE_MM = 1.0  # minimum travel of a cut beyond the spindle axis
+_COMMENT = re.compile(r"\(([^()]*)\)?")
+_BLOCK_DELETE = re.compile(r"\s*/")
+_MOVES = {
+    BlockKind.RAPID: StepKind.RAPID,
+    BlockKind.FEED: StepKind.FEED,
+    BlockKind.ARC: StepKind.ARC,
+    BlockKind.THREAD: StepKind.THREAD,
+}
+_C_AXIS = actions.SpindleLock | actions.SpindlePositioning
+_INPUTS = actions.InputWait | actions.InputRead
+
+
+@dataclass(frozen=True, slots=True)
+class InterpretedProgram:
+    """Elementary blocks of an OmniTurn program, their steps, and the findings about them.
+
+    The coordinates of the blocks are relative to part zero of the tool. Without ``is_metric``, the program
+    is in inches; ``is_diameter`` means that its X words are diameters.
+    """
+
+    blocks: Sequence[Block]
+    steps: Sequence[PathStep]
+    findings: Sequence[Diagnostic]
+    is_metric: bool = False
+    is_diameter: bool = True
+
+
+def make_any_setup(limits: ControlLimits) -> InterpreterSetup:
+    """Return a setup in which every tool has an offset, and every offset D is zero."""
+    numbers = range(1, MAX_TOOL_NUMBER + 1)
+    return InterpreterSetup(
+        tools=dict.fromkeys(numbers, _ANY_OFFSET),
+        secondary=dict.fromkeys(numbers, SecondaryOffset()),
+        limits=limits,
+    )
+
+
+def interpret_source(
+    texts: Sequence[str], options: ConversionOptions, limits: ControlLimits
+) -> InterpretedProgram:
+    """Interpret an OmniTurn program and return its blocks and steps.
+
+    The last finding is an error if the program has errors or cannot be written for another control.
+    """
+    source = ProgramSource("source", "".join(f"{each}\n" for each in texts), Dialect.OMNITURN)
+    done = interpret_program(source, make_any_setup(limits))
+    blocks = [_relative_to_part_zero(each) for each in done.generate_blocks()]
+    errors = [each for each in done.diagnostics if each.severity is Severity.ERROR]
+    if errors:
+        return InterpretedProgram((), (), errors)
+    maker = StepMaker(texts, options, limits)
+    try:
+        for block in blocks:
+            maker.append_block(block)
+    except ProgramError as error:
+        return InterpretedProgram((), (), [*maker.findings, error.diagnostic])
+    maker.report_far_side_tools()
+    first = next((each.modal for each in blocks if each.moves), None)
+    if first is None:
+        return InterpretedProgram((), (), [*maker.findings, make_error(0, 0, "file-empty").diagnostic])
+    return InterpretedProgram(
+        [each for each in blocks if not maker.is_left_out(each)],
+        maker.steps,
+        maker.findings,
+        first.metric,
+        first.diameter,
+    )
+
+
+def _relative_to_part_zero(block: Block) -> Block:
+    """Return the block with coordinates that contain the work shift and the preset."""
+    modal = block.modal
+    x, z = block.offset_x - modal.drawing_zero_x, block.offset_z - modal.drawing_zero_z
+    if abs(x) < _NEAR and abs(z) < _NEAR:
+        return block
+    return replace(
+        block, x0=block.x0 + x, x=block.x + x, cx=block.cx + x, z0=block.z0 + z, z=block.z + z,
+        cz=block.cz + z, offset_x=modal.drawing_zero_x, offset_z=modal.drawing_zero_z,
+    )  # fmt: skip
+
+
+@dataclass(slots=True)
+class StepMaker:
+    """Conversion of elementary blocks to steps, in program order.
+
+    ``texts`` contains the lines of the program, from which the comments are taken.
+    """
+
+    texts: Sequence[str]
+    options: ConversionOptions
+    limits: ControlLimits
+    steps: list[PathStep] = field(default_factory=list)
+    findings: list[Diagnostic] = field(default_factory=list)
+    tool_number: int = 0
+    spindle: SpindleState = field(default_factory=SpindleState)
+    nose_code: int = 40
+    _line: int = 0
+    _comments: list[str] = field(default_factory=list)
+    _reported: set[tuple[str, object]] = field(default_factory=set)
+    _cut_range: dict[int, tuple[int, float, float]] = field(default_factory=dict)  # line, min X, max X
+
+    def append_block(self, block: Block) -> None:
+        """Append the steps of a block. Raises ProgramError if another control cannot execute it."""
+        self._read_comments(block.line)
+        if block.plane is not None or block.travel is not None or abs(block.c - block.c0) > _NEAR:
+            raise make_error(block.line, 0, "c-axis-target")
+        if block.action is None:
+            self._append_move(block)
+        else:
+            self._append_action(block, block.action)
+
+    def is_left_out(self, block: Block) -> bool:
+        """Return whether the converted program has no step for the action of a block."""
+        action = block.action
+        if isinstance(action, actions.WorkShift | actions.CycleRepeatCancel):
+            return True
+        number = self._find_m_code(action)
+        return number is not None and number in self.options.skipped_m_codes
+
+    def _append(self, step: PathStep) -> None:
+        if self._comments:
+            step = replace(step, comment=" ".join(self._comments))
+            self._comments.clear()
+        self.steps.append(step)
+
+    def _warn_once(self, key: object, line: int, code: str, /, **values: object) -> None:
+        if (code, key) not in self._reported:
+            self._reported.add((code, key))
+            self.findings.append(make_warning(line, 0, code, **values))
+
+    def _read_comments(self, line: int) -> None:
+        """Collect the comments from the last line to this one; a jump back has only its own line."""
+        if line == self._line:
+            return
+        first = self._line + 1 if line > self._line else line
+        self._line = line
+        for number in range(first, line + 1):
+            text = self.texts[number - 1]
+            self._comments += [each.strip() for each in _COMMENT.findall(text) if each.strip()]
+            if _BLOCK_DELETE.match(text):
+                self._warn_once(number, number, "block-delete", word=text.strip())
+
+    # --- moves
+
+    def _append_move(self, block: Block) -> None:
+        if block.kind not in _MOVES or block.growth:
+            raise make_error(block.line, 0, "c-axis-target")
+        if not block.modal.tool:
+            self._append_home(block)
+            return
+        self._select_nose_code(block)
+        self._report_offset(block)
+        self._follow_maximum_speed(block)
+        if block.kind is not BlockKind.ARC and block.x == block.x0 and block.z == block.z0:
+            return
+        if block.kind is not BlockKind.RAPID:
+            line, low, high = self._cut_range.get(self.tool_number, (block.line, 0.0, -_OTHER_SIDE_MM))
+            self._cut_range[self.tool_number] = line, min(low, block.x), max(high, block.x0, block.x)
+        per_rev = block.per_rev or block.kind is BlockKind.THREAD
+        self._append(
+            PathStep(
+                _MOVES[block.kind], block.line, block.x, block.z, block.cx, block.cz, block.clockwise,
+                block.feed * (1 if per_rev else 60), per_rev,
+            )
+        )  # fmt: skip
+
+    def _append_home(self, block: Block) -> None:
+        """Append a move to machine home. Raises ProgramError for another machine position."""
+        stays = block.x == block.x0 and block.z == block.z0
+        x = abs(block.mx) < _NEAR and (stays or block.x != block.x0)
+        z = abs(block.mz) < _NEAR and (stays or block.z != block.z0)
+        complete = (x or block.x == block.x0) and (z or block.z == block.z0)
+        if block.kind is not BlockKind.RAPID or not complete or not (x or z):
+            raise make_error(block.line, 0, "machine-point")
+        self._append(PathStep(StepKind.HOME, block.line, 0.0 if x else None, 0.0 if z else None))
+
+    def _select_nose_code(self, block: Block) -> None:
+        code = block.modal.compensation_code
+        if code == self.nose_code:
+            return
+        self.nose_code = code
+        self.steps.append(PathStep(StepKind.NOSE, block.line, number=code))
+        if code != 40:
+            self._warn_once(self.tool_number, block.line, "nose-table", number=self.tool_number)
+
+    def _report_offset(self, block: Block) -> None:
+        number = block.modal.secondary
+        if number and block.modal.compensation_code == 40:
+            key = (self.tool_number, number)
+            self._warn_once(key, block.line, "secondary-offset", number=number, tool=self.tool_number)
+
+    def report_far_side_tools(self) -> None:
+        """Report the tools that cut only beyond the spindle axis, as on a gang-tool lathe."""
+        for tool, (line, low, high) in self._cut_range.items():
+            if low < -_OTHER_SIDE_MM and high <= _NEAR:
+                self._warn_once(tool, line, "far-side-tool", number=tool)
+
+    # --- actions
+
+    def _append_action(self, block: Block, action: actions.Action) -> None:
+        if isinstance(action, _C_AXIS):
+            raise make_error(block.line, 0, "c-axis-target")
+        if isinstance(action, _INPUTS):
+            raise make_error(block.line, 0, "input-of-lathe")
+        if isinstance(action, actions.ToolChange):
+            self._change_tool(block, action.tool)
+        elif isinstance(action, actions.SpindleRun | actions.SpindleStop):
+            self._append_spindle(block)
+        elif isinstance(action, actions.Preset | actions.WorkShift):
+            self.findings.append(make_note(block.line, 0, "shift-contained"))
+        elif isinstance(action, actions.CycleRepeatCancel):
+            self.findings.append(make_warning(block.line, 0, "left-out", word="M31"))
+        elif (step := _make_plain_step(block, action)) is not None:
+            self._append(step)
+        else:
+            self._leave_out_m_code(block, action)
+
+    def _find_m_code(self, action: actions.Action | None) -> int | None:
+        """Return the M code of an action that only this lathe has, or None."""
+        if isinstance(action, actions.ColletSwitch):
+            return 12 if action.closed else 13
+        if isinstance(action, actions.OutputSwitch):
+            known = self.limits.m_code_outputs.items()
+            return next((code for code, output in known if output == (action.name, action.on)), -1)
+        return None
+
+    def _leave_out_m_code(self, block: Block, action: actions.Action) -> None:
+        """Report an M code of this lathe. Raises ProgramError unless the options omit the code."""
+        number = self._find_m_code(action)
+        word = f"M{number:02d}" if number is not None and number >= 0 else block.text.strip()
+        if number not in self.options.skipped_m_codes:
+            raise make_error(block.line, 0, "m-code-target", word=word, number=word.lstrip("M"))
+        self.findings.append(make_warning(block.line, 0, "left-out", word=word))
+
+    def _change_tool(self, block: Block, number: int) -> None:
+        if not number or number == self.tool_number:
+            return
+        last = next((each.kind for each in reversed(self.steps) if each.kind in _PLACES), StepKind.HOME)
+        if last is not StepKind.HOME:
+            self.findings.append(
+                make_warning(block.line, 0, "tool-change-place", number=number, before=self.tool_number)
+            )
+        self.tool_number = number
+        self._append(PathStep(StepKind.TOOL, block.line, number=number))
+
+    def _append_spindle(self, block: Block) -> None:
+        spindle = self._read_spindle(block)
+        if spindle.is_css and block.modal.min_css_rpm:
+            rpm = f"{block.modal.min_css_rpm:g}"
+            self._warn_once(rpm, block.line, "minimum-speed", word=f"G76S{rpm}")
+        if spindle.is_css and block.modal.max_css_rpm is None:
+            self._warn_once("G77", block.line, "maximum-speed-added", rpm=f"{spindle.max_rpm:g}")
+        if spindle != self.spindle:
+            self.spindle = spindle
+            self._append(PathStep(StepKind.SPINDLE, block.line, spindle=spindle))
+
+    def _follow_maximum_speed(self, block: Block) -> None:
+        """Append a spindle step if G77 has changed the maximum speed since the last spindle step."""
+        if self.spindle.is_css and self._read_spindle(block).max_rpm != self.spindle.max_rpm:
+            self._append_spindle(block)
+
+    def _read_spindle(self, block: Block) -> SpindleState:
+        modal = block.modal
+        if isinstance(block.action, actions.SpindleStop) or not modal.spindle:
+            return SpindleState()
+        if not modal.css:
+            return SpindleState(modal.spindle, modal.rpm)
+        unit = MM_S_PER_M_MIN if modal.metric else MM_S_PER_FT_MIN
+        most = self.limits.max_rpm if modal.max_css_rpm is None else modal.max_css_rpm
+        return SpindleState(modal.spindle, round(modal.surface_speed / unit, 6), True, most)
+
+
+def _make_plain_step(block: Block, action: actions.Action) -> PathStep | None:
+    """Return the step of an action that every lathe has, or None for another action."""
+    match action:
+        case actions.Dwell(seconds):
+            return PathStep(StepKind.DWELL, block.line, number=seconds)
+        case actions.ProgramEnd(reset):
+            return PathStep(StepKind.END, block.line, number=30 if reset else 2)
+        case actions.ProgramStop():
+            return PathStep(StepKind.M, block.line, number=1 if action.optional else 0)
+        case actions.CoolantSwitch(on):
+            return PathStep(StepKind.M, block.line, number=8 if on else 9)
+    return None
+
+
+_PLACES = frozenset({StepKind.HOME, *_MOVES.values()})

@@ -1,0 +1,273 @@
+"""Common part of the writers for other controls: modal words, coordinates, comments and source lines."""
+
+from __future__ import annotations
+
+import re
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import dist
+from typing import ClassVar
+
+from core.extras.convert.conversion_messages import make_error
+from core.extras.convert.omniturn_writer import WrittenLine, number
+from core.extras.convert.path_steps import MOVE_KINDS, PathStep, SpindleState, StepKind, has_same_speed
+from core.language.diagnostics import Diagnostic
+
+MM_PER_INCH = 25.4
+LONGEST_COMMENT = 60
+_NOT_IN_COMMENTS = re.compile(r"[^ -'*-~]")
+_UNKNOWN = float("nan")
+_SAME = 1e-9  # mm
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramForm:
+    """Form of a written program.
+
+    ``has_front_tool_post`` means that arcs are seen with X+ toward the operator. ``has_line_comments`` means
+    that each line ends with a comment that contains its source line.
+    """
+
+    title: str
+    is_metric: bool
+    is_diameter: bool
+    has_front_tool_post: bool = False
+    has_line_comments: bool = True
+
+
+class ProgramWriter(ABC):
+    """Writer of the steps of a program for another control, which tracks the modal state.
+
+    ``lines`` and ``findings`` are the results. ``x`` and ``z`` are the written coordinates in the unit of the
+    program, or NaN if they are unknown.
+    """
+
+    coordinate_places: ClassVar[tuple[int, int]]  # decimal places in inches and in mm
+    feed_modes: ClassVar[tuple[str, str]]  # feed per minute and feed per revolution
+    motions: ClassVar[Mapping[StepKind, str]]
+    arcs: ClassVar[tuple[str, str]]  # clockwise and counterclockwise
+
+    def __init__(self, form: ProgramForm) -> None:
+        self.form = form
+        self.lines: list[WrittenLine] = []
+        self.findings: list[Diagnostic] = []
+        self.unit_mm = 1.0 if form.is_metric else MM_PER_INCH
+        self.places = self.coordinate_places[form.is_metric]
+        self.x = self.z = _UNKNOWN
+        self.motion = ""
+        self.feed: tuple[str, str] | None = None
+        self.spindle = SpindleState()
+        self.tool_number = 0
+        self.line_number = 0
+        self._nose_word = ""
+        self._point = (_UNKNOWN, _UNKNOWN)  # of the last move, in mm, X as a radius
+
+    def write_program(self, steps: Sequence[PathStep]) -> None:
+        """Write the program. Raises ProgramError if the control has no form for a step."""
+        self.line_number = steps[0].line if steps else 0
+        self.write_beginning()
+        departures = _find_departures(steps)
+        for index, step in enumerate(steps):
+            self.line_number = step.line
+            self._write_step(step, is_departure=index in departures)
+        self.write_ending()
+
+    def append_line(self, *words: str) -> None:
+        """Append a line of these words, with the source line in a comment."""
+        text = " ".join(filter(None, words))
+        comment = self.make_comment(f"L{self.line_number}") if self.form.has_line_comments else ""
+        self.append_raw_line(f"{text} {comment}".rstrip())
+
+    def append_raw_line(self, text: str) -> None:
+        """Append a line without a comment."""
+        self.lines.append(WrittenLine(text, self.line_number))
+
+    # --- forms of the control
+
+    @abstractmethod
+    def write_beginning(self) -> None:
+        """Write the lines before the first step."""
+
+    def write_ending(self) -> None:
+        """Write the lines after the last step."""
+        return
+
+    @abstractmethod
+    def write_tool(self, _step: PathStep) -> None:
+        """Write a tool change."""
+
+    @abstractmethod
+    def write_home(self, step: PathStep) -> None:
+        """Write a rapid to machine home."""
+
+    @abstractmethod
+    def write_dwell(self, seconds: float) -> None:
+        """Write a dwell."""
+
+    @abstractmethod
+    def write_surface_speed(self, spindle: SpindleState, start: str) -> None:
+        """Write a constant surface speed with its maximum rpm; ``start`` is the M code or empty."""
+
+    @abstractmethod
+    def format_lead(self, lead_mm: float, dx: float, dz: float) -> Sequence[str]:
+        """Return the words of a lead along Z for a thread with these travels in mm; X is a radius."""
+
+    def make_comment(self, text: str) -> str:
+        """Return a comment with the characters that the control accepts."""
+        return f"({_NOT_IN_COMMENTS.sub(' ', text)[:LONGEST_COMMENT].strip()})"
+
+    def format_number(self, value: float, places: int) -> str:
+        """Return a number in the form of the control."""
+        return number(value, places)
+
+    def format_speed(self, speed: float) -> str:
+        """Return an S value."""
+        return number(speed, 3)
+
+    def format_m_code(self, code: float) -> str:
+        """Return an M code."""
+        return f"M{round(code)}"
+
+    def write_stop(self, code: float, text: str) -> None:
+        """Write M00 or M01 with the text for the operator."""
+        self.append_line(self.format_m_code(code), self.make_comment(text) if text else "")
+
+    # --- steps
+
+    def _write_step(self, step: PathStep, *, is_departure: bool) -> None:
+        is_stop = step.kind is StepKind.M and step.number in {0, 1}
+        if step.comment and not is_stop:
+            self.append_raw_line(self.make_comment(step.comment))
+        if step.kind in MOVE_KINDS:
+            self._write_move(step, is_departure=is_departure)
+        elif step.kind is StepKind.NOSE:
+            self._select_nose_code(step)
+        elif step.kind is StepKind.TOOL:
+            self.tool_number = round(step.number)
+            self.write_tool(step)
+            self.x = self.z = _UNKNOWN
+        elif step.kind is StepKind.HOME:
+            self.write_home(step)
+            self.motion = ""
+            self.x = _UNKNOWN if step.x is not None else self.x
+            self.z = _UNKNOWN if step.z is not None else self.z
+        elif step.kind is StepKind.SPINDLE:
+            self._change_spindle(step.spindle)
+        elif step.kind is StepKind.DWELL:
+            self.write_dwell(step.number)
+        elif is_stop:
+            self.write_stop(step.number, step.comment)
+        elif step.kind is StepKind.PRESET:
+            raise make_error(step.line, 0, "preset-target")
+        else:
+            self.append_line(self.format_m_code(step.number))
+
+    def _select_nose_code(self, step: PathStep) -> None:
+        """Select the G code of nose compensation for the next move; G40 is in the departure move."""
+        if step.number == 40:
+            return
+        # The steps see X+ toward the operator, so that left and right are exchanged for a rear tool post.
+        code = step.number if self.form.has_front_tool_post else 83 - step.number
+        self._nose_word = f"G{round(code)}"
+
+    def _change_spindle(self, spindle: SpindleState) -> None:
+        before, self.spindle = self.spindle, spindle
+        if not spindle.direction:
+            self.append_line(self.format_m_code(5))
+        elif spindle != before:
+            self.write_spindle(before)
+
+    def write_spindle(self, before: SpindleState) -> None:
+        """Write the spindle speed, and the direction if it differs from the one before."""
+        spindle = self.spindle
+        start = ""
+        if spindle.direction != before.direction:
+            start = self.format_m_code(3 if spindle.direction > 0 else 4)
+        if spindle.is_css:
+            self.write_surface_speed(spindle, start)
+        elif not has_same_speed(spindle, before):
+            self.append_line("G97", f"S{self.format_speed(spindle.speed)}", start)
+
+    # --- moves
+
+    def round_length(self, value_mm: float) -> float:
+        """Return a length in the unit of the program, rounded to the resolution of the control."""
+        return round(value_mm / self.unit_mm, self.places) + 0.0
+
+    def round_x(self, x_mm: float) -> float:
+        """Return X as it is written: a diameter or a radius in the unit of the program."""
+        return self.round_length(x_mm * 2.0 if self.form.is_diameter else x_mm)
+
+    def format_length(self, letter: str, value: float) -> str:
+        """Return a word with a length in the unit of the program."""
+        return letter + self.format_number(value, self.places)
+
+    def _write_move(self, step: PathStep, *, is_departure: bool) -> None:
+        assert step.x is not None
+        assert step.z is not None
+        x, z = self.round_x(step.x), self.round_length(step.z)
+        is_arc = step.kind is StepKind.ARC
+        mode, feed = self._feed_words(step)
+        words = ["G40"] if is_departure else [self._nose_word]
+        words += [self._motion_word(step), mode]
+        if is_arc or x != self.x:
+            words.append(self.format_length("X", x))
+        if is_arc or z != self.z:
+            words.append(self.format_length("Z", z))
+        if is_arc:
+            words += self._center_words(step, (x, z))
+        elif step.kind is StepKind.THREAD:
+            start_x, start_z = self._point
+            words += self.format_lead(step.feed, abs(step.x - start_x), abs(step.z - start_z))
+            self.after_thread()
+        self.append_line(*words, feed)
+        self._nose_word = ""
+        self.x, self.z, self._point = x, z, (step.x, step.z)
+
+    def after_thread(self) -> None:
+        """Update the modal state after a thread pass."""
+        return
+
+    def _motion_word(self, step: PathStep) -> str:
+        if step.kind is StepKind.ARC:
+            word = self.arcs[step.clockwise != self.form.has_front_tool_post]
+        else:
+            word = self.motions[step.kind]
+        before, self.motion = self.motion, word
+        return word if word != before or step.kind in {StepKind.ARC, StepKind.THREAD} else ""
+
+    def _feed_words(self, step: PathStep) -> tuple[str, str]:
+        """Return the code of the feed mode and F; a word that is already active is empty."""
+        if step.kind in {StepKind.RAPID, StepKind.THREAD}:
+            return "", ""
+        mode = self.feed_modes[step.per_rev]
+        feed = f"F{self.format_number(step.feed / self.unit_mm, 8)}"
+        before, self.feed = self.feed, (mode, feed)
+        if before == self.feed:
+            return "", ""
+        return ("" if before is not None and before[0] == mode else mode), feed
+
+    def _center_words(self, step: PathStep, end: tuple[float, float]) -> Sequence[str]:
+        """Return I and K. Raises ProgramError if the rounded arc has no length, as it would be a circle."""
+        factor = 0.5 if self.form.is_diameter else 1.0
+        assert step.x is not None
+        assert step.z is not None
+        is_circle = dist((step.x, step.z), self._point) < _SAME
+        if not is_circle and dist(end, (self.x, self.z)) == 0.0:
+            raise make_error(step.line, 0, "arc-short")
+        i = self.round_length(step.cx - self.x * factor * self.unit_mm)
+        k = self.round_length(step.cz - self.z * self.unit_mm)
+        return self.format_length("I", i), self.format_length("K", k)
+
+
+def _find_departures(steps: Sequence[PathStep]) -> frozenset[int]:
+    """Return the indexes of the moves that end nose compensation."""
+    found = set()
+    last_move = -1
+    for index, step in enumerate(steps):
+        if step.kind in MOVE_KINDS:
+            last_move = index
+        elif step.kind is StepKind.NOSE and step.number == 40:
+            found.add(last_move)
+    return frozenset(found)

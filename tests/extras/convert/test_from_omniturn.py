@@ -1,0 +1,212 @@
+"""Conversions of OmniTurn programs to LinuxCNC and Fanuc, calculated by hand."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from core.extras.convert.conversion import Conversion
+from core.extras.convert.omniturn_writer import WrittenLine
+from core.extras.convert.source_options import ConversionOptions, SourceControl, TargetControl
+from core.extras.convert.targets.omniturn_steps import interpret_source
+from core.extras.convert.targets.outward_conversion import convert_from_omniturn
+from core.extras.convert.targets.read_back_proof import prove_by_reading
+from core.interpreter.shared.job_setup import ControlLimits
+
+BEGIN = "G90G94F300G70G72\nT1\nM03S1000\nX2.Z.1\nG95F.01\n"
+"""The tool is at X2. Z.1 with the feed .01 in/rev, after five lines."""
+LIMITS = ControlLimits(m_code_outputs={25: ("catcher", True), 26: ("catcher", False)})
+
+
+def convert(text: str, target: str, **options: Any) -> Conversion:
+    """Return the conversion of a complete OmniTurn program."""
+    wanted = ConversionOptions(SourceControl.LINUXCNC, writes_comments=False, **options)
+    return convert_from_omniturn(text.splitlines(), TargetControl(target), wanted, LIMITS, "part.nc")
+
+
+def complete(body: str) -> str:
+    """Return a program with the usual beginning, and with M30 unless ``body`` contains it."""
+    return f"{BEGIN}{body}\n" if "M30" in body else f"{BEGIN}{body}\nM30\n"
+
+
+def lines_of(body: str, target: str, **options: Any) -> list[str]:
+    """Return the lines for ``body`` without those of the beginning and the end."""
+    done = convert(complete(body), target, **options)
+    assert not done.errors, [each.message for each in done.errors]
+    texts = [each.text for each in done.lines if each.source_line_number > 5]
+    return texts[: texts.index("M30")]
+
+
+def error_of(body: str, target: str = "linuxcnc", **options: Any) -> tuple[int, str]:
+    """Return the line in ``body`` and the code of the only error."""
+    (error,) = convert(complete(body), target, **options).errors
+    return error.line - 5, error.code
+
+
+def test_program_for_linuxcnc_states_its_modes_and_stops_the_spindle_for_no_tool() -> None:
+    done = convert(
+        "G90G94F300G70G72\nT0\nX0Z0\nT1(ROUGHER)\nG77S2500\nG96M03S400\nX1.1Z.1\nM08\n"
+        "G95F.006G01Z-.5\nT0\nG00X0Z0\nT2\nX0Z.1\nG94F2Z-.2\nG04F.5\nM01(LOOK)\nM05\nM30\n",
+        "linuxcnc",
+    )
+    assert [each.text for each in done.lines] == [
+        "(part.nc)", "G20 G18 G7 G90 G40 G97 G54", "G64 P0.0005", "G53 G0 X0 Z0",
+        "(ROUGHER)", "T1 M6 G43", "G96 D2500 S400 M3", "G0 X1.1 Z.1", "M8", "G1 G95 Z-.5 F.006",
+        "G53 G0 X0 Z0", "T2 M6 G43", "G96 D2500 S400 M3", "G0 X0 Z.1", "G1 G94 Z-.2 F2", "G4 P.5",
+        "(MSG, LOOK)", "M1", "M5", "M30",
+    ]  # fmt: skip
+    assert [each.source_line_number for each in done.lines][3:10] == [3, 4, 4, 6, 7, 8, 9]
+    assert [(each.line, each.code) for each in done.findings] == [(12, "spindle-restarted")]
+
+
+def test_program_for_fanuc_has_decimal_points_and_a_program_number() -> None:
+    done = convert("G90G94F300G71G73\nT1\nG96M03S120\nX10Z2(ROUGH)\nG95F.2Z-8\nT0\nG00X0Z0\nM02\n", "fanuc")
+    # G73: X is a radius of 10 mm, so the diameter is 20 mm; without G77, the limit of the lathe is 3500 rpm
+    assert [each.text for each in done.lines] == [
+        "%", "O0001 (PART.NC)", "G21 G18 G40 G97 G99", "T0101", "G50 S3500", "G96 S120 M03", "(ROUGH)",
+        "G00 X20. Z2.", "G01 Z-8. F.2", "G28 U0 W0", "M02", "%",
+    ]  # fmt: skip
+    assert [(each.line, each.code) for each in done.findings] == [(3, "maximum-speed-added")]
+
+
+@pytest.mark.parametrize(
+    ("body", "linuxcnc", "fanuc"),
+    [
+        ("Z0\nX1.8\nG00Z.1", ["G1 G95 Z0 F.01", "X1.8", "G0 Z.1"], ["G01 Z0. F.01", "X1.8", "G00 Z.1"]),
+        ("G94F10Z0", ["G1 G94 Z0 F10"], ["G01 G98 Z0. F10."]),
+        # X+ points toward the operator in OmniTurn, so the direction of an arc is reversed
+        ("G02X2.5Z-.15I0K-.25", ["G3 G95 X2.5 Z-.15 I0 K-.25 F.01"], ["G03 X2.5 Z-.15 I0. K-.25 F.01"]),
+        ("P4\nM30\n}4\nZ0\nM99", ["G1 G95 Z0 F.01"], ["G01 Z0. F.01"]),
+        ("LS2\nG91\nZ-.1\nG90\nLF", ["G1 G95 Z0 F.01", "Z-.1"], ["G01 Z0. F.01", "Z-.1"]),
+        # G92 gives X2. Z.1 the name Z.3, so Z0 is .2 lower
+        ("G92Z.3\nZ0", ["G1 G95 Z-.2 F.01"], ["G01 Z-.2 F.01"]),
+        ("M09\nM00(TURN IT)", ["M9", "(MSG, TURN IT)", "M0"], ["M09", "M00 (TURN IT)"]),
+        ("(NOTE)\nM04S800", ["(NOTE)", "G97 S800 M4"], ["(NOTE)", "G97 S800 M04"]),
+    ],
+)
+def test_line_is_converted(body: str, linuxcnc: list[str], fanuc: list[str]) -> None:
+    assert lines_of(body, "linuxcnc") == linuxcnc
+    assert lines_of(body, "fanuc") == fanuc
+
+
+def test_thread_pass_has_the_lead_as_each_control_measures_it() -> None:
+    """The pass moves .3 in X per side and .4 in Z, so the path is .5 and K .05·.5/.4."""
+    body = "X2.2\nG33X2.Z-.3I.0001A-.6K.05O"
+    assert [each for each in lines_of(body, "linuxcnc") if "G33" in each] == ["G33 X1.4 Z-.3 K.0625"]
+    assert [each for each in lines_of(body, "fanuc") if "G32" in each] == ["G32 X1.4 Z-.3 F.05"]
+
+
+def test_feed_is_repeated_after_a_fanuc_thread() -> None:
+    body = "Z.2\nG33X1.95Z-.3I.05K.05O\nX1.99"
+    assert lines_of(body, "fanuc")[-1] == "G01 X1.99 F.01"
+    assert lines_of(body, "linuxcnc")[-1] == "G1 X1.99"
+
+
+def test_nose_compensation_starts_and_ends_on_its_moves() -> None:
+    body = "G00X1.2Z.2\nG42\nG01Z0D1\nX1.6\nZ-.5\nG00X2.\nG40\nZ.1"
+    assert lines_of(body, "linuxcnc") == [
+        "X1.2 Z.2", "G41 G1 G95 Z0 F.01", "X1.6", "Z-.5", "G40 G0 X2", "Z.1",
+    ]  # fmt: skip
+    codes = [each.code for each in convert(complete(body), "linuxcnc").findings]
+    assert "nose-table" in codes
+
+
+def test_front_tool_post_retains_the_direction_of_arcs() -> None:
+    assert lines_of("G02X2.5Z-.15I0K-.25", "fanuc", front=True) == ["G02 X2.5 Z-.15 I0. K-.25 F.01"]
+
+
+def test_rounding_to_the_resolution_of_fanuc_is_counted() -> None:
+    done = convert(f"{BEGIN}Z-.00005\nX1.9\nM30\n", "fanuc")
+    assert (done.errors, done.proof.rounded_move_count) == ([], 2)  # the second move has the same Z
+    assert done.proof.max_rounding_mm == pytest.approx(0.00005 * 25.4)
+
+
+@pytest.mark.parametrize(
+    ("body", "found"),
+    [
+        ("M31\nZ0", (1, "left-out")),
+        ("/Z0", (1, "block-delete")),
+        ("Z0D2", (1, "secondary-offset")),
+        ("T2\nG00X1.Z.1", (1, "tool-change-place")),
+        ("G96S300\nG77S2000\nG76S200\nG97S500", (1, "maximum-speed-added")),
+        ("X-2.2\nT0\nG00X0Z0\nT2\nX-1.Z.1\nG01X-.8", (6, "far-side-tool")),
+    ],
+)
+def test_difference_is_reported(body: str, found: tuple[int, str]) -> None:
+    done = convert(complete(body), "linuxcnc")
+    assert not done.errors
+    assert found in [(each.line - 5, each.code) for each in done.findings]
+
+
+@pytest.mark.parametrize(
+    ("body", "found"),
+    [
+        ("M05\nM19S60", (2, "c-axis-target")),
+        ("Z0\nM95\nM30\n}1\nM99", (2, "input-of-lathe")),
+        ("M92", (1, "input-of-lathe")),
+        ("M25", (1, "m-code-target")),
+        ("M05\nM13", (2, "m-code-target")),
+        ("T0\nG00X.1Z.1", (2, "machine-point")),
+        ("T0\nG00X0Z0\nZ-.5", (3, "machine-point")),
+        ("Z0\nX3.F9.", (2, "feed-range")),
+        ("G01X2.Z", (1, "number-missing")),
+    ],
+)
+def test_line_without_counterpart_is_rejected(body: str, found: tuple[int, str]) -> None:
+    assert error_of(body) == found
+    assert error_of(body, "fanuc") == found
+
+
+def test_m_code_can_be_left_out_with_a_warning() -> None:
+    done = convert(f"{BEGIN}M25\nZ0\nM30\n", "fanuc", skipped_m_codes=frozenset({25}))
+    assert not done.errors
+    assert [(each.line, each.code) for each in done.findings] == [(6, "left-out")]
+
+
+def test_arc_below_the_resolution_is_rejected_because_it_would_be_a_circle() -> None:
+    text = "G90G94F300G71G72\nT1\nM03S1000\nX20Z0\nG95F.1\nG02X20Z-.0004R.01\nM30\n"
+    assert [each.code for each in convert(text, "fanuc").errors] == ["arc-short"]
+
+
+def test_program_without_moves_is_rejected() -> None:
+    assert [each.code for each in convert("G90G94F300G70G72\nM30\n", "fanuc").errors] == ["file-empty"]
+
+
+@pytest.mark.parametrize(
+    ("line", "other", "code"),
+    [
+        ("G01 Z-.5", "G01 Z-.5002", "proof-differs"),
+        ("X1.9", "X1.9\nX1.8", "proof-differs"),
+        ("G50 S2000", "G50 S2100", "proof-differs"),
+        ("G96 S300", "G96 S310", "proof-differs"),
+        ("T0202", "T0303", "proof-differs"),
+        ("G00 X1. Z.1", "G00 X1. Z.1 M08", "proof-differs"),
+        ("M30", "Z.2\nM30", "proof-differs"),
+        ("G41 G01 Z0.", "G42 G01 Z0.", "proof-differs"),
+        ("X1.9", "X1.9 C30.", "target"),
+        ("X1.9", "X1.9 M77", "target"),
+        ("G96 S300", "(NO END", "target"),
+    ],
+)
+def test_proof_detects_a_changed_line(line: str, other: str, code: str) -> None:
+    """The proof must not depend on the writer: any changed line is an error at its source line."""
+    body = (
+        "Z-.5F.01\nX1.9\nG77S2000\nG96S300\nG97S500\nT2\nG00X1.Z.1\nG42\nG01Z0D1\nX1.5\nZ-.2\n"
+        "G00X2.\nG40\nM30\n"
+    )
+    texts = f"{BEGIN}{body}".splitlines()
+    options = ConversionOptions(SourceControl.LINUXCNC, writes_comments=False)
+    program = interpret_source(texts, options, LIMITS)
+    lines = list(convert_from_omniturn(texts, TargetControl.FANUC, options, LIMITS, "").lines)
+    index = next(i for i, each in enumerate(lines) if each.text.startswith(line))
+    number = lines[index].source_line_number
+    changed = [
+        WrittenLine(lines[index].text.replace(line, text) if not i else text, number)
+        for i, text in enumerate(other.split("\n"))
+    ]
+    for made, wanted in ((lines, ()), ([*lines[:index], *changed, *lines[index + 1 :]], (code,))):
+        proof = prove_by_reading(
+            made, SourceControl.FANUC_A, program, has_front_tool_post=False, resolution_mm=0.00254
+        )
+        assert tuple(each.code for each in proof.errors) == wanted
