@@ -19555,8 +19555,8 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
-      <source>A position preset of another control cannot be written for this target.</source>
-      <translation>Un preajuste de posición de otro control no se puede escribir para este destino.</translation>
+      <source>A position preset at an unknown position, or before a tool change, cannot be converted.</source>
+      <translation>Un preajuste de posición en una posición desconocida, o antes de un cambio de herramienta, no se puede convertir.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
@@ -20450,6 +20450,16 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_proof.py" />
+      <source>the maximum spindle speed</source>
+      <translation>la velocidad máxima del husillo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_proof.py" />
+      <source>the nose compensation</source>
+      <translation>la compensación de punta</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_proof.py" />
       <source>the spindle speed</source>
       <translation>la velocidad del husillo</translation>
     </message>
@@ -20457,16 +20467,6 @@
       <location filename="core/extras/convert/conversion_proof.py" />
       <source>the step</source>
       <translation>el paso</translation>
-    </message>
-    <message>
-      <location filename="core/extras/convert/targets/read_back_proof.py" />
-      <source>the maximum spindle speed</source>
-      <translation>la velocidad máxima del husillo</translation>
-    </message>
-    <message>
-      <location filename="core/extras/convert/targets/read_back_proof.py" />
-      <source>the nose compensation</source>
-      <translation>la compensación de punta</translation>
     </message>
     <message>
       <location filename="core/extras/drawings/contour_tracing.py" />

@@ -107,6 +107,8 @@ def run(args: argparse.Namespace) -> int:
     if args.to == TargetControl.OMNITURN:
         control = found = _find_control(args, source)
         done = convert_program(source.lines, _options(args, found, machine), limits)
+    elif args.to == TargetControl.SINUMERIK:
+        control, done = _convert_to_sinumerik(args, source, machine, limits)
     else:
         done = _convert_from_omniturn(args, source, machine, limits)
     if args.out is not None and not done.errors:
@@ -116,12 +118,15 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _find_control(args: argparse.Namespace, source: ProgramSource) -> SourceControl:
-    """Return the control of a program that is converted to OmniTurn.
+    """Return the control of a program that is converted to OmniTurn or SINUMERIK.
 
-    Raises CommandError if the control is unknown, or if the program already is an OmniTurn program.
+    Raises CommandError if the control is unknown, or if the program already is a program of the target.
     """
     from core.extras.convert.recognition import recognize_control
 
+    if args.control is None and source.dialect is not Dialect.OMNITURN:
+        text = "{file} has the ending of a {language} program; name the control of the program with --from"
+        raise CommandError(Message(text, file=args.file, language=source.dialect), "unsupported-source")
     if args.control == _OMNITURN:
         raise CommandError(
             Message("{file} is an OmniTurn program already; name another control with --to", file=args.file),
@@ -136,6 +141,24 @@ def _find_control(args: argparse.Namespace, source: ProgramSource) -> SourceCont
     return control
 
 
+def _convert_to_sinumerik(
+    args: argparse.Namespace, source: ProgramSource, machine: Machine, limits: ControlLimits
+) -> tuple[str, Conversion]:
+    """Convert a program to SINUMERIK; return the control of the source too.
+
+    Raises CommandError if the control is unknown, and for an option that has no effect.
+    """
+    from core.extras.convert.targets.outward_conversion import convert_to_sinumerik
+
+    is_omniturn = args.control == _OMNITURN
+    if is_omniturn:
+        _reject_idle_options(args)
+    control = SourceControl.LINUXCNC if is_omniturn else _find_control(args, source)
+    options, title = _options(args, control, machine), Path(args.file).name
+    done = convert_to_sinumerik(source.lines, options, limits, title, is_omniturn=is_omniturn)
+    return (_OMNITURN if is_omniturn else control), done
+
+
 def _convert_from_omniturn(
     args: argparse.Namespace, source: ProgramSource, machine: Machine, limits: ControlLimits
 ) -> Conversion:
@@ -145,16 +168,22 @@ def _convert_from_omniturn(
     """
     from core.extras.convert.targets.outward_conversion import convert_from_omniturn
 
-    if args.control not in {None, _OMNITURN} or source.dialect is not Dialect.OMNITURN:
+    is_omniturn = source.dialect is Dialect.OMNITURN if args.control is None else args.control == _OMNITURN
+    if not is_omniturn:
         text = "--to {target} needs an OmniTurn program; convert {file} to OmniTurn first"
         raise CommandError(Message(text, target=args.to, file=args.file), "not-omniturn")
+    _reject_idle_options(args)
+    options = _options(args, SourceControl.LINUXCNC, machine)
+    title = Path(args.file).name
+    return convert_from_omniturn(source.lines, TargetControl(args.to), options, limits, title)
+
+
+def _reject_idle_options(args: argparse.Namespace) -> None:
+    """Raise CommandError for an option that has no effect on an OmniTurn program."""
     for option, value in (("--no-point", args.no_point), ("--unit", args.unit), ("--x", args.x)):
         if value is not None:
             text = "{option} has no effect on an OmniTurn program; leave it out"
             raise CommandError(Message(text, option=option), "option-without-effect")
-    options = _options(args, SourceControl.LINUXCNC, machine)
-    title = Path(args.file).name
-    return convert_from_omniturn(source.lines, TargetControl(args.to), options, limits, title)
 
 
 def _options(args: argparse.Namespace, control: SourceControl, machine: Machine) -> ConversionOptions:

@@ -124,7 +124,7 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "Write an absolute X and Z before this line.",
     ),
     "preset-target": (
-        "A position preset of another control cannot be written for this target.",
+        "A position preset at an unknown position, or before a tool change, cannot be converted.",
         "Write the moves in the coordinates of part zero.",
     ),
     "spindle-start": (

@@ -16,9 +16,8 @@ from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, ProgramSource
 
 EQUAL_TOLERANCE_MM = 1e-6 * 25.4  # mm
-_RESOLUTION_MM = (0.00005 * 25.4, 0.0001)  # of OmniTurn in inches and in mm, of the radius and of Z
+OMNITURN_RESOLUTION_MM = (0.00005 * 25.4, 0.0001)  # of OmniTurn in inches and in mm, of the radius and of Z
 _CLEARANCE = 0.0002 * 25.4  # mm; retract of a thread pass
-_OFFSET = ToolOffset(12.7, -76.2)
 _KINDS = {
     StepKind.RAPID: BlockKind.RAPID,
     StepKind.FEED: BlockKind.FEED,
@@ -48,23 +47,65 @@ def prove(
     limits: ControlLimits,
     *,
     is_metric: bool,
+    dialect: Dialect = Dialect.OMNITURN,
+    resolution_mm: float = 0.0,
 ) -> Proof:
     """Interpret the converted program and compare it with the steps of the source.
 
-    ``source_line_numbers`` contains the source line of each line of ``text``.
+    ``source_line_numbers`` contains the source line of each line of ``text``. ``resolution_mm`` is the
+    resolution of the coordinates; 0 means the resolution of OmniTurn.
     """
-    tools = dict.fromkeys(range(1, 33), _OFFSET)
+    # All offsets differ, so that a move after a tool change moves both axes.
+    tools = {number: ToolOffset(12.7 + 0.1 * number, -76.2 - 0.1 * number) for number in range(1, 33)}
     nose = dict.fromkeys(range(1, 33), SecondaryOffset())
     done = interpret_program(
-        ProgramSource("converted", text, Dialect.OMNITURN),
+        ProgramSource("converted", text, dialect),
         InterpreterSetup(tools=tools, secondary=nose, limits=limits),
     )
     blocks = list(done.generate_blocks())
     errors = [each for each in done.diagnostics if each.severity is Severity.ERROR]
     if errors:
         return Proof(tuple(make_target_error(each, text, source_line_numbers) for each in errors))
-    comparison = PathComparison(blocks, steps, metric=is_metric, resolution_mm=_RESOLUTION_MM[is_metric])
+    if dialect is Dialect.SINUMERIK:
+        different = _find_nose_difference(blocks, steps)
+        if different is not None:
+            return Proof((different,))
+    comparison = PathComparison(
+        drop_repeated_speeds(blocks), steps, metric=is_metric,
+        resolution_mm=resolution_mm or OMNITURN_RESOLUTION_MM[is_metric],
+        has_thread_cycles=dialect is Dialect.OMNITURN,
+    )  # fmt: skip
     return comparison.compare_steps()
+
+
+def _find_nose_difference(blocks: Sequence[Block], steps: Sequence[PathStep]) -> Diagnostic | None:
+    """Return the first difference between the nose compensation of the moves of a SINUMERIK program.
+
+    The steps see X+ toward the operator, so that left and right are exchanged. The move that ends the
+    compensation contains G40.
+    """
+    wanted: list[tuple[int, int]] = []
+    code, has_tool = 40, False
+    for step in steps:
+        has_tool = has_tool or step.kind is StepKind.TOOL
+        if step.kind is StepKind.NOSE:
+            code = 40 if step.number == 40 else 83 - round(step.number)
+            if code == 40 and wanted:
+                wanted[-1] = wanted[-1][0], 40
+        elif step.kind in MOVE_KINDS and has_tool:
+            wanted.append((step.line, code))
+    made = [
+        each.modal.compensation_code
+        for each in blocks
+        if each.moves and each.modal.edge and not is_idle(each)
+    ]
+    for (line, want), found in zip(wanted, made, strict=False):
+        if want != found:
+            error = make_error(
+                line, 0, "proof-differs", what="the nose compensation", made=f"G{found}", wanted=f"G{want}"
+            )
+            return error.diagnostic
+    return None
 
 
 def make_target_error(found: Diagnostic, text: str, sources: Sequence[int]) -> Diagnostic:
@@ -105,7 +146,7 @@ class PathComparison:
         self._blocks = [each for each in blocks if not is_idle(each)]
         self._has_source_blocks, self._has_thread_cycles = has_source_blocks, has_thread_cycles
         self._metric = metric
-        self._steps = list(_known(steps))
+        self._steps = list(_known(steps, has_partial_moves=not has_thread_cycles))
         self._at = 0
         self._tool = 0
         self._rounded = 0
@@ -172,7 +213,7 @@ class PathComparison:
         elif block.action is None:
             self._differs(step.line, "proof-differs", block.kind, step.kind, "the step")
         else:
-            self._action(step, block.action)
+            self._action(step, block, block.action)
 
     def _home(self, step: PathStep) -> None:
         """Compare a move to machine home.
@@ -180,7 +221,9 @@ class PathComparison:
         The converted program may omit this block if the axes are already at home.
         """
         at = self._at
-        if (
+        if not self._has_thread_cycles:
+            self._compare_home(step)
+        elif (
             at < len(self._blocks)
             and self._blocks[at].kind is BlockKind.RAPID
             and not self._blocks[at].modal.tool
@@ -191,15 +234,27 @@ class PathComparison:
             if step.z is not None:
                 self._same(step, "machine Z", block.mz, 0.0, EQUAL_TOLERANCE_MM)
 
+    def _compare_home(self, step: PathStep) -> None:
+        """Compare a move to machine home, unless the axes were at home before it."""
+        before = self._blocks[self._at - 1] if self._at else None
+        axes = [(0, "machine X", step.x), (1, "machine Z", step.z)]
+        moving = [(index, what) for index, what, wanted in axes if wanted is not None]
+        if before is None or all(abs(before.machine_end[index]) <= EQUAL_TOLERANCE_MM for index, _ in moving):
+            return
+        block = self._next(step)
+        if block.kind is not BlockKind.RAPID:
+            self._differs(step.line, "proof-differs", block.kind, "rapid", "the kind of move")
+        for index, what in moving:
+            self._same(step, what, block.machine_end[index], 0.0, EQUAL_TOLERANCE_MM)
+
     def _move(self, step: PathStep, block: Block) -> None:
         if block.kind is not _KINDS[step.kind]:
             self._differs(step.line, "proof-differs", block.kind, step.kind, "the kind of move")
         if block.modal.tool != self._tool:
             self._differs(step.line, "proof-differs", block.modal.tool, self._tool, "T")
-        assert step.x is not None
-        assert step.z is not None
-        self._same(step, "X", block.x, step.x, self._near)
-        self._same(step, "Z", block.z, step.z, self._near)
+        for axis, made, wanted in (("X", block.x, step.x), ("Z", block.z, step.z)):
+            if wanted is not None:
+                self._same(step, axis, made, wanted, self._near)
         if step.kind is StepKind.RAPID:
             return
         if step.kind is StepKind.ARC:
@@ -218,10 +273,13 @@ class PathComparison:
         made = block.feed * (1 if step.per_rev else 60)
         self._same(step, "the feed", made, step.feed, 1e-6 * step.feed + 1e-6)
 
-    def _action(self, step: PathStep, action: actions.Action) -> None:
+    def _action(self, step: PathStep, block: Block, action: actions.Action) -> None:
         wanted = _action_of(step, metric=self._metric)
         if isinstance(action, actions.SpindleRun) and isinstance(wanted, actions.SpindleRun):
             self._spindle(step, action, wanted)
+            limit = step.spindle.max_rpm
+            if action.surface_speed is not None and limit and not self._has_source_blocks:
+                self._same(step, "the maximum spindle speed", block.modal.max_css_rpm or 0.0, limit, 1e-3)
             return
         if isinstance(action, actions.ProgramStop):
             action = actions.ProgramStop(action.optional)
@@ -233,8 +291,12 @@ class PathComparison:
         """Compare the spindle speeds.
 
         With constant surface speed, the rpm of a block depends on its position, so the surface speeds are
-        compared.
+        compared. Without a speed, the step retains the present one.
         """
+        if step.spindle.direction and not step.spindle.speed and made.surface_speed is None:
+            if made.rpm * step.spindle.direction <= 0:
+                self._differs(step.line, "proof-differs", made, wanted, "the spindle")
+            return
         css = made.surface_speed is not None
         if css != (wanted.surface_speed is not None) or (made.rpm > 0) != (wanted.rpm > 0):
             self._differs(step.line, "proof-differs", made, wanted, "the spindle")
@@ -299,6 +361,26 @@ class PathComparison:
         return abs(block.x - step.x) <= _CLEARANCE and abs(block.z - step.z) <= self._near
 
 
+def drop_repeated_speeds(blocks: Sequence[Block]) -> Sequence[Block]:
+    """Return the blocks without those that repeat the spindle speed of the block before."""
+    found = []
+    speed: object = None
+    for block in blocks:
+        action = block.action
+        if isinstance(action, actions.SpindleRun):
+            css = action.surface_speed
+            now = (css, action.rpm > 0) if css is not None else action.rpm
+            if now == speed:
+                continue
+            speed = now
+        elif isinstance(action, actions.SpindleStop):
+            if speed is None:
+                continue
+            speed = None
+        found.append(block)
+    return found
+
+
 def is_idle(block: Block) -> bool:
     """Return whether a block is excluded from the comparison.
 
@@ -309,20 +391,22 @@ def is_idle(block: Block) -> bool:
     return block.kind is not BlockKind.ARC and block.x == block.x0 and block.z == block.z0
 
 
-def _known(steps: Sequence[PathStep]) -> Iterator[PathStep]:
+def _known(steps: Sequence[PathStep], *, has_partial_moves: bool) -> Iterator[PathStep]:
     """Yield the source steps that must have a matching block in the converted program.
 
-    Nose compensation codes, presets and moves to an unknown end point are omitted.
+    Nose compensation codes, presets and moves to an unknown end point are omitted. With
+    ``has_partial_moves``, a move is not omitted if one of its coordinates is known.
     """
     spindle = SpindleState()
     for step in steps:
-        if step.kind in MOVE_KINDS and (step.x is None or step.z is None):
+        unknown = (step.x, step.z).count(None)
+        if step.kind in MOVE_KINDS and unknown > has_partial_moves:
             continue
         if step.kind in {StepKind.NOSE, StepKind.PRESET}:
             continue
         if step.kind is StepKind.SPINDLE:
             same, spindle = has_same_speed(step.spindle, spindle), step.spindle
-            if same or (spindle.direction and not spindle.speed):
+            if same or (spindle.direction and not spindle.speed and not has_partial_moves):
                 continue
         yield step
 

@@ -40,6 +40,7 @@ class TargetControl(StrEnum):
     OMNITURN = "omniturn"
     LINUXCNC = "linuxcnc"
     FANUC = "fanuc"
+    SINUMERIK = "sinumerik"
 
 
 @dataclass(frozen=True, slots=True)

@@ -88,9 +88,23 @@ def test_omniturn_program_is_written_for_another_control(
     assert (again.status, again.code) == (2, "file-exists")
 
 
+@pytest.mark.parametrize(("name", "words"), [("part.txt", ()), ("part.nc", ("--from", "omniturn"))])
+def test_program_is_written_for_sinumerik(
+    turndesk: Turndesk, part: Path, tmp_path: Path, name: str, words: tuple[str, ...]
+) -> None:
+    (tmp_path / "part.nc").write_text(OMNITURN.replace("M25\n", ""))
+    made = tmp_path / "part.mpf"
+    assert turndesk("convert", part.parent / name, "--to", "sinumerik", *words, "--out", made).status == 0
+    assert made.read_text().splitlines()[0] == f"; {name}"
+    assert turndesk("prove", made, "--machine", "sinumerik-modulo").status == 0
+
+
 @pytest.mark.parametrize(
     ("name", "words", "code"),
     [
+        ("part.nc", ("--to", "sinumerik"), "control-unknown"),
+        ("part.nc", ("--to", "sinumerik", "--from", "omniturn", "--unit", "mm"), "option-without-effect"),
+        ("part.mpf", ("--to", "sinumerik"), "unsupported-source"),
         ("part.nc", ("--to", "omniturn", "--from", "omniturn"), "same-control"),
         ("part.nc", ("--to", "fanuc", "--from", "haas"), "not-omniturn"),
         ("part.mpf", ("--to", "fanuc"), "not-omniturn"),

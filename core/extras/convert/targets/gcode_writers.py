@@ -49,7 +49,7 @@ class LinuxCncWriter(ProgramWriter):
         """Write G4 with P in seconds."""
         self.append_line("G4", f"P{self.format_number(seconds, 6)}")
 
-    def write_surface_speed(self, spindle: SpindleState, start: str) -> None:
+    def write_surface_speed(self, spindle: SpindleState, start: str, *, is_new: bool) -> None:  # noqa: ARG002
         """Write G96 with the maximum rpm in D."""
         most = f"D{self.format_speed(spindle.max_rpm)}"
         self.append_line("G96", most, f"S{self.format_speed(spindle.speed)}", start)
@@ -100,10 +100,12 @@ class FanucWriter(ProgramWriter):
         """Write G04 with U in seconds."""
         self.append_line("G04", f"U{self.format_number(seconds, 6)}")
 
-    def write_surface_speed(self, spindle: SpindleState, start: str) -> None:
+    def write_surface_speed(self, spindle: SpindleState, start: str, *, is_new: bool) -> None:
         """Write the maximum rpm in G50, and then G96."""
-        self.append_line("G50", f"S{self.format_speed(spindle.max_rpm)}")
-        self.append_line("G96", f"S{self.format_speed(spindle.speed)}", start)
+        if spindle.max_rpm != self.limit_rpm:
+            self.append_line("G50", f"S{self.format_speed(spindle.max_rpm)}")
+        if is_new:
+            self.append_line("G96", f"S{self.format_speed(spindle.speed)}", start)
 
     def format_lead(self, lead_mm: float, dx: float, dz: float) -> Sequence[str]:
         """Return F, which a Fanuc control measures along the axis with the longer travel."""

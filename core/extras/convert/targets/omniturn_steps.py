@@ -134,6 +134,8 @@ class StepMaker:
         if block.action is None:
             self._append_move(block)
         else:
+            if block.modal.compensation_code == 40:
+                self._select_nose_code(block)
             self._append_action(block, block.action)
 
     def is_left_out(self, block: Block) -> bool:

@@ -1,18 +1,25 @@
-"""Conversion of an OmniTurn program to another lathe control, with its proof."""
+"""Conversions to LinuxCNC, Fanuc and SINUMERIK, with their proofs."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from core.extras.convert.conversion import Conversion
-from core.extras.convert.conversion_proof import Proof
+from core.extras.convert.conversion_messages import make_error
+from core.extras.convert.conversion_proof import Proof, prove
+from core.extras.convert.path_steps import MOVE_KINDS
 from core.extras.convert.source_options import ConversionOptions, SourceControl, TargetControl
+from core.extras.convert.source_reader import read_source
 from core.extras.convert.targets.gcode_writers import FanucWriter, LinuxCncWriter
-from core.extras.convert.targets.omniturn_steps import interpret_source
+from core.extras.convert.targets.omniturn_steps import InterpretedProgram, interpret_source
 from core.extras.convert.targets.program_writer import ProgramForm, ProgramWriter
 from core.extras.convert.targets.read_back_proof import prove_by_reading
+from core.extras.convert.targets.simplified_steps import simplify_steps
+from core.extras.convert.targets.sinumerik_writer import SinumerikWriter
 from core.interpreter.shared.job_setup import ControlLimits
 from core.language.diagnostics import ProgramError, Severity
+from core.language.source import Dialect
 
 _WRITERS: Mapping[TargetControl, tuple[type[ProgramWriter], SourceControl]] = {
     TargetControl.LINUXCNC: (LinuxCncWriter, SourceControl.LINUXCNC),
@@ -58,3 +65,63 @@ def convert_from_omniturn(
     )
     findings = sorted((*program.findings, *writer.findings), key=lambda each: each.line)
     return Conversion(tuple(writer.lines), (*findings, *proof.errors), proof)
+
+
+def convert_to_sinumerik(
+    texts: Sequence[str],
+    options: ConversionOptions,
+    limits: ControlLimits,
+    title: str,
+    *,
+    is_omniturn: bool = False,
+) -> Conversion:
+    """Convert the lines of a turning program to SINUMERIK, and prove the result with its interpreter.
+
+    The source is a program of ``options.control`` or, if ``is_omniturn`` is True, an OmniTurn program.
+    """
+    program = _read_source(texts, options, limits, is_omniturn=is_omniturn)
+    if any(each.severity is Severity.ERROR for each in program.findings):
+        return Conversion((), tuple(program.findings), Proof())
+    form = ProgramForm(
+        title, program.is_metric, program.is_diameter, has_line_comments=options.writes_comments
+    )
+    writer = SinumerikWriter(form)
+    try:
+        writer.write_program(program.steps)
+    except ProgramError as error:
+        return Conversion((), (*program.findings, *writer.findings, error.diagnostic), Proof())
+    lines = tuple(writer.lines)
+    proof = prove(
+        "".join(f"{each.text}\n" for each in lines),
+        [each.source_line_number for each in lines],
+        program.steps,
+        limits,
+        is_metric=program.is_metric,
+        dialect=Dialect.SINUMERIK,
+        resolution_mm=writer.unit_mm / 10**writer.places,
+    )
+    findings = sorted((*program.findings, *writer.findings), key=lambda each: each.line)
+    return Conversion(lines, (*findings, *proof.errors), proof)
+
+
+def _read_source(
+    texts: Sequence[str], options: ConversionOptions, limits: ControlLimits, *, is_omniturn: bool
+) -> InterpretedProgram:
+    """Read a program, with steps in the form that a SINUMERIK control needs.
+
+    A program of another control has no blocks, and X becomes a diameter.
+    """
+    if is_omniturn:
+        program = interpret_source(texts, options, limits)
+    else:
+        state, findings = read_source(texts, options)
+        program = InterpretedProgram((), state.steps, findings, bool(state.is_metric))
+    if any(each.severity is Severity.ERROR for each in program.findings):
+        return program
+    try:
+        steps, notes = simplify_steps(program.steps)
+    except ProgramError as error:
+        return replace(program, findings=[*program.findings, error.diagnostic])
+    if not any(each.kind in MOVE_KINDS for each in steps):
+        notes.append(make_error(0, 0, "file-empty").diagnostic)
+    return replace(program, steps=steps, findings=[*program.findings, *notes])

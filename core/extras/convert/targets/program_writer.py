@@ -60,6 +60,8 @@ class ProgramWriter(ABC):
         self.spindle = SpindleState()
         self.tool_number = 0
         self.line_number = 0
+        self.pending_words: Sequence[str] = ()  # words at the beginning of the next move
+        self.limit_rpm = 0.0  # maximum rpm that was written last
         self._nose_word = ""
         self._point = (_UNKNOWN, _UNKNOWN)  # of the last move, in mm, X as a radius
 
@@ -106,8 +108,15 @@ class ProgramWriter(ABC):
         """Write a dwell."""
 
     @abstractmethod
-    def write_surface_speed(self, spindle: SpindleState, start: str) -> None:
-        """Write a constant surface speed with its maximum rpm; ``start`` is the M code or empty."""
+    def write_surface_speed(self, spindle: SpindleState, start: str, *, is_new: bool) -> None:
+        """Write a constant surface speed with its maximum rpm.
+
+        ``start`` is the M code or empty. Without ``is_new``, only the maximum rpm has changed.
+        """
+
+    def write_speed(self, spindle: SpindleState, start: str) -> None:
+        """Write a speed in rpm; ``start`` is the M code or empty."""
+        self.append_line("G97", f"S{self.format_speed(spindle.speed)}", start)
 
     @abstractmethod
     def format_lead(self, lead_mm: float, dx: float, dz: float) -> Sequence[str]:
@@ -158,8 +167,6 @@ class ProgramWriter(ABC):
             self.write_dwell(step.number)
         elif is_stop:
             self.write_stop(step.number, step.comment)
-        elif step.kind is StepKind.PRESET:
-            raise make_error(step.line, 0, "preset-target")
         else:
             self.append_line(self.format_m_code(step.number))
 
@@ -184,10 +191,12 @@ class ProgramWriter(ABC):
         start = ""
         if spindle.direction != before.direction:
             start = self.format_m_code(3 if spindle.direction > 0 else 4)
+        is_new = not has_same_speed(spindle, before)
         if spindle.is_css:
-            self.write_surface_speed(spindle, start)
-        elif not has_same_speed(spindle, before):
-            self.append_line("G97", f"S{self.format_speed(spindle.speed)}", start)
+            self.write_surface_speed(spindle, start, is_new=is_new)
+            self.limit_rpm = spindle.max_rpm
+        elif is_new:
+            self.write_speed(spindle, start)
 
     # --- moves
 
@@ -204,26 +213,30 @@ class ProgramWriter(ABC):
         return letter + self.format_number(value, self.places)
 
     def _write_move(self, step: PathStep, *, is_departure: bool) -> None:
-        assert step.x is not None
-        assert step.z is not None
-        x, z = self.round_x(step.x), self.round_length(step.z)
+        x = self.x if step.x is None else self.round_x(step.x)
+        z = self.z if step.z is None else self.round_length(step.z)
         is_arc = step.kind is StepKind.ARC
         mode, feed = self._feed_words(step)
-        words = ["G40"] if is_departure else [self._nose_word]
+        words = [*self.pending_words, "G40" if is_departure else self._nose_word]
         words += [self._motion_word(step), mode]
-        if is_arc or x != self.x:
+        self.pending_words = ()
+        if step.x is not None and (is_arc or x != self.x):
             words.append(self.format_length("X", x))
-        if is_arc or z != self.z:
+        if step.z is not None and (is_arc or z != self.z):
             words.append(self.format_length("Z", z))
+        end = (_UNKNOWN if step.x is None else step.x, _UNKNOWN if step.z is None else step.z)
         if is_arc:
-            words += self._center_words(step, (x, z))
+            words += self._center_words(step, end, (x, z))
         elif step.kind is StepKind.THREAD:
-            start_x, start_z = self._point
-            words += self.format_lead(step.feed, abs(step.x - start_x), abs(step.z - start_z))
+            words += self.format_lead(step.feed, abs(end[0] - self._point[0]), abs(end[1] - self._point[1]))
             self.after_thread()
         self.append_line(*words, feed)
         self._nose_word = ""
-        self.x, self.z, self._point = x, z, (step.x, step.z)
+        self.x, self.z, self._point = x, z, end
+
+    def get_feed_mode(self, *, is_per_rev: bool) -> str:
+        """Return the G code of the feed mode that a move needs."""
+        return self.feed_modes[is_per_rev]
 
     def after_thread(self) -> None:
         """Update the modal state after a thread pass."""
@@ -241,20 +254,20 @@ class ProgramWriter(ABC):
         """Return the code of the feed mode and F; a word that is already active is empty."""
         if step.kind in {StepKind.RAPID, StepKind.THREAD}:
             return "", ""
-        mode = self.feed_modes[step.per_rev]
+        mode = self.get_feed_mode(is_per_rev=step.per_rev)
         feed = f"F{self.format_number(step.feed / self.unit_mm, 8)}"
         before, self.feed = self.feed, (mode, feed)
         if before == self.feed:
             return "", ""
         return ("" if before is not None and before[0] == mode else mode), feed
 
-    def _center_words(self, step: PathStep, end: tuple[float, float]) -> Sequence[str]:
+    def _center_words(
+        self, step: PathStep, end: tuple[float, float], written: tuple[float, float]
+    ) -> Sequence[str]:
         """Return I and K. Raises ProgramError if the rounded arc has no length, as it would be a circle."""
         factor = 0.5 if self.form.is_diameter else 1.0
-        assert step.x is not None
-        assert step.z is not None
-        is_circle = dist((step.x, step.z), self._point) < _SAME
-        if not is_circle and dist(end, (self.x, self.z)) == 0.0:
+        is_circle = dist(end, self._point) < _SAME
+        if not is_circle and dist(written, (self.x, self.z)) == 0.0:
             raise make_error(step.line, 0, "arc-short")
         i = self.round_length(step.cx - self.x * factor * self.unit_mm)
         k = self.round_length(step.cz - self.z * self.unit_mm)

@@ -8,13 +8,18 @@ from itertools import zip_longest
 from math import inf
 
 from core.extras.convert.conversion_messages import make_error
-from core.extras.convert.conversion_proof import PathComparison, Proof, is_idle, make_target_error
+from core.extras.convert.conversion_proof import (
+    PathComparison,
+    Proof,
+    drop_repeated_speeds,
+    is_idle,
+    make_target_error,
+)
 from core.extras.convert.omniturn_writer import WrittenLine
 from core.extras.convert.path_steps import MOVE_KINDS, PathStep, StepKind
 from core.extras.convert.source_options import ConversionOptions, SourceControl
 from core.extras.convert.source_reader import read_source
 from core.extras.convert.targets.omniturn_steps import InterpretedProgram
-from core.interpreter.shared import actions
 from core.interpreter.shared.elementary_blocks import Block
 from core.language.diagnostics import Diagnostic, Severity
 
@@ -47,7 +52,7 @@ def prove_by_reading(
     if different is not None:
         return Proof((different,))
     comparison = PathComparison(
-        _without_repeated_speeds(program.blocks), steps, metric=program.is_metric,
+        drop_repeated_speeds(program.blocks), steps, metric=program.is_metric,
         resolution_mm=resolution_mm, has_source_blocks=True, has_thread_cycles=False,
     )  # fmt: skip
     return comparison.compare_steps()
@@ -61,28 +66,8 @@ def _is_difference(found: Diagnostic, lines: Sequence[WrittenLine]) -> bool:
     return not (found.code == "left-out" and is_path_tolerance)
 
 
-def _without_repeated_speeds(blocks: Sequence[Block]) -> Sequence[Block]:
-    """Return the blocks without those that repeat the spindle speed of the block before."""
-    found = []
-    speed: object = None
-    for block in blocks:
-        action = block.action
-        if isinstance(action, actions.SpindleRun):
-            css = action.surface_speed
-            now = (css, action.rpm > 0) if css is not None else action.rpm
-            if now == speed:
-                continue
-            speed = now
-        elif isinstance(action, actions.SpindleStop):
-            if speed is None:
-                continue
-            speed = None
-        found.append(block)
-    return found
-
-
 def _find_nose_difference(blocks: Sequence[Block], steps: Sequence[PathStep]) -> Diagnostic | None:
-    """Return the first difference between the nose compensation of the moves."""
+    """Return the first difference between the nose compensation of the moves, and at the end."""
     made = []
     code = 40
     for step in steps:
@@ -90,8 +75,9 @@ def _find_nose_difference(blocks: Sequence[Block], steps: Sequence[PathStep]) ->
             code = round(step.number)
         elif step.kind in MOVE_KINDS:
             made.append((step.line, code))
+    made.append((steps[-1].line, code))
     moves = [each for each in blocks if each.moves and not is_idle(each) and each.modal.tool]
-    wanted = [each.modal.compensation_code for each in moves]
+    wanted = [each.modal.compensation_code for each in [*moves, blocks[-1]]]
     for (line, code), want in zip(made, wanted, strict=False):
         if code != want:
             error = make_error(
