@@ -148,7 +148,7 @@ def _convert_to_sinumerik(
 
     Raises CommandError if the control is unknown, and for an option that has no effect.
     """
-    from core.extras.convert.targets.outward_conversion import convert_to_sinumerik
+    from core.extras.convert.targets.target_conversion import convert_to_sinumerik
 
     is_omniturn = args.control == _OMNITURN
     if is_omniturn:
@@ -166,7 +166,7 @@ def _convert_from_omniturn(
 
     Raises CommandError for a program of another control, and for an option that has no effect.
     """
-    from core.extras.convert.targets.outward_conversion import convert_from_omniturn
+    from core.extras.convert.targets.target_conversion import convert_from_omniturn
 
     is_omniturn = source.dialect is Dialect.OMNITURN if args.control is None else args.control == _OMNITURN
     if not is_omniturn:

@@ -10,8 +10,8 @@ from core.extras.convert.conversion import Conversion
 from core.extras.convert.omniturn_writer import WrittenLine
 from core.extras.convert.source_options import ConversionOptions, SourceControl, TargetControl
 from core.extras.convert.targets.omniturn_steps import interpret_source
-from core.extras.convert.targets.outward_conversion import convert_from_omniturn
 from core.extras.convert.targets.read_back_proof import prove_by_reading
+from core.extras.convert.targets.target_conversion import convert_from_omniturn
 from core.interpreter.shared.job_setup import ControlLimits
 
 BEGIN = "G90G94F300G70G72\nT1\nM03S1000\nX2.Z.1\nG95F.01\n"

@@ -14,7 +14,7 @@ from core.extras.convert.path_steps import MOVE_KINDS, StepKind
 from core.extras.convert.source_options import ConversionOptions, SourceControl, TargetControl
 from core.extras.convert.source_reader import SourceReader
 from core.extras.convert.targets.omniturn_steps import interpret_source
-from core.extras.convert.targets.outward_conversion import convert_from_omniturn
+from core.extras.convert.targets.target_conversion import convert_from_omniturn
 from core.interpreter.shared.elementary_blocks import BlockKind
 from core.interpreter.shared.job_setup import ControlLimits
 
@@ -140,11 +140,11 @@ class Move(NamedTuple):
     turn: int = 0
 
 
-def canon(text: str, folder: Path) -> list[Move]:
-    """Return the moves that LinuxCNC makes."""
+def canon(text: str, folder: Path, tool: str = "T1 P1 D0 X0 Z0") -> list[Move]:
+    """Return the moves that LinuxCNC makes with this row of the tool table."""
     (folder / "lathe.ini").write_text(INI.format(folder=folder))
     (folder / "rs.var").write_text("")
-    (folder / "rs.tbl").write_text("T1 P1 D0 X0 Z0\n")
+    (folder / "rs.tbl").write_text(f"{tool}\n")
     (folder / "part.ngc").write_text(text)
     words = [RS274 or "rs274", "-g", "-i", "lathe.ini", "-t", "rs.tbl", "part.ngc"]
     out = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=60, check=True).stdout
@@ -234,6 +234,20 @@ def test_program_from_omniturn_moves_the_same_in_linuxcnc(text: str, count: int,
     assert not done.errors
     assert_same_moves(canon(done.text, tmp_path), without_standstill(wanted), 2 * NEAR)  # rounded twice
     assert len(wanted) >= count
+
+
+def test_nose_compensation_from_omniturn_is_on_the_same_side_in_linuxcnc(tmp_path: Path) -> None:
+    """The nose is outside the part, so the tip of orientation 2 touches X.8 at radius .4 and Z-.5.
+
+    On the other side, the tip would be one nose diameter (.0312 in) inside the part.
+    """
+    text = "G90G94F300G70G72\nT1\nM03S1000\nX0Z.3\nG95F.004\nG41\nZ0D1\nX.8\nZ-.5\nX1.1\nG00Z.3\nG40\nM30\n"
+    options = ConversionOptions(SourceControl.LINUXCNC)
+    done = convert_from_omniturn(
+        text.splitlines(), TargetControl.LINUXCNC, options, ControlLimits(), "part.nc"
+    )
+    moves = canon(done.text, tmp_path, "T1 P1 D.0312 Q2 X0 Z0")
+    assert any((each.x, each.z) == pytest.approx((0.4, -0.5), abs=NEAR) for each in moves)
 
 
 def test_comparison_detects_a_difference(tmp_path: Path) -> None:

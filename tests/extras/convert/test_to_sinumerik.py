@@ -10,7 +10,7 @@ from core.extras.convert.conversion import Conversion
 from core.extras.convert.conversion_proof import prove
 from core.extras.convert.path_steps import PathStep, SpindleState, StepKind
 from core.extras.convert.source_options import ConversionOptions, SourceControl
-from core.extras.convert.targets.outward_conversion import convert_to_sinumerik
+from core.extras.convert.targets.target_conversion import convert_to_sinumerik
 from core.interpreter.shared.job_setup import ControlLimits
 from core.language.source import Dialect
 from tests.extras.convert.sources import FANUC, LINUXCNC
