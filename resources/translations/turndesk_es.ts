@@ -19840,8 +19840,18 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Rapids move at the rate of the other lathe instead of {rate}.</source>
+      <translation>Los movimientos rápidos van a la velocidad del otro torno en lugar de {rate}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>Reduce the distance, or write the contour with longer segments.</source>
       <translation>Reduzca la distancia, o escriba el contorno con tramos más largos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Reduce the rapid override there if this is too fast.</source>
+      <translation>Si es demasiado rápido, reduzca el ajuste de los rápidos en ese torno.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />

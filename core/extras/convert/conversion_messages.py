@@ -288,6 +288,10 @@ NOTES: Mapping[str, tuple[str, str]] = {
         "{word} changes nothing at this point, so the converted program does not contain it.",
         "No action is needed.",
     ),
+    "rapid-rate": (
+        "Rapids move at the rate of the other lathe instead of {rate}.",
+        "Reduce the rapid override there if this is too fast.",
+    ),
     "shift-contained": (
         "The coordinates of the converted program contain the work shift or the preset of this line.",
         "No action is needed.",

@@ -44,7 +44,7 @@ def error_of(body: str, target: str = "linuxcnc", **options: Any) -> tuple[int, 
     return error.line - 5, error.code
 
 
-def test_program_for_linuxcnc_states_its_modes_and_stops_the_spindle_for_no_tool() -> None:
+def test_program_for_linuxcnc_states_its_modes_and_restarts_the_spindle() -> None:
     done = convert(
         "G90G94F300G70G72\nT0\nX0Z0\nT1(ROUGHER)\nG77S2500\nG96M03S400\nX1.1Z.1\nM08\n"
         "G95F.006G01Z-.5\nT0\nG00X0Z0\nT2\nX0Z.1\nG94F2Z-.2\nG04F.5\nM01(LOOK)\nM05\nM30\n",
@@ -57,7 +57,9 @@ def test_program_for_linuxcnc_states_its_modes_and_stops_the_spindle_for_no_tool
         "(MSG, LOOK)", "M1", "M5", "M30",
     ]  # fmt: skip
     assert [each.source_line_number for each in done.lines][3:10] == [3, 4, 4, 6, 7, 8, 9]
-    assert [(each.line, each.code) for each in done.findings] == [(12, "spindle-restarted")]
+    assert [(each.line, each.code) for each in done.findings] == [
+        (7, "rapid-rate"), (12, "spindle-restarted"),
+    ]  # fmt: skip
 
 
 def test_program_for_fanuc_has_decimal_points_and_a_program_number() -> None:
@@ -67,7 +69,9 @@ def test_program_for_fanuc_has_decimal_points_and_a_program_number() -> None:
         "%", "O0001 (PART.NC)", "G21 G18 G40 G97 G99", "T0101", "G50 S3500", "G96 S120 M03", "(ROUGH)",
         "G00 X20. Z2.", "G01 Z-8. F.2", "G28 U0 W0", "M02", "%",
     ]  # fmt: skip
-    assert [(each.line, each.code) for each in done.findings] == [(3, "maximum-speed-added")]
+    assert [(each.line, each.code) for each in done.findings] == [
+        (3, "maximum-speed-added"), (4, "rapid-rate"),
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -122,6 +126,12 @@ def test_rounding_to_the_resolution_of_fanuc_is_counted() -> None:
     assert done.proof.max_rounding_mm == pytest.approx(0.00005 * 25.4)
 
 
+def test_each_rapid_rate_is_reported_once() -> None:
+    done = convert(complete("G00Z.2\nX2.2\nX2.").replace("F300", "F200"), "fanuc")
+    texts = [(each.line, str(each.message)) for each in done.findings if each.code == "rapid-rate"]
+    assert texts == [(4, "Rapids move at the rate of the other lathe instead of 200 in/min.")]
+
+
 @pytest.mark.parametrize(
     ("body", "found"),
     [
@@ -161,7 +171,7 @@ def test_line_without_counterpart_is_rejected(body: str, found: tuple[int, str])
 def test_m_code_can_be_left_out_with_a_warning() -> None:
     done = convert(f"{BEGIN}M25\nZ0\nM30\n", "fanuc", skipped_m_codes=frozenset({25}))
     assert not done.errors
-    assert [(each.line, each.code) for each in done.findings] == [(6, "left-out")]
+    assert [(each.line, each.code) for each in done.findings] == [(4, "rapid-rate"), (6, "left-out")]
 
 
 def test_arc_below_the_resolution_is_rejected_because_it_would_be_a_circle() -> None:

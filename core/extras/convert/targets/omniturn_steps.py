@@ -182,7 +182,9 @@ class StepMaker:
         self._follow_maximum_speed(block)
         if block.kind is not BlockKind.ARC and block.x == block.x0 and block.z == block.z0:
             return
-        if block.kind is not BlockKind.RAPID:
+        if block.kind is BlockKind.RAPID:
+            self._note_rapid_rate(block)
+        else:
             line, low, high = self._cut_range.get(self.tool_number, (block.line, 0.0, -_OTHER_SIDE_MM))
             self._cut_range[self.tool_number] = line, min(low, block.x), max(high, block.x0, block.x)
         per_rev = block.per_rev or block.kind is BlockKind.THREAD
@@ -192,6 +194,13 @@ class StepMaker:
                 block.feed * (1 if per_rev else 60), per_rev,
             )
         )  # fmt: skip
+
+    def _note_rapid_rate(self, block: Block) -> None:
+        """Report each rapid rate of the program, which another control does not have as a word."""
+        rate = block.modal.format_feed(block.feed, is_per_rev=False)
+        if ("rapid-rate", rate) not in self._reported:
+            self._reported.add(("rapid-rate", rate))
+            self.findings.append(make_note(block.line, 0, "rapid-rate", rate=rate))
 
     def _append_home(self, block: Block) -> None:
         """Append a move to machine home. Raises ProgramError for another machine position."""
