@@ -158,7 +158,7 @@ def test_machine_check_json_has_the_declared_keys(turndesk: Turndesk, tmp_path: 
     path = tmp_path / "own.toml"
     text = resources.read_machine_file("gt75.toml")
     path.write_text(text)
-    assert turndesk("machine", "accept_machine_file", path).status == 0
+    assert turndesk("machine", "accept", path).status == 0
     path.write_text(text.replace("vmax = 300", "vmax = 280").replace("max_feed = 300", "max_feed = 250"))
     good = whole(turndesk("machine", "check", path, "--json"))
     path.write_text(text.replace("vmax = 300", "vmax = -1"))

@@ -92,8 +92,8 @@ def _values() -> Mapping[str, object]:
         "DriveTestMotion": _made(DriveTestMotion),
         "Mapping[int, ToolOffset]": {3: ToolOffset(1.0, 2.0)},
         "Mapping[int, SecondaryOffset]": {4: SecondaryOffset(1.0)},
-        "tuple[Clearance, ...]": (commands.StartClearance(job.digest, (1.0, 2.0, 0.0), 3),),
-        "Clearance | None": commands.StartClearance(job.digest, (1.0, 2.0, 0.0), 3),
+        "tuple[StartClearance, ...]": (commands.StartClearance(job.digest, (1.0, 2.0, 0.0), 3),),
+        "StartClearance | None": commands.StartClearance(job.digest, (1.0, 2.0, 0.0), 3),
         "StartAction": StartAction.MDI_LINE,
     }
 
