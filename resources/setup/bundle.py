@@ -32,6 +32,7 @@ GLIBC_MINOR_VERSIONS = {"x86_64": 34, "aarch64": 39}
 
 Qt needs the newest glibc.
 """
+_ERROR_LINE_COUNT = 16  # pip ends its output with up to 10 lines of notes after the error of a build
 _OLD_NAMES = ("manylinux1", "manylinux2010", "manylinux2014")
 _TEXTS = Path("/usr/share/common-licenses")  # where Debian and Ubuntu have the licences that packages share
 _LICENCES = ("GPL-3", "LGPL-3")
@@ -48,7 +49,7 @@ def run(*words: object, cwd: Path = PROJECT_FOLDER) -> str:
     """
     done = subprocess.run([str(each) for each in words], cwd=cwd, capture_output=True, text=True, check=False)
     if done.returncode:
-        last = "\n".join((done.stderr or done.stdout).strip().splitlines()[-4:])
+        last = "\n".join((done.stderr or done.stdout).strip().splitlines()[-_ERROR_LINE_COUNT:])
         raise BundleError(f"{' '.join(map(str, words[:4]))} …:\n{last}")
     return done.stdout
 
@@ -91,13 +92,18 @@ def build_product_wheel(folder: Path) -> None:
     """
     with tempfile.TemporaryDirectory() as work:
         copy = Path(work) / "turndesk"
-        copy.mkdir()
-        for room in ("app", "core", "drivers", "resources"):
-            shutil.copytree(PROJECT_FOLDER / room, copy / room, ignore=shutil.ignore_patterns("__pycache__"))
-        for name in ("pyproject.toml", "setup.cfg", "README.md", "LICENSE"):
-            shutil.copy(PROJECT_FOLDER / name, copy)
+        copy_wheel_sources(copy)
         words = ("--quiet", "--no-deps", "--no-build-isolation", f"--wheel-dir={folder}", copy)
         run(sys.executable, "-m", "pip", "wheel", *words)
+
+
+def copy_wheel_sources(folder: Path) -> None:
+    """Copy the files from which the wheel is built to a new folder, including the guide."""
+    folder.mkdir()
+    for name in ("app", "core", "drivers", "resources", "docs"):
+        shutil.copytree(PROJECT_FOLDER / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("pyproject.toml", "setup.cfg", "README.md", "LICENSE"):
+        shutil.copy(PROJECT_FOLDER / name, folder)
 
 
 def fetch_system_packages(folder: Path) -> list[Component]:

@@ -14,11 +14,12 @@ import pytest
 from app.cli.actions.desktop_entry import format_desktop_entry
 from app.cli.main import list_commands
 from resources.setup import release, release_check
-from resources.setup.bundle import BundleError
-from resources.setup.lock import PYTHONS, SETUP_FOLDER
+from resources.setup.bundle import BundleError, copy_wheel_sources, run
+from resources.setup.lock import PROJECT_FOLDER, PYTHONS, SETUP_FOLDER
 from resources.setup.packages import debian_package, manual_page, reproducible_archives
 from resources.setup.packages.debian_package import TARGETS, get_debian_version
 from resources.setup.sbom import build_sbom
+from resources.setup.wheel_merge import read_guide_files
 
 DEBIAN = SETUP_FOLDER / "debian"
 WORDS = {"VERSION", "ARCHITECTURE", "PYTHON", "GLIBC", "SIZE", "FOLDER"}
@@ -93,6 +94,18 @@ def test_checksums_match_the_files(tmp_path: Path) -> None:
 def test_an_existing_folder_is_not_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert release.main([str(tmp_path)]) == 1
     assert "exists already" in capsys.readouterr().err
+
+
+def test_copied_sources_of_wheel_include_the_guide(tmp_path: Path) -> None:
+    copy_wheel_sources(tmp_path / "copy")
+    assert read_guide_files(tmp_path / "copy") == read_guide_files(PROJECT_FOLDER)
+    assert not list((tmp_path / "copy").rglob("__pycache__"))
+
+
+def test_failed_build_step_reports_its_error_above_the_notes_of_pip() -> None:
+    script = "echo 'ValueError: no guide' >&2; seq 10 >&2; exit 1"
+    with pytest.raises(BundleError, match="ValueError: no guide"):
+        run("sh", "-c", script)
 
 
 def test_version_with_commit_sorts_before_its_release() -> None:
