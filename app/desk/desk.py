@@ -237,6 +237,11 @@ class Desk:
         if not self.is_refused(ProtectedChange.SCREEN):
             self.try_save(partial(self.settings_store.choose, name, value))
 
+    def close_card(self) -> None:
+        """Close the card that guides the operator: the card of a feature, otherwise that of the first job."""
+        if not self.page_registry.close_guidance_card():
+            self.apply_setting("first_job", False)
+
     def try_save(self, save: Callable[[], None]) -> None:
         """Call ``save``, and show a message if saving fails."""
         try:

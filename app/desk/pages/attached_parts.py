@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from app.desk.programs.program_loading import LoadedProgram
+from app.desk.status.interrupted_notice import NoticeRow
 from core.closing_steps import (
     ClosingStep,
     WaitFunction,
@@ -49,6 +50,18 @@ class FrameWatcher(Protocol):
 
     def find_reminder(self) -> str:
         """Return a reminder of an action that the operator must soon take, or an empty string."""
+        ...
+
+
+class GuidanceCard(Protocol):
+    """Card that guides the operator on every page, in place of the card of the first job."""
+
+    def make_row(self) -> NoticeRow | None:
+        """Return the card, or None if it is closed."""
+        ...
+
+    def close_card(self) -> bool:
+        """Close the card, and return False if it was closed already."""
         ...
 
 

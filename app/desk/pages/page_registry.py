@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TypeVar
 
 from app.desk.page_description import ProgramKey
-from app.desk.pages.attached_parts import AttachedModel, FrameWatcher, StartHandler
+from app.desk.pages.attached_parts import AttachedModel, FrameWatcher, GuidanceCard, StartHandler
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.interrupted_notice import NoticeRow
 from core.closing_steps import ClosingStep
@@ -27,6 +27,7 @@ class PageRegistry:
     _frame_watchers: list[Callable[[Snapshot], None]] = field(default_factory=list)
     _program_keys: dict[str, ProgramKey] = field(default_factory=dict)
     _notice: Callable[[Snapshot], NoticeRow | None] = lambda _snapshot: None
+    _guidance_card: GuidanceCard | None = None
     _open_record: Callable[[str], None] = lambda _name: None
 
     # --- models --------------------------------------------------------------------------------------
@@ -77,6 +78,10 @@ class PageRegistry:
         """Set the function that finds a notice to show between cycles, such as about the next job."""
         self._notice = find_notice
 
+    def set_guidance_card(self, card: GuidanceCard) -> None:
+        """Set the card that guides the operator on every page."""
+        self._guidance_card = card
+
     def set_recording_opener(self, open_recording: Callable[[str], None]) -> None:
         """Set the function that opens the scope recording of an alarm.
 
@@ -114,6 +119,14 @@ class PageRegistry:
     def find_notice(self, snapshot: Snapshot) -> NoticeRow | None:
         """Return the notice that a feature shows between cycles, or None if there is no notice."""
         return self._notice(snapshot)
+
+    def make_guidance_row(self) -> NoticeRow | None:
+        """Return the card that guides the operator, or None if it is closed."""
+        return self._guidance_card.make_row() if self._guidance_card is not None else None
+
+    def close_guidance_card(self) -> bool:
+        """Close the card that guides the operator, and return False if no such card was open."""
+        return self._guidance_card is not None and self._guidance_card.close_card()
 
     def open_recording(self, name: str) -> None:
         """Open the recording of an alarm in the scope."""

@@ -17,6 +17,7 @@ class WindowState:
     """
 
     late_presses: LatePressFilter
+    page_name: str = ""  # Name of the current page; empty without a window.
     _starts_here: bool = True
     _keyboard_away: bool = False
     _has_field: Callable[[], bool] = bool
@@ -35,13 +36,15 @@ class WindowState:
         """Connect the functions of a new window, which replace the functions of the previous window."""
         self._wake, self._is_stop_held, self._press_age = wake_window, is_stop_held, find_press_age
 
-    def set_page_properties(self, *, can_start: bool, has_field: Callable[[], bool] = bool) -> None:
-        """Set the properties of the page that is currently shown.
+    def set_page_properties(
+        self, *, can_start: bool, has_field: Callable[[], bool] = bool, page_name: str = ""
+    ) -> None:
+        """Set the name and the properties of the current page.
 
         ``can_start`` is True if cycles can be started from this page. ``has_field`` returns whether the
         page has a text field that accepts letters.
         """
-        self._starts_here, self._has_field = can_start, has_field
+        self.page_name, self._starts_here, self._has_field = page_name, can_start, has_field
 
     def set_keyboard_lost(self, is_lost: bool) -> None:
         """Set whether another window has the keyboard focus, so that TurnDesk receives no keys."""

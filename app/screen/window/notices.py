@@ -33,7 +33,10 @@ def make_notices(
     found = make_interrupted_notice(snapshot, loaded, desk.settings_store.display_units)
     if found is not None:
         rows.append(replace(found, keys=_make_prompt_keys(desk, snapshot, loaded) if here else ()))
-    if here and desk.settings_store.current_settings.first_job:
+    card = desk.page_registry.make_guidance_row()
+    if card is not None:
+        rows.append(card)
+    elif here and desk.settings_store.current_settings.first_job:
         rows.append(desk.program_runs.first_job_card.notice_row)
     differs = desk.storage_state.describe_file_difference()
     if differs:

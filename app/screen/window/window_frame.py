@@ -152,7 +152,7 @@ class WindowFrame(QWidget):
         page = self.current_page
         self.help_panel.close_help()
         self.desk.window_state.set_page_properties(
-            can_start=page.CAN_START_CYCLES, has_field=self.has_text_field
+            can_start=page.CAN_START_CYCLES, has_field=self.has_text_field, page_name=page.NAME
         )
         self.key_bar.key_labels, self.key_bar.disabled_keys = (
             page.make_key_labels(),
@@ -181,7 +181,7 @@ class WindowFrame(QWidget):
                 for page in page_table.ALL_PAGES
                 if page.shortcut_key
             },
-            CLOSE_KEY: partial(self.desk.apply_setting, "first_job", False),
+            CLOSE_KEY: self.desk.close_card,
             **self.current_page.make_key_actions(),
             **(self._make_log_keys() if self.alarm_list.isVisible() else {}),
         }

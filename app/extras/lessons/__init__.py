@@ -1,0 +1,1 @@
+"""Lessons on the operator screen: the list of lessons and the card with the current step."""
