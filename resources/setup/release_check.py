@@ -10,6 +10,7 @@ part of the test command.
 from __future__ import annotations
 
 import argparse
+import platform
 import re
 import shutil
 import subprocess
@@ -23,7 +24,10 @@ from resources.setup.bundle import BundleError, run
 
 _EARLIER = "0.0.0"
 _MOUNTS = ("proc", "sys", "dev")
-_IGNORED = re.compile(r"^/(?:proc|sys|dev|run|tmp|root|var/(?:cache|log|lib/(?:apt|dpkg|systemd)))(?:/|$)")
+_IGNORED = re.compile(
+    r"^/(?:proc|sys|dev|run|tmp|root|var/(?:cache|log|lib/(?:apt|dpkg|systemd)))(?:/|$)"
+    r"|^/etc/(?:group|gshadow|passwd|shadow|subgid|subuid)-$"  # backups of groupadd and groupdel
+)
 _PROGRAMS = "lib/python3*/site-packages/turndesk/resources/programs"
 _SAMPLES = f'samples=$(dirname "$(readlink -f /usr/bin/turndesk)")/../{_PROGRAMS}'
 _APT = "DEBIAN_FRONTEND=noninteractive apt-get -qq -y"
@@ -62,22 +66,29 @@ def build_earlier_package(package: Path, folder: Path) -> Path:
     return made
 
 
+def copy_package_sources(source_folder: Path, target_folder: Path, release: str) -> None:
+    """Copy the package sources of this computer, with ``release`` in place of this computer's release."""
+    (target_folder / "sources.list").unlink(missing_ok=True)
+    own_release = platform.freedesktop_os_release().get("VERSION_CODENAME", release)
+    for part in ("sources.list", "sources.list.d/debian.sources"):
+        if (source_folder / part).is_file():
+            text = (source_folder / part).read_text(encoding="utf-8")
+            (target_folder / part).parent.mkdir(parents=True, exist_ok=True)
+            (target_folder / part).write_text(text.replace(own_release, release), encoding="utf-8")
+    for part in ("apt.conf.d", "trusted.gpg.d"):
+        if (source_folder / part).is_dir():
+            shutil.copytree(source_folder / part, target_folder / part, dirs_exist_ok=True)
+
+
 @contextmanager
 def create_minimal_root(release: str, folder: Path) -> Iterator[Path]:
     """Yield a minimal root file system of a Debian release.
 
-    The root file system has its mounts, and uses the package sources of this computer.
+    The root file system has its mounts. It uses the package sources of this computer for that release.
     """
     root = folder / "root"
     run("debootstrap", "--variant=minbase", release, root)
-    (root / "etc" / "apt" / "sources.list").unlink(missing_ok=True)
-    for part in ("sources.list", "sources.list.d/debian.sources", "apt.conf.d", "trusted.gpg.d"):
-        source, target = Path("/etc/apt") / part, root / "etc" / "apt" / part
-        if source.is_dir():
-            shutil.copytree(source, target, dirs_exist_ok=True)
-        elif source.is_file():
-            target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(source, target)
+    copy_package_sources(Path("/etc/apt"), root / "etc" / "apt", release)
     with suppress(OSError):
         shutil.copy("/etc/resolv.conf", root / "etc" / "resolv.conf")
     mounted = []

@@ -108,6 +108,38 @@ def test_failed_build_step_reports_its_error_above_the_notes_of_pip() -> None:
         run("sh", "-c", script)
 
 
+def test_minimal_root_uses_package_sources_of_its_own_release(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("platform.freedesktop_os_release", lambda: {"VERSION_CODENAME": "bookworm"})
+    own, root = tmp_path / "own", tmp_path / "root"
+    (own / "sources.list.d").mkdir(parents=True)
+    root.mkdir()
+    (root / "sources.list").write_text("deb http://a trixie main\n")  # of debootstrap
+    (own / "sources.list.d" / "debian.sources").write_text("Suites: bookworm bookworm-updates\n")
+    (own / "sources.list.d" / "other.sources").write_text("Suites: nodistro\n")
+    release_check.copy_package_sources(own, root, "trixie")
+    assert (root / "sources.list.d" / "debian.sources").read_text() == "Suites: trixie trixie-updates\n"
+    assert [path.name for path in root.rglob("*") if path.is_file()] == ["debian.sources"]
+
+
+@pytest.mark.parametrize(
+    ("path", "is_compared"),
+    [
+        ("/etc/gshadow-", False),
+        ("/var/lib/dpkg/status", False),
+        ("/etc/gshadow", True),
+        ("/etc/turndesk-", True),
+        ("/opt/turndesk/0.1.0/bin/turndesk", True),
+    ],
+)
+def test_purge_may_only_leave_files_of_the_system(
+    path: str, is_compared: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(release_check, "run_in_root", lambda *_: f"{path}\n")
+    assert (path in release_check.list_files(Path("/unused"))) is is_compared
+
+
 def test_version_with_commit_sorts_before_its_release() -> None:
     target = TARGETS["debian12"]
     assert get_debian_version("0.1.0", target) == "0.1.0+debian12"
