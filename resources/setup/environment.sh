@@ -7,7 +7,7 @@ PYTHON_ENV=${TURNDESK_VENV:-$ROOT/.venv}
 case $PYTHON_ENV in -*) PYTHON_ENV=./$PYTHON_ENV ;; esac  # a folder, never an option of a program
 
 # Qt needs these even without a window (offscreen) …
-QT_LIBRARIES="libgl1 libegl1 libglib2.0-0 libxkbcommon0 libdbus-1-3 libfontconfig1"
+QT_LIBRARIES="libgl1 libegl1 libglib2.0-0 libxkbcommon0 libdbus-1-3 libfontconfig1 libgssapi-krb5-2"
 # … and these for a window on an X11 display.
 WINDOW_LIBRARIES="libxcb-cursor0 libxkbcommon-x11-0 libxcb-icccm4 libxcb-keysyms1 libxcb-shape0 libxi6"
 # … and these for one on a Wayland display.
