@@ -10,12 +10,18 @@ from pytestqt.qtbot import QtBot
 
 from app.compose.machine.machine_files import load_machine
 from app.desk.persistence import Persistence
+from app.desk.translation import tr
 from app.extras.lessons import lessons_function
 from app.extras.lessons.extra import EXTRA
 from app.extras.lessons.lesson_card import COMPLETED_SETTING, LessonCard
 from app.extras.lessons.lessons_function import LessonsFunction
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme, measure_text, set_language
+from app.screen.window.window_bars import NOTICE_KEY
+from app.screen.window_layout import MIN_WINDOW_PX, find_unit_px, make_automatic_layout
 from app.special.special_functions import SpecialFunctionsModel
 from core.executor.snapshot import MachineState
+from core.extras.lessons.lesson_file import list_lesson_files, read_lesson
 from tests.screen.day import Day, Key, begun
 from tests.texts import shows
 
@@ -105,6 +111,20 @@ def test_lesson_is_completed_with_keys_alone(day: Day) -> None:
     assert status_of(day, function) == "4 OF 4 STEPS"
     day.saved()
     assert day.store.settings.read_setting(COMPLETED_SETTING) == [1]
+
+
+@pytest.mark.parametrize("language", ["en", "es"])
+def test_every_instruction_fits_on_the_card_of_the_smallest_window(qapp: object, language: str) -> None:
+    theme = ScreenTheme(DARK_PALETTE)
+    theme.set_unit_px(find_unit_px(*MIN_WINDOW_PX))
+    strip_px = make_automatic_layout(*MIN_WINDOW_PX, has_dock=True).strip.w
+    width_px = strip_px - (NOTICE_KEY + 2.4) * theme.unit_px  # next to the touch target and the margins
+    set_language(language)
+    texts = [tr(step.instruction) for path in list_lesson_files() for step in read_lesson(path).steps]
+    set_language("en")
+    widths = {text: measure_text(text, theme.fit_font(text, 1.7, width_px)) for text in texts}
+    assert [text for text, width in widths.items() if width > width_px] == []
+    assert measure_text("Long. " * 40, theme.fit_font("Long. " * 40, 1.7, width_px)) > width_px
 
 
 def test_touch_target_closes_the_card_and_then_the_card_of_the_first_job(day: Day) -> None:
