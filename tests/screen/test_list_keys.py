@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.offsets.tool_offsets_view import ToolOffsetsPage
@@ -11,7 +12,7 @@ from app.programs.program_list_model import ProgramListModel
 from app.screen import page_table
 from app.searchto.searchto_model import RestartModel
 from app.special.special_functions import SpecialFunctionsModel
-from core.executor.snapshot import Alarm, LogEvent
+from core.executor.snapshot import Alarm, LogEvent, MachineState
 from tests.attached import attached
 from tests.screen.lathe import Key, Operator
 
@@ -125,13 +126,42 @@ def test_keys_of_the_alarm_log_do_not_reach_the_covered_page(ready: Operator, pa
     assert (programs.selected_row, ready.mdi.mdi_input.text) == before
 
 
-def test_an_arrow_key_jogs_while_the_alarm_log_covers_the_jog_page(ready: Operator) -> None:
-    """The log must not change what an arrow key does on this page."""
+@pytest.mark.parametrize("key", [Key.Key_Left, Key.Key_Right, Key.Key_Down, Key.Key_Up, Key.Key_PageUp])
+def test_no_key_jogs_an_axis_while_the_alarm_log_covers_the_jog_page(ready: Operator, key: Key) -> None:
     assert ready.frame.open_page(page_table.JOG)
     fill_log(ready)
     ready.key(Key.Key_F7)
-    ready.key(Key.Key_Down)
-    assert ready.frame.alarm_list.marked == 0
+    before = ready.shot.demand
+    QTest.keyPress(ready.window, key)
+    ready.pause(0.3)
+    assert (ready.shot.state, ready.shot.demand) == (MachineState.IDLE, before)
+    QTest.keyRelease(ready.window, key)
+    ready.key(Key.Key_F7)
+    QTest.keyPress(ready.window, Key.Key_Left)
+    ready.reaches(MachineState.JOG)  # The page receives the keys again.
+    QTest.keyRelease(ready.window, Key.Key_Left)
+    ready.reaches(MachineState.IDLE)
+
+
+def test_the_alarm_log_stops_the_axis_that_an_arrow_key_moves(ready: Operator) -> None:
+    assert ready.frame.open_page(page_table.JOG)
+    QTest.keyPress(ready.window, Key.Key_Left)
+    ready.reaches(MachineState.JOG)
+    ready.key(Key.Key_F7)
+    ready.reaches(MachineState.IDLE)
+    QTest.keyRelease(ready.window, Key.Key_Left)
+
+
+def test_no_key_reaches_the_line_that_the_alarm_log_covers(ready: Operator) -> None:
+    assert ready.frame.open_page(page_table.MDI)
+    ready.type("M0")
+    ready.key(Key.Key_F7)
+    ready.type("8")
+    ready.key(Key.Key_Return)
+    assert (ready.mdi.mdi_input.text, ready.mdi.prepared_line.worker.is_busy) == ("M0", False)
+    ready.key(Key.Key_F7)
+    ready.type("8")
+    assert ready.mdi.mdi_input.text == "M08"
 
 
 def test_home_does_not_select_a_program_while_its_new_name_is_typed(qtbot: QtBot, ready: Operator) -> None:

@@ -363,7 +363,9 @@ class MainWindow(QWidget):
         frame = self.frame
         if frame is None or self.typed_keys.handle_answer(frame, event):
             return
-        if self._handle_help_key(frame, event) or frame.current_page.handle_key_press(event):
+        if self._handle_help_key(frame, event) or (
+            not frame.is_page_covered and frame.current_page.handle_key_press(event)
+        ):
             self.refresh()
             return
         if (

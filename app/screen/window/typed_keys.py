@@ -20,6 +20,9 @@ from app.screen.window.keyboard import KeyboardFilter, find_key_code, find_lette
 from app.screen.window.window_frame import WindowFrame
 from core.message import Message
 
+# Editing keys that have no function while the alarm log covers the page.
+COVERED_KEYS = frozenset({"Enter", "Back", "Delete", "Tab", "Left", "Right"})
+
 
 class TypedKeyHandler:
     """Handler of keys that a question or the current page uses, before the key actions are executed."""
@@ -82,11 +85,16 @@ class TypedKeyHandler:
         return True
 
     def handle_typed_key(self, frame: WindowFrame, event: QKeyEvent) -> bool:
-        """Return whether the alarm log or the page has handled the key as text input."""
+        """Return whether the alarm log or the page has handled the key as text input.
+
+        A page that the alarm log covers handles no keys, so that no axis moves and no line runs unseen.
+        """
         key = find_typed_text(event)
-        if frame.alarm_list.isVisible() and frame.alarm_list.handle_key(key):
-            self._refresh()
-            return True
+        if frame.is_page_covered:
+            if frame.alarm_list.handle_key(key):
+                self._refresh()
+                return True
+            return key in COVERED_KEYS
         if (
             not key
             or (event.isAutoRepeat() and key not in REPEATED_WHEN_TYPED)

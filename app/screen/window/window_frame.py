@@ -203,6 +203,11 @@ class WindowFrame(QWidget):
         else:
             self.desk.say(tr("NO SCOPE RECORD: ONLY ALARMS AND E-STOPS ARE RECORDED"))
 
+    @property
+    def is_page_covered(self) -> bool:
+        """Return whether the alarm log covers the page, which then receives no keys."""
+        return self.alarm_list.isVisible()
+
     def toggle_alarm_log(self) -> None:
         """Show or hide the alarm log over the page."""
         self.alarm_list.setVisible(not self.alarm_list.isVisible())
@@ -414,11 +419,15 @@ class WindowFrame(QWidget):
 
     def accepts_text(self, key: str) -> bool:
         """Return whether a character goes to an input field of the page or to a standard text field."""
-        return self.help_panel.isHidden() and (self.current_page.accepts_key(key) or self._stock_field())
+        return self.help_panel.isHidden() and (
+            (not self.is_page_covered and self.current_page.accepts_key(key)) or self._stock_field()
+        )
 
     def has_text_field(self) -> bool:
         """Return whether an input field has the keyboard focus, so that characters are text."""
-        return self.help_panel.isHidden() and (self.current_page.has_text_field() or self._stock_field())
+        return self.help_panel.isHidden() and (
+            (not self.is_page_covered and self.current_page.has_text_field()) or self._stock_field()
+        )
 
     def _stock_field(self) -> bool:
         at = QApplication.focusWidget()
