@@ -76,7 +76,9 @@ class DeskServices:
         for extra in extras().values():
             self._add(extra.start_services(desk, journal, tell))
         file = ProgramFileMonitor(lambda: desk.program_loader.loaded_program)
-        desk.storage_state.set_file_readers(lambda: file.difference_text, file.request_check)
+        desk.storage_state.set_file_readers(
+            lambda: file.difference_text, file.request_check, lambda: file.can_reload
+        )
         self._steps.append(ClosingStep("program-file", file.close))
         file.start()
 

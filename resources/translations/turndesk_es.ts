@@ -6220,13 +6220,18 @@
     </message>
     <message>
       <location filename="app/desk/pages/first_job.py" />
+      <source>COUNT ON</source>
+      <translation>CONTAR</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/first_job.py" />
       <source>DRY RUN</source>
       <translation>MARCHA EN VACÍO</translation>
     </message>
     <message>
       <location filename="app/desk/pages/first_job.py" />
-      <source>DRY RUN, NO STOCK: P, D, CYCLE START. WATCH EVERY MOVE. H: FEED HOLD</source>
-      <translation>MARCHA EN VACÍO, SIN MATERIAL: P, D, ARRANQUE DE CICLO. VIGILE CADA MOVIMIENTO. H: RETENCIÓN DE AVANCE</translation>
+      <source>DRY RUN, NO STOCK: D, CYCLE START. WATCH EVERY MOVE. H: FEED HOLD</source>
+      <translation>MARCHA EN VACÍO, SIN MATERIAL: D, ARRANQUE DE CICLO. VIGILE CADA MOVIMIENTO. H: RETENCIÓN DE AVANCE</translation>
     </message>
     <message>
       <location filename="app/desk/pages/first_job.py" />
@@ -6250,6 +6255,11 @@
     </message>
     <message>
       <location filename="app/desk/pages/first_job.py" />
+      <source>LOAD STOCK, CYCLE START. MEASURE PART. F9: CORRECT WEAR</source>
+      <translation>PONGA MATERIAL, ARRANQUE DE CICLO. MIDA LA PIEZA. F9: CORREGIR DESGASTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/first_job.py" />
       <source>NO COUNT</source>
       <translation>SIN CONT</translation>
     </message>
@@ -6257,6 +6267,11 @@
       <location filename="app/desk/pages/first_job.py" />
       <source>P: COUNT ON. LOAD STOCK, CYCLE START. MEASURE PART. F9: CORRECT WEAR</source>
       <translation>P: CONTAR. PONGA MATERIAL, ARRANQUE DE CICLO. MIDA LA PIEZA. F9: CORREGIR DESGASTE</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/first_job.py" />
+      <source>P: NO COUNT. THEN DRY RUN, NO STOCK: D, CYCLE START. H: FEED HOLD</source>
+      <translation>P: SIN CONTAR. LUEGO MARCHA EN VACÍO, SIN MATERIAL: D, ARRANQUE DE CICLO. H: RETENCIÓN DE AVANCE</translation>
     </message>
     <message>
       <location filename="app/desk/pages/first_job.py" />
@@ -6395,8 +6410,8 @@
     </message>
     <message>
       <location filename="app/desk/programs/program_folder.py" />
-      <source>{name} HAS CHANGED. F2: RELOAD. CYCLE START RUNS THE OLD VERSION</source>
-      <translation>{name} HA CAMBIADO. F2: RECARGAR. EL ARRANQUE DE CICLO EJECUTA LA VERSIÓN ANTERIOR</translation>
+      <source>{name} HAS CHANGED. CYCLE START RUNS THE OLD VERSION</source>
+      <translation>{name} HA CAMBIADO. EL ARRANQUE DE CICLO EJECUTA LA VERSIÓN ANTERIOR</translation>
     </message>
     <message>
       <location filename="app/desk/programs/program_folder.py" />
@@ -14587,6 +14602,11 @@
       <location filename="app/screen/window/notices.py" />
       <source>NOT SAVED YET: {what}. DO NOT EXIT TURNDESK NOW</source>
       <translation>AÚN SIN GUARDAR: {what}. NO SALGA DE TURNDESK AHORA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/notices.py" />
+      <source>RELOAD</source>
+      <translation>RECARGAR</translation>
     </message>
     <message>
       <location filename="app/screen/window/readout_panels.py" />

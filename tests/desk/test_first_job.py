@@ -7,7 +7,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
 
-from app.desk.pages.first_job import FIRST_JOB_STEPS, FirstJobCard
+from app.desk.pages.first_job import CLOSE_KEY, FIRST_JOB_STEPS, FirstJobCard
 from app.desk.programs.program_loading import LoadedProgram, LoadingPhase
 from core.executor.snapshot import MachineState, Snapshot
 from tests.texts import text
@@ -67,3 +67,23 @@ def test_first_job_card_shows_step_number_and_count() -> None:
         "desk.first-job-step", number=1, count=f"{len(FIRST_JOB_STEPS)}: CHOOSE A PROGRAM"
     )
     assert row.keys[0][1] == "CLOSE"
+
+
+def test_dry_run_offers_no_count_only_while_parts_are_counted() -> None:
+    card = FirstJobCard(step_index=3)
+    card.advance(REST, loaded(), 0)
+    assert [key for key, _label in card.notice_row.keys] == ["P", CLOSE_KEY]
+    card.advance(replace(REST, no_count=True), loaded(), 0)
+    assert [key for key, _label in card.notice_row.keys] == [CLOSE_KEY]
+    assert "P:" not in card.notice_row.values_text
+
+
+def test_first_part_after_a_start_of_turndesk_does_not_ask_to_turn_counting_on() -> None:
+    """NO COUNT is off after a start. P would then stop the count of the first part."""
+    card = FirstJobCard(step_index=4)
+    card.advance(REST, loaded(), 0)
+    assert [key for key, _label in card.notice_row.keys] == [CLOSE_KEY]
+    assert "P:" not in card.notice_row.values_text
+    card.advance(replace(REST, no_count=True), loaded(), 0)
+    assert card.notice_row.keys[0] == ("P", "COUNT ON")
+    assert "P:" in card.notice_row.values_text

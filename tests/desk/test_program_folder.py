@@ -96,6 +96,7 @@ def test_changed_file_is_reported_until_it_is_reloaded_or_restored(tmp_path: Pat
     touched(path, TEXT.replace("X.5", "X1.5"))
     file.compare_files()
     assert begins(file.difference_text, "programs.changed-on-disk", name="part.nc")
+    assert file.can_reload
     touched(path, TEXT)
     file.compare_files()
     assert file.difference_text == ""
@@ -116,6 +117,7 @@ def test_missing_or_unreadable_file_is_reported(tmp_path: Path) -> None:
     path.unlink()
     file.compare_files()
     assert begins(file.difference_text, "programs.not-on-disk", name="part.nc")
+    assert not file.can_reload
 
 
 def test_change_in_a_called_subprogram_is_reported(tmp_path: Path) -> None:

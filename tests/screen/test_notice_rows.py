@@ -172,3 +172,29 @@ def test_uncertain_state_after_power_cut_is_shown_in_full_next_to_keys(
     drawn.clear()
     rows.grab()
     assert drawn[:2] == ["INTERRUPTED", "T1"]  # what fits has one line
+
+
+@pytest.mark.parametrize(
+    ("page", "state", "can_reload"),
+    [
+        (page_table.AUTOMATIC, MachineState.IDLE, True),
+        (page_table.AUTOMATIC, MachineState.RUN, False),  # F2 is disabled during a run.
+        (page_table.JOG, MachineState.IDLE, False),  # F2 has another function on this page.
+    ],
+)
+def test_changed_program_offers_reload_only_where_f2_reloads_it(
+    hands: Hands, page: str, state: MachineState, can_reload: bool
+) -> None:
+    hands.machine.now = replace(hands.machine.now, state=state)
+    hands.desk.storage_state.set_file_readers(lambda: "DIFFERENT", lambda: None, lambda: True)
+    hands.frame.open_page(page)
+    hands.window.refresh()
+    row = next(row for row in hands.frame.notice_rows.notice_rows if row.text == "DIFFERENT")
+    assert row.keys == ((("F2", "RELOAD"),) if can_reload else ())
+
+
+def test_missing_program_file_offers_no_reload(hands: Hands) -> None:
+    hands.desk.storage_state.set_file_readers(lambda: "MISSING", lambda: None, lambda: False)
+    hands.window.refresh()
+    row = next(row for row in hands.frame.notice_rows.notice_rows if row.text == "MISSING")
+    assert row.keys == ()

@@ -15,8 +15,6 @@ from core.message import Message
 
 STEP_SETTING = "first_job_step"  # Name of the setting.
 CLOSE_KEY = "×"  # Key name and label of the card's close button.
-_COUNT_KEYS = (("P", "NO COUNT"),)  # A touch target, because no lamp shows NO COUNT while it is off.
-
 
 _NO_END = CYCLE_STATES | {
     MachineState.ESTOP,
@@ -24,12 +22,20 @@ _NO_END = CYCLE_STATES | {
 }  # A dry run that stops in one of these states is not complete.
 
 
+class CountSwitch(NamedTuple):
+    """Setting of the part count that a step of the first job needs, and how the operator selects it."""
+
+    is_counting: bool
+    instructions: str  # Instructions while the setting is not selected.
+    key_label: str  # Label of the touch target of the key P.
+
+
 class FirstJobStep(NamedTuple):
-    """One step of the first job, with its title, instructions and keys."""
+    """One step of the first job, with its title, instructions and the part count that it needs."""
 
     title: str
     instructions: str
-    keys: tuple[tuple[str, str], ...] = ()
+    count_switch: CountSwitch | None = None
 
 
 FIRST_JOB_STEPS = (
@@ -43,10 +49,14 @@ FIRST_JOB_STEPS = (
         "PROGRAM IS PROVED AUTOMATICALLY. B (PART): SHOW ERRORS, WARNINGS",
     ),
     FirstJobStep(
-        "DRY RUN", "DRY RUN, NO STOCK: P, D, CYCLE START. WATCH EVERY MOVE. H: FEED HOLD", _COUNT_KEYS
+        "DRY RUN",
+        "DRY RUN, NO STOCK: D, CYCLE START. WATCH EVERY MOVE. H: FEED HOLD",
+        CountSwitch(False, "P: NO COUNT. THEN DRY RUN, NO STOCK: D, CYCLE START. H: FEED HOLD", "NO COUNT"),
     ),
     FirstJobStep(
-        "FIRST PART", "P: COUNT ON. LOAD STOCK, CYCLE START. MEASURE PART. F9: CORRECT WEAR", _COUNT_KEYS
+        "FIRST PART",
+        "LOAD STOCK, CYCLE START. MEASURE PART. F9: CORRECT WEAR",
+        CountSwitch(True, "P: COUNT ON. LOAD STOCK, CYCLE START. MEASURE PART. F9: CORRECT WEAR", "COUNT ON"),
     ),
 )
 
@@ -62,6 +72,7 @@ class FirstJobCard:
     _dry: bool = False  # A cycle that counts no part is running.
     _parts: int | None = None
     _saved: int = -1  # The step that is saved in the store.
+    _is_counting: bool = True  # NO COUNT is off.
 
     @classmethod
     def from_store(cls, persistence: Persistence) -> FirstJobCard:
@@ -83,6 +94,7 @@ class FirstJobCard:
 
         ``part_count`` is the number of parts made.
         """
+        self._is_counting = not snapshot.no_count
         while self.step_index < len(FIRST_JOB_STEPS) and self._done(snapshot, loaded, part_count):
             self.step_index += 1
 
@@ -114,5 +126,7 @@ class FirstJobCard:
                 "FIRST JOB, STEP {number} OF {count}", number=self.step_index + 1, count=len(FIRST_JOB_STEPS)
             )
         )
-        own = tuple((name, tr(label)) for name, label in step.keys)
-        return NoticeRow(f"{head}: {tr(step.title)}", tr(step.instructions), (*own, *keys), "wait")
+        switch, instructions = step.count_switch, step.instructions
+        if switch is not None and switch.is_counting is not self._is_counting:
+            instructions, keys = switch.instructions, (("P", tr(switch.key_label)), *keys)
+        return NoticeRow(f"{head}: {tr(step.title)}", tr(instructions), keys, "wait")

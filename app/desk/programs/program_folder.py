@@ -117,7 +117,7 @@ _log = logging.getLogger(__name__)
 CHECK_INTERVAL_S = 2.0  # Seconds between two checks of the file.
 CHECK_TIMEOUT_S = 5.0  # Seconds after which an unfinished check counts as an unreadable file.
 FILE_MISSING_TEXT = "{name} IS NOT ON THE DISK. CYCLE START RUNS THE LOADED PROGRAM"
-FILE_CHANGED_TEXT = "{name} HAS CHANGED. F2: RELOAD. CYCLE START RUNS THE OLD VERSION"
+FILE_CHANGED_TEXT = "{name} HAS CHANGED. CYCLE START RUNS THE OLD VERSION"
 FILE_UNREADABLE_TEXT = "CANNOT READ {name}: CHECK FOLDER. CYCLE START RUNS LOADED VERSION"
 _Message = tuple[str, str]  # Message text and file name.
 _NO_DIFFERENCE = ("", "")
@@ -158,6 +158,12 @@ class ProgramFileMonitor:
             return tr(Message(FILE_UNREADABLE_TEXT, name=loaded.name))
         source, said = self._found
         return tr(Message(said[0], name=said[1])) if said[0] and source is loaded.source else ""
+
+    @property
+    def can_reload(self) -> bool:
+        """Return whether a file differs from the loaded text and can be read again."""
+        source, said = self._found
+        return said[0] == FILE_CHANGED_TEXT and source is self._loaded().source
 
     def start(self) -> None:
         """Start the thread that checks the program's files."""

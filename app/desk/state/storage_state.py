@@ -17,6 +17,7 @@ class StorageState:
     _waiting: Callable[[], str] = str
     _difference: Callable[[], str] = str
     _recheck_file: Callable[[], None] = lambda: None
+    _can_reload: Callable[[], bool] = bool
     _restoring: bool = False
 
     def set_store_readers(
@@ -28,12 +29,17 @@ class StorageState:
         """
         self._problem, self._waiting = read_problem, read_unsaved
 
-    def set_file_readers(self, read_difference: Callable[[], str], recheck_file: Callable[[], None]) -> None:
+    def set_file_readers(
+        self,
+        read_difference: Callable[[], str],
+        recheck_file: Callable[[], None],
+        can_reload: Callable[[], bool] = bool,
+    ) -> None:
         """Set the functions of the program file monitor.
 
-        ``describe_file_difference`` and ``recheck_file`` call these functions.
+        ``read_file_difference``, ``recheck_file`` and ``can_reload_file`` call these functions.
         """
-        self._difference, self._recheck_file = read_difference, recheck_file
+        self._difference, self._recheck_file, self._can_reload = read_difference, recheck_file, can_reload
 
     def read_storage_problem(self) -> str:
         """Return why events, parts and versions cannot be saved, or an empty string if they can be saved."""
@@ -49,6 +55,10 @@ class StorageState:
     def describe_file_difference(self) -> str:
         """Return how the program file differs from the loaded program, or else an empty string."""
         return self._difference()
+
+    def can_reload_file(self) -> bool:
+        """Return whether the program file has changed and can be loaded again."""
+        return self._can_reload()
 
     def recheck_file(self) -> None:
         """Request a new comparison of the program file after the editor has written the file."""

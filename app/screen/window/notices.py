@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from app.desk.desk import Desk
+from app.desk.pages.page_entry import find_program_refusal
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.interrupted_notice import (
     NoticeRow,
@@ -16,7 +17,7 @@ from app.desk.translation import tr
 from core.executor.snapshot import MachineState, Snapshot
 from core.message import Message
 
-_SEARCHTO, _FROM_LINE_1 = ("F6", "SEARCHTO"), ("Y", "FROM LINE 1")
+_SEARCHTO, _FROM_LINE_1, _RELOAD = ("F6", "SEARCHTO"), ("Y", "FROM LINE 1"), ("F2", "RELOAD")
 
 
 def make_notices(
@@ -40,7 +41,7 @@ def make_notices(
         rows.append(desk.program_runs.first_job_card.notice_row)
     differs = desk.storage_state.describe_file_difference()
     if differs:
-        rows.append(NoticeRow(differs))
+        rows.append(NoticeRow(differs, keys=_make_reload_keys(desk, snapshot) if here else ()))
     offered_job = desk.page_registry.find_notice(snapshot) if here else None
     if offered_job is not None:
         rows.append(offered_job)
@@ -51,6 +52,12 @@ def make_notices(
             NoticeRow(tr(Message("NOT SAVED: {why}", why=desk.storage_state.read_storage_problem())), waits)
         )
     return tuple(rows)
+
+
+def _make_reload_keys(desk: Desk, snapshot: Snapshot) -> tuple[tuple[str, str], ...]:
+    """Return the key that reloads a changed program. A program that runs cannot be reloaded."""
+    can_reload = desk.storage_state.can_reload_file() and not find_program_refusal(snapshot)
+    return (_RELOAD,) if can_reload else ()
 
 
 def _make_prompt_keys(desk: Desk, snapshot: Snapshot, loaded: LoadedProgram) -> tuple[tuple[str, str], ...]:
