@@ -165,7 +165,7 @@ class CodeStrip(Panel):
             1.2 * self.theme.unit_px, 0.3 * self.theme.unit_px, -0.6 * self.theme.unit_px, 0
         )
         if self.code_entry is None:
-            painter.draw_text_line(box, "CODES", 1.8, "accent", fit=False)
+            painter.draw_text_line(box, "CODES", 1.8, "accent")
             return
         draw_code_entry(painter, box, self.code_entry, "accent", "text")
 

@@ -185,7 +185,8 @@ class FindingList(RowPanel):
             self.findings.diagnostics,
         )
         self.frame(painter, self.words)
-        room = QRectF(0.6 * u, 2.3 * u, self.width() - 1.2 * u, self.height() - 2.5 * u)
+        top = (self.theme.title_height + 0.2) * u
+        room = QRectF(0.6 * u, top, self.width() - 1.2 * u, self.height() - top - 0.2 * u)
         here = next((n for n, each in enumerate(found) if each.line == self._line), -1)
         room = self.draw_scroll_keys(
             painter, room, self.count_fitting_rows(room, high, len(found)), len(found), here
@@ -202,11 +203,9 @@ class FindingList(RowPanel):
         painter.draw_text_line(patch, tr(SEVERITY_NAMES[found.severity])[0], 2.0, "on_state", at=ALIGN_CENTER)
         line = QRectF(box.x() + 4.4 * u, box.y(), 8 * u, box.height())
         painter.draw_text_line(line, str(found.line or "FILE"), 1.8, "text")
-        room = box.adjusted(10.4 * u, 0.4 * u, -0.4 * u, -box.height() / 2)
-        painter.draw_text_line(room, found.text, 1.8, "text", bold=False, fit=False)
-        painter.draw_text_line(
-            room.translated(0, room.height()), found.hint, 1.6, "soft", bold=False, fit=False
-        )
+        room = box.adjusted(10.4 * u, 0.2 * u, -0.4 * u, -box.height() / 2)
+        painter.draw_text_line(room, found.text, 1.8, "text", bold=False)
+        painter.draw_text_line(room.translated(0, room.height()), found.hint, 1.6, "soft", bold=False)
         self.add_target(box, lambda: self._go_to(found), kind="row", is_on=found.line == self._line)
 
 
@@ -257,12 +256,13 @@ class EditorHeadLine(Panel):
         painter.draw_text_line(QRectF(1.4 * u, 0, 41 * u, high), now.name, 2.3, "text", raw=True, margin=1.0)
         left = 3.0 * u + min(40 * u, QFontMetricsF(painter.font()).horizontalAdvance(now.name))
         if now.mark:
-            wide = QFontMetricsF(look.make_font(1.7, is_bold=True)).horizontalAdvance(now.mark) + 1.6 * u
-            box = QRectF(left, high / 2 - 1.4 * u, wide, 2.8 * u)
+            size, tall = look.find_table_size(1.7), look.find_line_height(2.8)
+            wide = QFontMetricsF(look.make_font(size, is_bold=True)).horizontalAdvance(now.mark) + 1.6 * u
+            box = QRectF(left, (high - tall) / 2, wide, tall)
             painter.fill_rect(box, "mark")
-            painter.draw_text_line(box, now.mark, 1.7, "on_mark", at=ALIGN_CENTER, fit=False)
+            painter.draw_text_line(box, now.mark, 1.7, "on_mark", at=ALIGN_CENTER)
         place = QRectF(self.width() - (40 + 3 * HEAD_KEY_WIDTH) * u, 0, 38.0 * u, high)
-        painter.draw_text_line(place, now.cursor_position, 1.9, "soft", at=ALIGN_RIGHT, bold=False, fit=False)
+        painter.draw_text_line(place, now.cursor_position, 1.9, "soft", at=ALIGN_RIGHT, bold=False)
         key = QRectF(self.width() - HEAD_KEY_WIDTH * u, 0, HEAD_KEY_WIDTH * u, high)
         self.key(painter, key, tr("KEYBOARD"), 1.9, self._keys, color="accent", margin=1.0)
         for label, name in self.panel_keys:

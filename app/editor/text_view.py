@@ -212,7 +212,7 @@ class ProgramTextField(QPlainTextEdit):
     def apply_theme(self) -> None:
         """Apply the font and the colors of the theme."""
         colours = self.theme.palette
-        self.setFont(self.theme.make_font(TEXT_SIZE))
+        self.setFont(self.theme.make_font(self.theme.find_table_size(TEXT_SIZE)))
         self.setStyleSheet(
             f"QPlainTextEdit {{ background: {colours.panel}; color: {colours.text};"
             f" border: {max(1, round(0.16 * self.theme.unit_px))}px solid {colours.frame};"

@@ -13,7 +13,7 @@ from app.desk.translation import tr
 from app.jog.held_jog import HeldJog, JogDirection
 from app.screen.page_base import ModelPage, PageHost, PageModel
 from app.screen.panel import TouchControl, TouchPanel
-from app.screen.screen_theme import ALIGN_CENTER, ScreenTheme, ThemedPainter, draw_text
+from app.screen.screen_theme import ALIGN_CENTER, ScreenTheme, ThemedPainter
 
 _LOW_CROSS_HEIGHT = 9.0  # Units.
 TouchHandler = Callable[[str, str, int], None]  # Arguments: source, axis, sign.
@@ -38,12 +38,15 @@ def draw_jog_mode(painter: ThemedPainter, box: QRectF, mode_labels: tuple[str, s
     ``mode_labels`` are the name of the mode, its value and the unit.
     """
     kind, figure, unit = mode_labels
-    high, edge = 2.2 * painter.theme.unit_px, 0.1 * box.height()
-    painter.draw_text_line(
-        QRectF(box.x(), box.y() + edge, box.width(), high), kind, 1.6, "soft", at=ALIGN_CENTER
-    )
-    draw_text(painter, QRectF(box.x(), box.bottom() - edge - high, box.width(), high), ALIGN_CENTER, unit)
-    painter.draw_text_line(box, figure, 3.2, "text", at=ALIGN_CENTER, margin=1.0)
+    high = painter.theme.find_line_height(2.2)
+    if box.height() < 3 * high:  # The value and its unit share a line.
+        figure, unit = f"{figure} {unit}", ""
+    lines = [(kind, 1.6, "soft"), (figure, 3.2 if unit else 2.2, "text"), (unit, 1.6, "soft")]
+    lines = [line for line in lines if line[0]]
+    row = QRectF(box.x(), box.y(), box.width(), box.height() / len(lines))
+    for number, (text, size, ink) in enumerate(lines):
+        at = row.translated(0, number * row.height())
+        painter.draw_text_line(at, text, size, ink, at=ALIGN_CENTER, margin=0.4)
 
 
 class JogCross(TouchPanel):
@@ -66,13 +69,26 @@ class JogCross(TouchPanel):
 
     def draw_cross(self, painter: ThemedPainter, area: QRectF) -> QRectF:
         """Draw the touch targets in a rectangle, and return the free area in the middle of the cross."""
-        u = self.theme.unit_px
-        columns = 1 + max(2, *(each.cell_column for each in self._directions))
-        wide, high = area.width() / columns, area.height() / 3
         for each in self._directions:
-            x, y = area.x() + each.cell_column * wide, area.y() + each.cell_row * high
-            self._target(painter, QRectF(x, y, wide - 0.8 * u, high - 0.6 * u), each)
-        return QRectF(area.x() + wide, area.y() + high, wide - 0.8 * u, high - 0.6 * u)
+            box = self.find_cell(area, each.cell_column, each.cell_row)
+            self._target(painter, box, each)
+        return self.find_cell(area, 1, 1)
+
+    def find_cell(self, area: QRectF, column: int, row: int) -> QRectF:
+        """Return the rectangle of a cell of the cross, which has three rows."""
+        u, wide, high = self.theme.unit_px, area.width() / self.column_count, area.height() / 3
+        return QRectF(area.x() + column * wide, area.y() + row * high, wide - 0.8 * u, high - 0.6 * u)
+
+    @property
+    def column_count(self) -> int:
+        """Return the number of columns of the cross."""
+        return 1 + max(2, *(each.cell_column for each in self._directions))
+
+    @property
+    def has_free_top_corners(self) -> bool:
+        """Return whether no axis uses the upper left and the upper right cell of the cross."""
+        corners = {(0, 0), (self.column_count - 1, 0)}
+        return not corners & {(each.cell_column, each.cell_row) for each in self._directions}
 
     def _target(self, painter: ThemedPainter, box: QRectF, direction: JogDirection) -> None:
         u, held = self.theme.unit_px, self._hold.active_jog
@@ -95,7 +111,7 @@ class JogCross(TouchPanel):
         mark = self.axis_suffix if axis in "XYZ" else ""
         name = f"{direction.displayed_axis_name or axis}{mark}{'+' if sign > 0 else '−'}"
         painter.draw_text_line(aside, name, 3.4, "on_state" if moving else "text", at=ALIGN_CENTER)
-        corner = box.adjusted(0.8 * u, 0.3 * u, 0, 2.4 * u - box.height())
+        corner = QRectF(box.x() + 0.5 * u, box.y() + 0.2 * u, box.width(), self.theme.find_line_height(2.1))
         painter.draw_text_line(corner, direction.label, 1.5, "on_state" if moving else "soft")
         self.controls.append(self._make_control(box, axis, sign))
 

@@ -24,7 +24,8 @@ from app.jog.jog_homing import HomingState
 from app.jog.jog_model import JogModel
 from app.offsets.offset_values import UnitMode
 from app.screen.panel import RedrawingAttribute, TouchControl, make_press_control
-from app.screen.screen_theme import ALIGN_CENTER, ScreenTheme, ThemedPainter
+from app.screen.screen_theme import ALIGN_CENTER, MIN_STRETCH, ScreenTheme, ThemedPainter, measure_text
+from app.screen.text_sizes import TextRole
 from app.screen.window_layout import FINGERTIP_PX
 from core.executor.snapshot import Snapshot
 from core.message import Message
@@ -59,8 +60,9 @@ def draw_tiles(
     """Draw a row of tiles and return the rectangle and the action of each tile."""
     u, left = painter.theme.unit_px, row.x()
     if tiles.name_and_key[0]:
-        left += NAME_WIDTH * u
-        _name(painter, QRectF(row.x(), row.y(), (NAME_WIDTH - 0.6) * u, row.height()), tiles.name_and_key)
+        wide = _find_name_width(painter, row, tiles.name_and_key[0])
+        left += wide
+        _name(painter, QRectF(row.x(), row.y(), wide - 0.6 * u, row.height()), tiles.name_and_key)
     shares = [1.0 + 0.11 * max(0, len(word) - SHORT_LABEL_LENGTH) for word in tiles.tile_labels]
     part = (row.right() - left + 0.6 * u) / sum(shares)
     boxes = []
@@ -70,6 +72,14 @@ def draw_tiles(
         _draw_tile(painter, box, word, tiles, number)
         boxes.append(box)
     return list(zip(boxes, tiles.tile_actions, strict=True))
+
+
+def _find_name_width(painter: ThemedPainter, row: QRectF, name: str) -> float:
+    """Return the width for the name of a row, so that a long name is neither cut off nor too small."""
+    look = painter.theme
+    size = look.find_em_height(1.5, TextRole.TABLE, row.height() / 2)
+    needed = measure_text(name, look.make_font(size, is_bold=True)) * MIN_STRETCH / 100 + look.unit_px
+    return min(0.3 * row.width(), max(NAME_WIDTH * look.unit_px, needed))
 
 
 def _name(painter: ThemedPainter, box: QRectF, name: tuple[str, str]) -> None:
@@ -201,28 +211,40 @@ class JogPad(JogCross):
         rows = self._make_row_drawers(room)
         high = self._tile_height(room, len(rows) + 1) + 0.6 * u
         row = QRectF(room.x(), room.y(), room.width(), high - 0.6 * u)
+        foot = QRectF(room.x(), room.bottom() - high + 0.6 * u, room.width(), high - 0.6 * u)
+        top = room.y() + len(rows) * high
+        cross = QRectF(room.x(), top, room.width(), foot.y() - top - 0.6 * u)
+        if not self._has_step_rows(room) and self.has_free_top_corners:
+            self._draw_corner_keys(painter, cross)
         for draw in rows:
             draw(painter, row)
             row = row.translated(0, high)
-        foot = QRectF(room.x(), room.bottom() - high + 0.6 * u, room.width(), high - 0.6 * u)
         self._homing(painter, foot)
-        middle = self.draw_cross(
-            painter, QRectF(room.x(), row.y(), room.width(), foot.y() - row.y() - 0.6 * u)
-        )
-        self._draw_middle(painter, middle)
+        self._draw_middle(painter, self.draw_cross(painter, cross))
 
     def _make_row_drawers(self, area: QRectF) -> list[DrawTileRow]:
         """Return the functions that draw the rows above the cross of arrow keys.
 
-        If the height is small, steps and speeds share one row.
+        If the height is small, steps and speeds share one row, or are in the free corners of the cross.
         """
         wheel: list[DrawTileRow] = [self._draw_wheel] if self._model.handwheel.is_available else []
-        both: list[DrawTileRow] = [self._steps, self._speeds]
-        needed = (
-            self.theme.find_key_rows_height(len(both) + len(wheel) + 1 + CROSS_ROW_COUNT)
-            + 0.6 * self.theme.unit_px
-        )
-        return [*(both if area.height() >= needed else [self._draw_steps_and_speeds]), *wheel]
+        if self._has_step_rows(area):
+            return [self._steps, self._speeds, *wheel]
+        return [*([] if self.has_free_top_corners else [self._draw_steps_and_speeds]), *wheel]
+
+    def _has_step_rows(self, area: QRectF) -> bool:
+        """Return whether steps and speeds have a row each, because all rows are as high as a fingertip."""
+        rows = 2 + self._model.handwheel.is_available + 1 + CROSS_ROW_COUNT
+        return area.height() >= self.theme.find_key_rows_height(rows) + 0.6 * self.theme.unit_px
+
+    def _draw_corner_keys(self, painter: ThemedPainter, cross: QRectF) -> None:
+        """Draw the jog step, the jog speed and RAPID in the free upper corners of the cross."""
+        step, speed, rapid = self._list_step_and_speed_tiles()
+        self._tiles(painter, self.find_cell(cross, 0, 0), step)
+        right = self.find_cell(cross, self.column_count - 1, 0)
+        half = 0.5 * right.width()
+        self._tiles(painter, right.adjusted(0, 0, -half - 0.2 * self.theme.unit_px, 0), speed)
+        self._tiles(painter, right.adjusted(half, 0, 0, 0), rapid)
 
     def _tile_height(self, area: QRectF, rows: int) -> float:
         """Return the height of a tile row in pixels.
@@ -235,7 +257,15 @@ class JogPad(JogCross):
         return max(min(finger, float(FINGERTIP_PX)), ROW * u, min(finger, left / rows - 0.6 * u))
 
     def _draw_steps_and_speeds(self, painter: ThemedPainter, row: QRectF) -> None:
-        """Draw the jog step, the jog speed and RAPID in one row.
+        """Draw the jog step, the jog speed and RAPID in one row."""
+        step, speed, rapid = self._list_step_and_speed_tiles()
+        labels = (*step.tile_labels, *speed.tile_labels, *rapid.tile_labels)
+        actions = (*step.tile_actions, *speed.tile_actions, *rapid.tile_actions)
+        chosen = 2 if rapid.selected_index == 0 else -1
+        self._tiles(painter, row, TileRow(("", ""), labels, actions, chosen, is_warning=True))
+
+    def _list_step_and_speed_tiles(self) -> tuple[TileRow, TileRow, TileRow]:
+        """Return the tiles for the jog step, the jog speed and RAPID.
 
         The step and speed tiles have the functions of F2 and F3.
         """
@@ -248,16 +278,13 @@ class JogPad(JogCross):
                 model.jog_speeds.format_step(turning, mode, step) if turning else make_step_labels(mode)[step]
             )
         speeds = make_rotary_speed_labels() if self._active_rotary_axis else make_speed_labels(mode)
-        words = (f"F2 {said}", f"F3 {speeds[model.jog_speeds.speed_index]}", tr("RAPID"))
-        chosen = 2 if model.held_jog.is_rapid_armed else -1
-        tiles = TileRow(
-            ("", ""),
-            words,
-            [model.select_next_step, model.select_next_speed, model.toggle_rapid],
-            chosen,
-            is_warning=True,
+        speed = f"F3 {speeds[model.jog_speeds.speed_index]}"
+        chosen = 0 if model.held_jog.is_rapid_armed else -1
+        return (
+            TileRow(("", ""), (f"F2 {said}",), [model.select_next_step]),
+            TileRow(("", ""), (speed,), [model.select_next_speed]),
+            TileRow(("", ""), (tr("RAPID"),), [model.toggle_rapid], chosen, is_warning=True),
         )
-        self._tiles(painter, row, tiles)
 
     def _steps(self, painter: ThemedPainter, row: QRectF) -> None:
         model = self._model

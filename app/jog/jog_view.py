@@ -82,7 +82,8 @@ class ManualFunctionPanel(TouchPanel):
         """
         self.controls.clear()
         self.frame(painter, tr("MANUAL FUNCTIONS  ·  PICK, THEN CYCLE START"))
-        u, room, hand = self.theme.unit_px, self.inside(), self._model.manual_functions
+        u, hand = self.theme.unit_px, self._model.manual_functions
+        room = self.inside().adjusted(0, -0.4 * u, 0, 0.6 * u)
         rows = 4 if CLOSE in hand.available_functions else 3
         high = (room.height() + 0.6 * u) / rows
         row = QRectF(room.x(), room.y(), room.width(), high - 0.6 * u)
@@ -318,6 +319,10 @@ class JogPage(HeldKeysPage):
         }
         return frozenset(key for key, why in found.items() if why)
 
+    def needs_height(self) -> bool:
+        """Return whether the number pad is shown."""
+        return self.model.is_entry_open
+
     def has_text_field(self) -> bool:
         """Return whether the operator is entering a tool value or the spindle speed."""
         return self.model.is_entry_open
@@ -351,7 +356,9 @@ class JogPage(HeldKeysPage):
         self.manual_panel.setVisible(hand.is_panel_shown)
         self.mill_panel.setVisible(self.model.is_mill and not hand.is_panel_shown)
         self.tool_panel.setVisible(not self.model.is_mill and not hand.is_panel_shown)
-        self.entry_panel.setVisible(entering)
+        if entering is self.entry_panel.isHidden():
+            self.entry_panel.setVisible(entering)
+            self._arrange_parts()
         self.manual_strip.setVisible(not entering)
         self.manual_panel.show_functions(snapshot)
         if self.model.is_mill:
@@ -381,6 +388,10 @@ class JogPage(HeldKeysPage):
         self.manual_strip.show_keys(snapshot, tool.offset_history.last_change_text, foot)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
+        """Arrange the parts of the page for its new size."""
+        self._arrange_parts()
+
+    def _arrange_parts(self) -> None:
         """Arrange the jog pad on the left, and the tool panel above the entry line on the right."""
         u, gap = self.theme.unit_px, max(4, round(0.7 * self.theme.unit_px))
         left = round(WIDE * self.width())
@@ -389,9 +400,9 @@ class JogPage(HeldKeysPage):
         wide, asked = self.width() - left - gap, round(ASKED * u)
         strip = round(find_strip_key_height(self.theme) + WORDS * u)
         sides: tuple[tuple[QWidget, int], ...] = (
-            (self.tool_panel, asked),
+            (self.tool_panel, strip if self.entry_panel.isHidden() else asked),
             (self.mill_panel, strip),
-            (self.manual_panel, asked),
+            (self.manual_panel, strip if self.entry_panel.isHidden() else asked),
         )
         for side, foot in sides:
             side.setGeometry(left + gap, 0, wide, self.height() - foot - gap)

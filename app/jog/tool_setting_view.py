@@ -41,7 +41,7 @@ DISPLAYED_TOOL_FIELDS = (
     ("remark", "K"),
     ("master", "M"),
 )
-ROW_COUNT = len(DISPLAYED_TOOL_FIELDS) // 2
+COLUMN_COUNT, LOW_COLUMN_COUNT = 2, 4  # Columns of the fields, and those of a low panel.
 _FIELD_QUESTIONS = {"x": TOUCH_X, "z": TOUCH_Z}
 
 
@@ -99,14 +99,21 @@ class ToolSettingPanel(Panel):
         self.frame(painter, join_messages("  ·  ", (tr("TOOL SETTING"), unit)))
         u = self.theme.unit_px
         room = self.inside().adjusted(-0.3 * u, 0, 0.3 * u, 0.3 * u)
-        cells = ROW_COUNT * (FINGERTIP_PX + 0.5 * u)  # Each cell is a touch target.
-        high = min(10.5 * u, 0.36 * room.height(), max(room.height() - cells, 7.0 * u))
+        cells = self._find_row_count(room) * (FINGERTIP_PX + 0.5 * u)  # Each cell is a touch target.
+        lines = 2 * self.theme.find_line_height(2.0)
+        high = min(max(10.5 * u, lines), 0.36 * room.height(), max(room.height() - cells, lines))
         head = QRectF(room.x(), room.y(), room.width(), high)
         self._draw_head(painter, head)
         rest = QRectF(
             room.x(), head.bottom() + 0.5 * u, room.width(), room.bottom() - head.bottom() - 0.5 * u
         )
         self._cells(painter, rest)
+
+    def _find_row_count(self, room: QRectF) -> int:
+        """Return the number of rows of fields, which is smaller in a low panel."""
+        rows = len(DISPLAYED_TOOL_FIELDS) // COLUMN_COUNT
+        low = room.height() < rows * FINGERTIP_PX + self.theme.find_line_height(7.0)
+        return len(DISPLAYED_TOOL_FIELDS) // LOW_COLUMN_COUNT if low else rows
 
     def _draw_head(self, painter: ThemedPainter, area: QRectF) -> None:
         """Draw the tool number, the tip quadrant and the tip position."""
@@ -130,14 +137,14 @@ class ToolSettingPanel(Panel):
         self._stands(painter, area.adjusted(tip.right() + 1.2 * u - area.x(), 0, 0, 0))
 
     def _stands(self, painter: ThemedPainter, room: QRectF) -> None:
-        u, mode = self.theme.unit_px, self.displayed_unit_mode
+        u, mode, line = self.theme.unit_px, self.displayed_unit_mode, self.theme.find_line_height(2.0)
         painter.draw_text_line(
-            QRectF(room.x(), room.y(), room.width(), 2.0 * u), self.tip_position_heading, 1.5, "soft"
+            QRectF(room.x(), room.y(), room.width(), line), self.tip_position_heading, 1.5, "soft"
         )
-        high = (room.height() - 2.0 * u) / 2
+        high = (room.height() - line) / 2
         if self._tip is None:
             painter.draw_text_line(
-                room.adjusted(0, 2 * u, 0, 0),
+                room.adjusted(0, line, 0, 0),
                 describe_missing_offset(is_unreadable=self._model.tool_setting.offset_book.has_read_failed),
                 2.8,
                 "soft",
@@ -152,15 +159,17 @@ class ToolSettingPanel(Panel):
             ("Z", format_length(z, mode.is_metric)),
         )
         for number, (name, figure) in enumerate(axis_texts):
-            row = QRectF(room.x(), room.y() + 2.0 * u + number * high, room.width(), high)
+            row = QRectF(room.x(), room.y() + line + number * high, room.width(), high)
             painter.draw_text_line(row, name, 2.2, "accent")
             painter.draw_text_line(row.adjusted(5 * u, 0, 0, 0), figure, 3.4, "text", at=ALIGN_RIGHT)
 
     def _cells(self, painter: ThemedPainter, room: QRectF) -> None:
         u = self.theme.unit_px
-        high, wide = (room.height() + 0.5 * u) / ROW_COUNT, (room.width() + 0.6 * u) / 2
+        rows = self._find_row_count(self.inside())
+        columns = len(DISPLAYED_TOOL_FIELDS) // rows
+        high, wide = (room.height() + 0.5 * u) / rows, (room.width() + 0.6 * u) / columns
         for number, (name, key) in enumerate(DISPLAYED_TOOL_FIELDS):
-            row, column = divmod(number, 2)
+            row, column = divmod(number, columns)
             box = QRectF(room.x() + column * wide, room.y() + row * high, wide - 0.6 * u, high - 0.5 * u)
             self._cell(painter, box, name, key)
 
@@ -177,10 +186,15 @@ class ToolSettingPanel(Panel):
             f" {mark}" if mark else ""
         )
         self._key(painter, box, key)
-        upper = QRectF(box.x() + 3.4 * u, box.y() + 0.3 * u, box.width() - 4 * u, 2.2 * u)
+        line = self.theme.find_line_height(2.2)
+        half = min(line, 0.5 * box.height())
+        upper = QRectF(box.x() + 3.4 * u, box.y() + 0.1 * u, box.width() - 3.6 * u, half)
+        room = QRectF(box.x() + u, upper.bottom(), box.width() - 2 * u, box.bottom() - upper.bottom())
+        if box.height() < 1.9 * line and box.width() > 22 * u:  # The value is on the right of the label.
+            upper = QRectF(upper.x(), box.y(), 0.5 * box.width() - 3.4 * u, box.height())
+            room = QRectF(upper.right() + 0.3 * u, box.y(), 0.5 * box.width() - 0.8 * u, box.height())
         painter.draw_text_line(upper, label, 1.5, "soft")
         text = self._text(name)
-        room = QRectF(box.x() + u, box.y() + 2.3 * u, box.width() - 2 * u, box.height() - 2.5 * u)
         at = ALIGN_LEFT if name in {"remark", "master"} else ALIGN_RIGHT
         painter.draw_text_line(room, text, 2.5, "text", at=at, raw=name == "remark")
 
@@ -213,7 +227,15 @@ class ToolSettingPanel(Panel):
     def _key(self, painter: ThemedPainter, box: QRectF, key: str) -> None:
         u = self.theme.unit_px
         painter.draw_text_line(
-            QRectF(box.x() + 0.9 * u, box.y() + 0.3 * u, 2.4 * u, 2.2 * u), key, 1.7, "accent"
+            QRectF(
+                box.x() + 0.7 * u,
+                box.y() + 0.2 * u,
+                2.7 * u,
+                min(self.theme.find_line_height(2.2), box.height() - 0.4 * u),
+            ),
+            key,
+            1.7,
+            "accent",
         )
 
 

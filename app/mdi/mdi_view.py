@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -162,7 +163,12 @@ class MdiHistoryPanel(RowPanel):
 # --- modal state --------------------------------------------------------------------------------------
 
 
-LABEL_WIDTH_RATIO = 0.4  # Fraction of a row for its label.
+LABEL_WIDTH_RATIO = 0.44  # Fraction of a row for its label.
+
+
+def count_modal_columns(theme: ScreenTheme, height_px: int, row_count: int) -> int:
+    """Return the number of columns of the modal state, which is 2 if its rows would otherwise be too low."""
+    return 2 if height_px - 4.0 * theme.unit_px < row_count * theme.find_line_height(0.0) else 1
 
 
 class ModalStatePanel(Panel):
@@ -174,18 +180,23 @@ class ModalStatePanel(Panel):
         """Draw a label and a value for each row of the modal state."""
         self.frame(painter, tr("MODAL STATE"))
         u, room = self.theme.unit_px, self.inside()
-        high = min(2.7 * u, room.height() / max(1, len(self.rows)))
+        columns = count_modal_columns(self.theme, self.height(), len(self.rows))
+        count = max(1, math.ceil(len(self.rows) / columns))
+        wide = (room.width() + u) / columns
+        high = min(max(2.7 * u, self.theme.find_line_height(0.0)), room.height() / count)
         size = min(1.9, high / u * 0.78)
-        left = LABEL_WIDTH_RATIO * room.width()
+        left = LABEL_WIDTH_RATIO * wide
         for number, row in enumerate(self.rows):
-            box = QRectF(room.x(), room.y() + number * high, room.width(), high)
+            column, place = divmod(number, count)
+            box = QRectF(room.x() + column * wide, room.y() + place * high, wide - u, high)
             painter.draw_text_line(
-                QRectF(box.x(), box.y(), left - u, high), row.label, size, "soft", bold=False
+                QRectF(box.x(), box.y(), left - 0.4 * u, high), row.label, size, "soft", bold=False
             )
             painter.draw_text_line(box.adjusted(left, 0, 0, 0), row.active_code, size, "text")
 
 
-LINE, STATE = 15.6, 46.0  # Units: height of the line, width of the modal state.
+# Units: height of the line, and widths of the modal state with one and two columns.
+LINE, STATE, WIDE_STATE = 15.6, 46.0, 72.0
 
 
 class MdiPage(ModelPage):
@@ -235,9 +246,14 @@ class MdiPage(ModelPage):
         if self.model.accepts_input:
             self.model.recall_line(back)
 
+    def needs_height(self) -> bool:
+        """Return whether the letter keyboard is shown."""
+        return not self.letter_pad.isHidden()
+
     def _toggle_letter_pad(self) -> None:
         """Show the letter keyboard instead of the history, or the history instead of the letter keyboard."""
         self.letter_pad.setVisible(self.letter_pad.isHidden())
+        self._arrange_parts()
         self.letter_pad.raise_()
 
     def has_text_field(self) -> bool:
@@ -286,7 +302,11 @@ class MdiPage(ModelPage):
         self.code_list.refresh()
         angle = snapshot.demand[2] - snapshot.modal.offset_c
         point = Checkpoint(snapshot.modal, c=angle, kept=snapshot.kept)
-        self.modal_panel.rows = make_modal_rows(point, self.desk.machine.program_language)
+        rows = make_modal_rows(point, self.desk.machine.program_language)
+        if len(rows) != len(self.modal_panel.rows):
+            self.modal_panel.rows = rows
+            self._arrange_parts()
+        self.modal_panel.rows = rows
 
     def _show_first_move(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Draw the first move of a prepared line over the program path, in place of the history."""
@@ -305,9 +325,19 @@ class MdiPage(ModelPage):
         self.path_view.redraw()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
+        """Arrange the parts of the page for its new size."""
+        self._arrange_parts()
+
+    def _arrange_parts(self) -> None:
         """Arrange the input line above the history on the left, and the modal state on the right."""
         u = self.theme.unit_px
-        gap, high, state = max(4, round(0.7 * u)), round(LINE * u), round(STATE * u)
+        gap, high = max(4, round(0.7 * u)), round(min(LINE * u, 0.4 * self.height()))
+        columns = count_modal_columns(self.theme, self.height(), len(self.modal_panel.rows))
+        state = round((STATE if columns == 1 else WIDE_STATE) * u)
+        if self.needs_height():  # The keys must be as large as a fingertip.
+            high = max(round(6.5 * u), min(high, self.height() - self.letter_pad.min_height_px - gap))
+            state = round(STATE * u) if columns == 1 else -gap
+        self.modal_panel.setVisible(state > 0)
         wide = self.width() - state - gap
         self.line_panel.setGeometry(0, 0, wide, high)
         for part in (self.history_panel, self.path_view, self.code_list, self.letter_pad):

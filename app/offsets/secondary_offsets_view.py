@@ -20,25 +20,32 @@ from app.offsets.offsets_view import OffsetPage
 from app.offsets.secondary_offsets import SecondaryOffsetEntry
 from app.screen import page_table
 from app.screen.page_base import PageHost
-from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.panel import RedrawingAttribute
 from app.screen.screen_theme import ALIGN_RIGHT, ScreenTheme, ThemedPainter
+from app.screen.table_panel import LIST_KEYS, RowPanel
+from app.screen.window_layout import FINGERTIP_PX
 from core.executor.snapshot import Snapshot
 from core.message import join_messages
 from core.store.store_rows import SecondaryOffsetRow
 
 ROWS_PER_COLUMN = 16
+ENLARGED_HEIGHT = 6  # Fingertips: height of the enlarged view with its frame.
 ENLARGED_ROWS = 8  # Number of offsets in the enlarged view, half a column.
 TOUCH_HEIGHT = 6.8  # Units: height of a fingertip.
 # Fractions of the column width at which the number, X and Z end.
 _NUMBER, _X, _Z = 0.09, 0.42, 0.73
 
 
-class SecondaryOffsetTable(Panel):
+class SecondaryOffsetTable(RowPanel):
     """Table of the secondary offsets, with a filled row for the offset that is being edited.
 
     A bar marks the last changed row. A row of the full table is only a third as high as a fingertip. The
-    first touch therefore enlarges eight offsets, and the second touch selects one of them.
+    first touch therefore enlarges eight offsets, and the second touch selects one of them. If the rows would
+    be too low to read, both columns scroll together.
     """
+
+    is_list = False
+    scroll_step = 1
 
     offsets: RedrawingAttribute[Mapping[int, SecondaryOffsetRow]] = RedrawingAttribute({})
     first_enlarged_number = RedrawingAttribute(
@@ -93,12 +100,27 @@ class SecondaryOffsetTable(Panel):
         self.first_enlarged_number = first
 
     def _draw_all(self, painter: ThemedPainter, room: QRectF) -> None:
-        for number, box in enumerate(_make_boxes(room, ROWS_PER_COLUMN, 2.0 * self.theme.unit_px), start=1):
+        gap, fits = 2.0 * self.theme.unit_px, int(room.height() / self.theme.find_line_height(0.0))
+        fits = max(1, min(ROWS_PER_COLUMN, fits))
+        edited = (self._number - 1) % ROWS_PER_COLUMN if self._number else -1
+        room = self.draw_scroll_keys(painter, room, fits, ROWS_PER_COLUMN, edited)
+        for at, box in enumerate(_make_boxes(room, fits, gap)):
+            column, row = divmod(at, fits)
+            number = column * ROWS_PER_COLUMN + self.first_row + row + 1
             self._draw_row(painter, box, number, 1.0)
-        for at, box in enumerate(
-            _make_boxes(room, ROWS_PER_COLUMN // ENLARGED_ROWS, 2.0 * self.theme.unit_px)
-        ):
-            self.add_target(box, partial(self.enlarge_rows, at * ENLARGED_ROWS + 1))
+        self._add_zones(_make_boxes(room, 1, gap), fits)
+
+    def _add_zones(self, columns: list[QRectF], fits: int) -> None:
+        """Register the eight visible offsets of each half column as a touch target."""
+        for column, box in enumerate(columns):
+            high = box.height() / fits
+            for first in range(0, ROWS_PER_COLUMN, ENLARGED_ROWS):
+                top = max(first, self.first_row) - self.first_row
+                bottom = min(first + ENLARGED_ROWS, self.first_row + fits) - self.first_row
+                zone = QRectF(box.x(), box.y() + top * high, box.width(), (bottom - top) * high)
+                if zone.height() >= FINGERTIP_PX:
+                    number = column * ROWS_PER_COLUMN + first + 1
+                    self.add_target(zone, partial(self.enlarge_rows, number))
 
     def _draw_near(self, painter: ThemedPainter, room: QRectF) -> None:
         u = self.theme.unit_px
@@ -107,7 +129,7 @@ class SecondaryOffsetTable(Panel):
         for number, box in enumerate(
             _make_boxes(rows, ENLARGED_ROWS // 2, 0.8 * u), start=self.first_enlarged_number
         ):
-            spot = box.adjusted(0, 0, 0, -0.6 * u)
+            spot = box.adjusted(0, 0, 0, -0.3 * u)
             painter.fill_rect(spot, "key")
             self._draw_row(painter, spot, number, 1.25)
             self.add_target(spot, partial(self._choose_near, number))
@@ -183,6 +205,7 @@ class SecondaryOffsetsPage(OffsetPage):
     def __init__(self, host: PageHost, parent: QWidget) -> None:
         super().__init__(host, parent, SecondaryOffsetEntry(host.desk))
         self.content_panel = SecondaryOffsetTable(self.theme, self.model.select_offset, self)
+        self._is_enlarged = False  # Last layout.
 
     def handle_escape(self) -> bool:
         """Leave the enlarged view of eight offsets, or otherwise go back one step of the entry."""
@@ -190,6 +213,23 @@ class SecondaryOffsetsPage(OffsetPage):
             self.content_panel.enlarge_rows(0)
             return True
         return super().handle_escape()
+
+    def handle_key(self, key: str) -> bool:
+        """Scroll the table with the page, Home and End keys if no value is being entered."""
+        if key in LIST_KEYS and self.content_panel.isVisible() and not self.model.offset_number:
+            self.content_panel.scroll_by(self.content_panel.find_scroll_rows(key))
+            return True
+        return super().handle_key(key)
+
+    def _lay_out(self) -> None:
+        """Arrange the parts. In a low window, enlarged offsets also cover the entry line."""
+        super()._lay_out()
+        panel = self.content_panel
+        is_low = panel.height() < ENLARGED_HEIGHT * FINGERTIP_PX
+        is_covered = is_low and bool(panel.first_enlarged_number)
+        if is_covered:
+            panel.setGeometry(0, 0, panel.width(), self.height())
+        self.entry_panel.setVisible(not is_covered)
 
     def try_leave_page(self) -> bool:
         """Leave the enlarged view, discard unfinished entries, and allow the page to close."""
@@ -199,6 +239,9 @@ class SecondaryOffsetsPage(OffsetPage):
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
         """Update the displayed table with the offsets of the model."""
         super().refresh(snapshot, status, loaded)
+        if bool(self.content_panel.first_enlarged_number) is not self._is_enlarged:
+            self._is_enlarged = not self._is_enlarged
+            self._lay_out()
         model = self.model
         marked = {change.number for change in model.offset_history.last_changes}
         self.content_panel.is_unreadable = model.offset_book.has_read_failed

@@ -187,10 +187,10 @@ class Measurement:
     def _row(self, painter: QPainter, row: QRectF, pair: measuring.MeasurementRow, ink: str) -> None:
         look = self.pane.theme
         painter.setPen(look.get_color("soft"))
-        painter.setFont(look.fit_font(pair[0], 1.6, 0.5 * row.width(), is_bold=True))
+        painter.setFont(look.fit_font(pair[0], look.find_table_size(1.6), 0.5 * row.width(), is_bold=True))
         draw_text(painter, row, ALIGN_LEFT, pair[0])
         painter.setPen(look.get_color(ink))
-        painter.setFont(look.make_font(1.9, is_bold=True))
+        painter.setFont(look.make_font(look.find_table_size(1.9), is_bold=True))
         draw_text(painter, row, ALIGN_RIGHT, pair[1])
 
 

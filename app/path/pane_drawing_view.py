@@ -44,7 +44,7 @@ def draw_pane(
 def draw_view_title(painter: QPainter, theme: ScreenTheme, width_px: int, title: str) -> None:
     """Draw the title of the view above its panes."""
     u = theme.unit_px
-    wide = width_px - 4 * u
-    painter.setFont(theme.fit_font(title, 1.7, wide, is_bold=True))
+    wide, high = width_px - 4 * u, theme.title_height * u
+    painter.setFont(theme.fit_font(title, theme.find_table_size(1.7), wide, is_bold=True))
     painter.setPen(theme.get_color("soft"))
-    draw_text(painter, QRectF(2.2 * u, 0, wide, 2.0 * u), ALIGN_LEFT, title)
+    draw_text(painter, QRectF(2.2 * u, 0, wide, high), ALIGN_LEFT, title)

@@ -86,7 +86,7 @@ class PartTimeline:
             return  # There is not enough room for a time line.
         self._track = QRectF(left, area.center().y() - 0.5 * u, right - left, u)
         self._draw_line(painter)
-        painter.setFont(look.make_font(1.7, is_bold=True))
+        painter.setFont(look.make_font(look.find_table_size(1.7), is_bold=True))
         painter.setPen(look.get_color("soft" if player.follows_run else "text"))
         words = QRectF(right + 1.6 * u, area.y(), _TEXT_WIDTH * u, area.height() / 2)
         draw_text(
@@ -97,7 +97,7 @@ class PartTimeline:
         )
         shown = player.latest_result
         if shown is not None and shown.part_instant.line_number:
-            painter.setFont(look.make_font(1.6))
+            painter.setFont(look.make_font(look.find_table_size(1.6)))
             text = tr(Message("LINE {line}", line=shown.part_instant.line_number))
             draw_text(painter, words.translated(0, area.height() / 2 - 0.4 * u), ALIGN_LEFT, text)
 
@@ -125,7 +125,7 @@ class PartTimeline:
         painter.fillRect(box, look.get_color("lit" if lit else "key"))
         dim = "soft" if self.part_player.follows_run else "text"
         painter.setPen(look.get_color("on_lit" if lit else dim))
-        painter.setFont(look.make_font(size, is_bold=True))
+        painter.setFont(look.make_font(look.find_table_size(size), is_bold=True))
         draw_text(painter, box, ALIGN_CENTER, word)
 
     def _sign(self, painter: QPainter, box: QRectF, tone: StatusTone) -> None:

@@ -267,7 +267,7 @@ class PartPane(PathPane):
     def _draw_scales(self, painter: QPainter, projection: Projection) -> None:
         """Draw the Z scale at the bottom and the X scale at the left, in the unit of the program."""
         look, u = self.theme, self.theme.unit_px
-        painter.setFont(look.make_font(1.4))
+        painter.setFont(look.make_font(look.find_table_size(1.4)))
         unit = 1.0 if self.is_metric else 25.4
         step = next(
             (s for s in _TICK_STEPS_MM if s * unit * projection.pixels_per_mm >= _MIN_TICK_DISTANCE * u),

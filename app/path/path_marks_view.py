@@ -80,7 +80,12 @@ def draw_buttons(
         painter.fillRect(box, theme.get_color("lit" if lit else "key"))
         painter.setPen(theme.get_color("on_lit" if lit else "text"))
         painter.setFont(
-            theme.fit_font(sign, 1.6 if len(sign) > 1 else 2.8, wide - 0.4 * theme.unit_px, is_bold=True)
+            theme.fit_font(
+                sign,
+                theme.find_table_size(1.6) if len(sign) > 1 else 2.8,
+                wide - 0.4 * theme.unit_px,
+                is_bold=True,
+            )
         )
         draw_text(painter, box, ALIGN_CENTER, sign)
         add_target(box, press)
@@ -110,7 +115,7 @@ def draw_footer(
 ) -> None:
     """Draw the row below the panes, with the legend and the scale of each pane."""
     painter.fillRect(footer_area, theme.get_color("panel"))
-    painter.setFont(theme.make_font(1.5))
+    painter.setFont(theme.make_font(theme.find_table_size(1.5)))
     for room, projection in panes:
         below = QRectF(room.x(), footer_area.y(), room.width(), footer_area.height())
         left = (
@@ -166,7 +171,7 @@ def draw_border(painter: QPainter, theme: ScreenTheme, area: QRectF) -> None:
 def draw_title(painter: QPainter, theme: ScreenTheme, area: QRectF, text: str, color: str = "soft") -> None:
     """Draw the title or status of a pane in its upper left corner."""
     u = theme.unit_px
-    painter.setFont(theme.fit_font(text, 1.6, area.width() - 2 * u, is_bold=True))
+    painter.setFont(theme.fit_font(text, theme.find_table_size(1.6), area.width() - 2 * u, is_bold=True))
     box = QRectF(area.x() + 1.2 * u, area.y() + 0.9 * u, area.width() - 2 * u, 2 * u)
     long = min(QFontMetricsF(painter.font()).horizontalAdvance(tr(text)), box.width())
     painter.fillRect(
@@ -179,7 +184,7 @@ def draw_title(painter: QPainter, theme: ScreenTheme, area: QRectF, text: str, c
 def draw_no_path_reason(painter: QPainter, theme: ScreenTheme, area: QRectF, reason: str) -> None:
     """Draw the reason why no path is shown."""
     painter.setPen(theme.get_color("soft"))
-    painter.setFont(theme.fit_font(reason, 2.0, area.width()))
+    painter.setFont(theme.fit_font(reason, theme.find_table_size(2.0), area.width()))
     painter.setBrush(Qt.BrushStyle.NoBrush)
     draw_text(painter, area, ALIGN_CENTER, reason)
 
@@ -269,12 +274,15 @@ def make_leg_labels(
 
 
 def _label_box(look: ScreenTheme, at: QPointF, text: str) -> QRectF:
-    wide = QFontMetricsF(look.make_font(1.6, is_bold=True)).horizontalAdvance(text) + 1.2 * look.unit_px
+    wide = (
+        QFontMetricsF(look.make_font(look.find_table_size(1.6), is_bold=True)).horizontalAdvance(text)
+        + 1.2 * look.unit_px
+    )
     return QRectF(at.x() - wide / 2, at.y() - 1.2 * look.unit_px, wide, 2.4 * look.unit_px)
 
 
 def _label(painter: QPainter, look: ScreenTheme, box: QRectF, text: str) -> None:
-    painter.setFont(look.make_font(1.6, is_bold=True))
+    painter.setFont(look.make_font(look.find_table_size(1.6), is_bold=True))
     painter.fillRect(box, look.get_color("lit"))
     painter.setPen(look.get_color("on_lit"))
     draw_text(painter, box, ALIGN_CENTER, text)
@@ -377,7 +385,7 @@ def _draw_c_circle(painter: QPainter, theme: ScreenTheme, projection: Projection
     painter.setBrush(Qt.BrushStyle.NoBrush)
     painter.setPen(_pen(theme, [3, 4]))
     painter.drawEllipse(middle, radius, radius)
-    painter.setFont(theme.make_font(1.5))
+    painter.setFont(theme.make_font(theme.find_table_size(1.5)))
     painter.setPen(theme.get_color("soft"))
     for degrees in QUARTER_ANGLES_DEG:
         at = math.radians(degrees)
@@ -405,7 +413,7 @@ def _draw_c_lines(painter: QPainter, theme: ScreenTheme, projection: Projection,
         projection.center_x - projection.height_px / 2 / projection.pixels_per_mm,
         projection.center_x + projection.height_px / 2 / projection.pixels_per_mm,
     )
-    painter.setFont(theme.make_font(1.5))
+    painter.setFont(theme.make_font(theme.find_table_size(1.5)))
     for number in range(math.ceil(-bottom / scale / step), math.floor(-top / scale / step) + 1):
         degrees = number * step
         row = round(float(projection.find_pixel_row(-degrees * scale))) + 0.5

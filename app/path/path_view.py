@@ -242,8 +242,9 @@ class PathView(Panel):
         The panes use the part of this area that the buttons do not cover.
         """
         u = self.theme.unit_px
-        bar = TIMELINE_HEIGHT if self.is_part_shown else FOOTER_HEIGHT
-        return self.find_full_area().adjusted(0.2 * u, 1.2 * u, -0.2 * u, -(0.2 + bar) * u).toRect().toRectF()
+        bar = TIMELINE_HEIGHT * u if self.is_part_shown else self.theme.find_line_height(FOOTER_HEIGHT)
+        top = 0.5 * self.theme.title_height + 0.2
+        return self.find_full_area().adjusted(0.2 * u, top * u, -0.2 * u, -0.2 * u - bar).toRect().toRectF()
 
     # --- navigation ----------------------------------------------------------------------------------
 

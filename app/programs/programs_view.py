@@ -62,7 +62,7 @@ class ProgramDetailPanel(Panel):
         if self.error_text:
             rows.append(("PREVIEW", self.error_text))
         room = self.inside()
-        high = min(3.0 * u, room.height() / max(1, len(rows)))
+        high = min(self.theme.find_line_height(3.0), room.height() / max(1, len(rows)))
         self._draw_part(painter, high * preview_row_count)
         for number, (label, text) in enumerate(rows):
             y = room.y() + number * high

@@ -22,7 +22,7 @@ from app.screen.window.key_table import MENU_KEYS
 from app.screen.window_layout import FINGERTIP_PX
 from core.executor.snapshot import Snapshot
 
-COLUMN_COUNT = 2
+COLUMN_COUNT, LOW_COLUMN_COUNT = 2, 4  # A low menu has more columns and does not describe the pages.
 
 
 class MenuPage(Page):
@@ -102,25 +102,37 @@ class _MenuTiles(Panel):
 
     def draw(self, painter: ThemedPainter) -> None:
         u, room = self.theme.unit_px, self.inside()
-        rows = -(-len(self._entries) // COLUMN_COUNT)
-        wide, high = room.width() / COLUMN_COUNT, min(room.height() / rows, 13.0 * u)
+        columns = COLUMN_COUNT
+        rows = -(-len(self._entries) // columns)
+        if room.height() / rows < 2 * self.theme.find_line_height(2.2) + u:
+            columns = LOW_COLUMN_COUNT
+            rows = -(-len(self._entries) // columns)
+        wide, high = room.width() / columns, min(room.height() / rows, 13.0 * u)
         tall = max(high - u, min(high, FINGERTIP_PX))
         for number, entry in enumerate(self._entries):
             column, row = divmod(number, rows)
             box = QRectF(room.x() + column * wide, room.y() + row * high, wide - u, tall)
-            self._tile(painter, box, entry)
+            self._tile(painter, box, entry, is_described=columns == COLUMN_COUNT)
             press = partial(self._press, MENU_KEYS.get(entry.key, entry.key))
             self.add_target(box, press, is_disabled=entry.key in self.disabled_pages)
 
-    def _tile(self, painter: ThemedPainter, box: QRectF, entry: PageDescription) -> None:
+    def _tile(
+        self, painter: ThemedPainter, box: QRectF, entry: PageDescription, *, is_described: bool
+    ) -> None:
         u = self.theme.unit_px
         barred = entry.key in self.disabled_pages
         ink = "soft" if barred else "accent"
         painter.draw_box(box, "frame" if barred else "accent", 0.2, "panel" if barred else "key")
+        key_width = 8 * u if is_described else 6 * u
         painter.draw_text_line(
-            QRectF(box.x() + u, box.y(), 8 * u, box.height()), entry.key, 3.4, ink, at=ALIGN_CENTER
+            QRectF(box.x() + 0.5 * u, box.y(), key_width, box.height()), entry.key, 3.4, ink, at=ALIGN_CENTER
         )
-        text = box.adjusted(10.5 * u, 0.14 * box.height(), -1.5 * u, -0.14 * box.height())
+        if not is_described:
+            name = box.adjusted(key_width + u, 0, -0.4 * u, 0)
+            painter.draw_text_line(name, entry.name, 2.4, "soft" if barred else "text")
+            return
+        edge = max(0.0, min(0.14 * box.height(), 0.5 * box.height() - self.theme.find_line_height(2.4)))
+        text = box.adjusted(10.0 * u, edge, -0.8 * u, -edge)
         text.setHeight(text.height() / 2)
         painter.draw_text_line(text, entry.name, 3.0, "soft" if barred else "text")
         painter.draw_text_line(text.translated(0, text.height()), entry.use, 1.9, "soft", bold=False)

@@ -27,6 +27,7 @@ first opened. A page may override the following members:
 - ``accepts_key(key)``: whether this character is text input. Lamps then do not show it as their key.
 - ``has_text_field()``: whether an input field has the keyboard focus. Only then is a caret drawn, and
   every character belongs to the field.
+- ``needs_height()``: whether large touch targets are shown, which a low window must have room for.
 - ``find_pending_question()``: a question of the page, which has priority on the prompt line.
 - ``prompt_text()``: the text of the prompt line if there is no message and no alarm.
 - ``find_marked_help()``: help about the marked word, field or function, which the key ``?`` shows first.
@@ -188,6 +189,10 @@ class Page(QWidget):
 
     def is_animating(self) -> bool:
         """Return whether the page shows an animation or live measurements."""
+        return False
+
+    def needs_height(self) -> bool:
+        """Return whether large touch targets are shown, so that a low window has no large position."""
         return False
 
     def find_pending_question(self) -> str:

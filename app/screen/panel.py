@@ -20,6 +20,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
 from app.screen.screen_theme import ALIGN_CENTER, ALIGN_LEFT, ScreenTheme, ThemedPainter, draw_text
+from app.screen.text_sizes import TextRole
 
 OnPress = Callable[[], None]
 T = TypeVar("T")
@@ -201,13 +202,16 @@ class Panel(QWidget):
     def inside(self) -> QRectF:
         """Return the rectangle inside the frame and below its title, in pixels."""
         u = self.theme.unit_px
-        return self.find_full_area().adjusted(1.2 * u, 2.6 * u, -1.2 * u, -0.9 * u)
+        return self.find_full_area().adjusted(
+            1.2 * u, (self.theme.title_height + 0.6) * u, -1.2 * u, -0.9 * u
+        )
 
     def frame(self, painter: ThemedPainter, title: str, color: str = "frame", width: float = 0.16) -> None:
         """Draw a frame with a title in its top edge, in the style of text-mode programs."""
         look, u, title = self.theme, self.theme.unit_px, tr(title)
         self._titled = title
-        top = 1.0 * u
+        high = look.title_height * u
+        top = 0.5 * high
         pen = look.make_pen(color, width)
         half = pen.widthF() / 2
         box = self.find_full_area().adjusted(half, top, -half, -half)
@@ -217,14 +221,15 @@ class Panel(QWidget):
         painter.setPen(QPen(pen))
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.drawRect(box)
-        font = look.fit_font(title, 1.7, self.width() - 4 * u, is_bold=True)
+        size = look.find_em_height(1.7, TextRole.TABLE, high)
+        font = look.fit_font(title, size, self.width() - 4 * u, is_bold=True)
         painter.setFont(font)
         wide = QFontMetricsF(font).horizontalAdvance(title)
-        patch = QRectF(1.6 * u, 0.0, wide + 1.2 * u, 2.0 * u)
+        patch = QRectF(1.6 * u, 0.0, wide + 1.2 * u, high)
         painter.fillRect(
             QRectF(patch.x(), top - half - 1, patch.width(), 2 * half + 2), look.get_color("ground")
         )
-        painter.fill_rect(QRectF(patch.x(), top, patch.width(), 1.0 * u), "panel")
+        painter.fill_rect(QRectF(patch.x(), top, patch.width(), 0.5 * high), "panel")
         painter.setPen(look.get_color("soft"))
         draw_text(painter, patch.adjusted(0.6 * u, 0, 0, 0), ALIGN_LEFT, title)
 

@@ -67,7 +67,8 @@ class ProgramListing(RowPanel):
     @property
     def _high(self) -> float:
         """Return the line spacing in pixels."""
-        return self.theme.find_row_height(ROW, MM, is_touchable=self.on_line_touched is not None)
+        high = self.theme.find_row_height(ROW, MM, is_touchable=self.on_line_touched is not None)
+        return max(high, self.theme.find_line_height(0.0))
 
     @property
     def _text_scale(self) -> float:
@@ -103,7 +104,8 @@ class ProgramListing(RowPanel):
         self.frame(
             painter, title if self.follows_run else Message("{title}  ·  HOME: CURRENT LINE", title=title)
         )
-        room = QRectF(0.3 * u, 2.5 * u, self.width() - 0.6 * u, self.height() - 3.2 * u)
+        top = (self.theme.title_height + 0.2) * u
+        room = QRectF(0.3 * u, top, self.width() - 0.6 * u, self.height() - top - 0.3 * u)
         fits = self.count_fitting_rows(room, self._high, count)
         if self.follows_run:
             self.first_row = max(0, self._line - 1 - fits // 3)
@@ -143,23 +145,23 @@ class ProgramListing(RowPanel):
         if bad:
             painter.fill_rect(QRectF(row.x(), row.y(), 0.7 * u, row.height()), "alarm")
         scale = self._text_scale
-        wide = max(4, len(str(len(self._lines)))) * 1.2 * u * scale
+        wide = max(3, len(str(len(self._lines)))) * 0.64 * self.theme.find_table_size(1.9 * scale) * u
         margin = QRectF(row.x() + 1.2 * u, row.y(), wide, row.height())
         painter.draw_text_line(
             margin, str(number), 1.7 * scale, "alarm" if bad else "soft", at=ALIGN_RIGHT, bold=False
         )
-        text, room = self._lines[number - 1].expandtabs(4), row.adjusted(wide + 2.4 * u, 0, -0.8 * u, 0)
-        painter.draw_text_line(room, text, 2.1 * scale, "text", bold=here, raw=True, fit=False)
+        text, room = self._lines[number - 1].expandtabs(4), row.adjusted(wide + 2.0 * u, 0, -0.4 * u, 0)
+        painter.draw_text_line(room, text, 2.1 * scale, "text", bold=here, raw=True)
 
     def _block_row(self, painter: ThemedPainter, label: str, text: str, row: QRectF) -> None:
         u, runs = self.theme.unit_px, label == "BLOCK"
         ink = "accent" if runs else "soft"
         if runs:
             self._mark(painter, row)
-        head = QRectF(row.x() + 1.2 * u, row.y(), 5.6 * u, row.height())
+        head = QRectF(row.x() + 1.2 * u, row.y(), 6.4 * u, row.height())
         painter.draw_text_line(head, label, 1.6 * self._text_scale, ink)
-        room = row.adjusted(7.6 * u, 0, -0.8 * u, 0)
-        painter.draw_text_line(room, text, 2.0 * self._text_scale, ink, bold=runs, raw=True, fit=False)
+        room = row.adjusted(8.2 * u, 0, -0.4 * u, 0)
+        painter.draw_text_line(room, text, 2.0 * self._text_scale, ink, bold=runs, raw=True)
 
     def _mark(self, painter: ThemedPainter, row: QRectF) -> None:
         painter.fill_rect(row, "here")

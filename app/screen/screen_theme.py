@@ -28,7 +28,7 @@ from app.desk.status.machine_status import StatusTone
 from app.desk.translation import ENGLISH_CODE, Translate, set_translator, tr
 from app.screen.color_palettes import DARK_PALETTE, LIGHT_PALETTE, PALETTES, ColorPalette
 from app.screen.text_sizes import ScreenResolution, TextRole
-from app.screen.window_layout import FINGERTIP_PX
+from app.screen.window_layout import FINGERTIP_PX, TABLE_ROW, find_title_height_px
 from core.message import Message
 
 # B612 has digits of equal width, and an O that differs from a 0. In B612 Mono both look alike, and a gap
@@ -38,13 +38,10 @@ ALIGN_LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 ALIGN_RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 MIN_TEXT_SIZE = 1.35  # Units: the smallest text.
 MIN_ROW_PX = 20.0  # Pixels: a line of text.
-_GROWN = 1.6  # Largest factor by which a text of a table is enlarged for the distance.
-_ROW_SHARE = {
-    TextRole.TABLE: 0.9,
-    TextRole.PROMPT: 0.95,
-}  # Largest em height as a ratio to the height of the row.
-_ALONE = 1.1  # The same ratio for digits and capitals that have their row for themselves.
+# Largest em height as a ratio to the height of the row. Capitals and digits have no descenders.
+_ROW_SHARE, _CAPITALS_ROW_SHARE = 1.0, 1.15
 MIN_TEXT_SCALE = 0.6  # A translation may be drawn at this fraction of its text size.
+MIN_STRETCH = 65  # Percent: a text that is too wide is drawn with letters of this width at the least.
 ALIGN_CENTER = Qt.AlignmentFlag.AlignCenter
 
 
@@ -77,12 +74,14 @@ class ScreenTheme:
         self.screen = ScreenResolution()
         self._colours: dict[str, QColor] = {}
         self._fonts: dict[tuple[float, bool], QFont] = {}
+        self._narrow_fonts: dict[tuple[int, bool, int], QFont] = {}  # By pixel size, weight and stretch.
 
     def set_unit_px(self, unit_px: float) -> None:
         """Set the size unit of the theme in pixels."""
         if unit_px != self.unit_px:
             self.unit_px = unit_px
             self._fonts.clear()
+            self._narrow_fonts.clear()
 
     def find_row_height(
         self, height_units: float, max_height_mm: float, *, is_touchable: bool = False
@@ -107,16 +106,33 @@ class ScreenTheme:
         """
         return math.ceil(row_count * FINGERTIP_PX + (row_count - 1) * 0.6 * self.unit_px)
 
-    def find_em_height(self, size: float, role: TextRole, row_height_px: float) -> float:
-        """Return the em height in units for a text in a row that is ``row_height_px`` pixels high.
+    def find_em_height(
+        self, size: float, role: TextRole, row_height_px: float, *, has_descenders: bool = False
+    ) -> float:
+        """Return the em height, in units, of a text in a row that is ``row_height_px`` pixels high.
 
-        The height is at least ``size``. It is larger if the role of the text requires this on the screen
-        and the row is high enough.
+        The height is at least ``size``. It is larger if the role of the text requires this on a screen of
+        this size and the row is high enough. Letters with descenders need a higher row.
         """
         least = self.screen.find_min_em_px(role) / self.unit_px
-        room = row_height_px / self.unit_px * _ROW_SHARE.get(role, _ALONE)
-        most = min(room, size * _GROWN) if role is TextRole.TABLE else room
-        return max(size, min(least, most))
+        share = _ROW_SHARE if has_descenders else _CAPITALS_ROW_SHARE
+        return max(size, min(least, row_height_px / self.unit_px * share))
+
+    def find_table_size(self, size: float) -> float:
+        """Return the em height, in units, of a value or label that is at least ``size`` units high."""
+        return max(size, self.screen.find_min_em_px(TextRole.TABLE) / self.unit_px)
+
+    def find_line_height(self, height_units: float) -> float:
+        """Return the height of a line of a table in pixels.
+
+        The height is ``height_units``, or what the smallest permitted text needs on this screen.
+        """
+        return max(height_units * self.unit_px, TABLE_ROW * self.screen.find_min_em_px(TextRole.TABLE))
+
+    @property
+    def title_height(self) -> float:
+        """Return the height of the title of a frame in units."""
+        return find_title_height_px(self.unit_px, self.screen) / self.unit_px
 
     def set_palette(self, palette: ColorPalette) -> None:
         """Use the colors of another palette from now on."""
@@ -150,30 +166,54 @@ class ScreenTheme:
         return QPen(self.get_color(color_name), max(1.0, width * self.unit_px))
 
     def fit_font(self, text: str, size: float, width: float, *, is_bold: bool = False) -> QFont:
-        """Return the font of this size, or a smaller font with which ``text`` fits in ``width`` pixels.
+        """Return the font of this size, or a narrower font with which ``text`` fits in ``width`` pixels.
 
-        The font always remains large enough to read. A text that is still too long is elided when it is
-        drawn.
+        Only if the narrowest letters are too wide, the font is also lower. It always remains large enough to
+        read. A text that is still too long is elided when it is drawn.
         """
         font = self.make_font(size, is_bold=is_bold)
         wide = measure_text(tr(text), font)
         if wide <= width or wide <= 0:
             return font
-        smaller = QFont(font)
-        smaller.setPixelSize(max(round(MIN_TEXT_SIZE * self.unit_px), int(font.pixelSize() * width / wide)))
-        return smaller
+        pixels, stretch = find_narrow_size(font.pixelSize(), width / wide)
+        return self._make_narrow_font(
+            max(round(MIN_TEXT_SIZE * self.unit_px), pixels), stretch, is_bold=is_bold
+        )
+
+    def _make_narrow_font(self, pixels: int, stretch: int, *, is_bold: bool) -> QFont:
+        key = (pixels, is_bold, stretch)
+        if key not in self._narrow_fonts:
+            font = QFont(FONT_FAMILY)
+            font.setPixelSize(pixels)
+            font.setBold(is_bold)
+            font.setStretch(stretch)
+            self._narrow_fonts[key] = font
+        return self._narrow_fonts[key]
+
+
+def find_narrow_size(pixels: int, width_ratio: float) -> tuple[int, int]:
+    """Return the pixel size and stretch in percent of a font that is narrower by ``width_ratio``.
+
+    The letters become narrower first, and lower only beyond ``MIN_STRETCH``.
+    """
+    stretch = max(MIN_STRETCH, min(100, int(100 * width_ratio)))
+    return max(1, int(pixels * min(1.0, 100 * width_ratio / stretch))), stretch
 
 
 def draw_text(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> None:
     """Draw one line of a TurnDesk text, translated into the operator's language.
 
-    A translation that is too wide is drawn smaller, but remains readable. See also ``draw_raw_text``.
+    A translation that is too wide is drawn narrower or smaller, but remains readable. See also
+    ``draw_raw_text``.
     """
     shown, font = tr(text), painter.font()
     wide = measure_text(shown, font) if shown != text else 0.0
     if wide > rect.width() > 0:
         smaller = QFont(font)
-        smaller.setPixelSize(int(font.pixelSize() * max(MIN_TEXT_SCALE, rect.width() / wide)))
+        present = (font.stretch() or 100) / 100
+        pixels, stretch = find_narrow_size(font.pixelSize(), present * rect.width() / wide)
+        smaller.setPixelSize(max(pixels, int(font.pixelSize() * MIN_TEXT_SCALE)))
+        smaller.setStretch(stretch)
         painter.setFont(smaller)
         draw_raw_text(painter, rect, flags, shown)
         painter.setFont(font)
@@ -209,25 +249,26 @@ def measure_text(text: str, font: QFont) -> float:
     return _width(text, *_face(font))
 
 
-def _face(font: QFont) -> tuple[str, int, bool]:
-    return font.family(), font.pixelSize(), font.bold()
+def _face(font: QFont) -> tuple[str, int, bool, int]:
+    return font.family(), font.pixelSize(), font.bold(), font.stretch()
 
 
 @lru_cache(maxsize=4096)
-def _width(text: str, family: str, pixels: int, bold: bool) -> float:
-    return _metrics(family, pixels, bold).horizontalAdvance(text)
+def _width(text: str, family: str, pixels: int, bold: bool, stretch: int) -> float:
+    return _metrics(family, pixels, bold, stretch).horizontalAdvance(text)
 
 
 @cache
-def _capitals(family: str, pixels: int, bold: bool) -> float:
-    return _metrics(family, pixels, bold).capHeight()
+def _capitals(family: str, pixels: int, bold: bool, stretch: int) -> float:
+    return _metrics(family, pixels, bold, stretch).capHeight()
 
 
-def _metrics(family: str, pixels: int, bold: bool) -> QFontMetricsF:
+def _metrics(family: str, pixels: int, bold: bool, stretch: int) -> QFontMetricsF:
     font = QFont(family)
     if pixels > 0:  # Otherwise the default font size applies.
         font.setPixelSize(pixels)
     font.setBold(bold)
+    font.setStretch(stretch)
     return QFontMetricsF(font)
 
 
@@ -268,12 +309,27 @@ class ThemedPainter(QPainter):
         """
         look = self.theme
         room = rect.width() - margin * look.unit_px
-        size = look.find_em_height(size, role, rect.height()) if fit else size
+        if fit:
+            shown = text if raw else tr(text)
+            size = look.find_em_height(size, role, rect.height(), has_descenders=shown != shown.upper())
         self.setPen(look.get_color(ink))
         self.setFont(
             look.fit_font(text, size, room, is_bold=bold) if fit else look.make_font(size, is_bold=bold)
         )
         (draw_raw_text if raw else draw_text)(self, rect, at, text)
+
+    def draw_prepared_text(
+        self,
+        rect: QRectF,
+        at: Qt.AlignmentFlag,
+        text: str,
+        role: TextRole,  # noqa: ARG002 - the role is for tests that measure the heights of texts.
+    ) -> None:
+        """Draw one line of untranslated text with the current pen and font.
+
+        The caller has already found the font that the role of the text requires.
+        """
+        draw_raw_text(self, rect, at, text)
 
     def draw_wrapped_text(self, rect: QRectF, flags: int | Qt.AlignmentFlag | Qt.TextFlag, text: str) -> None:
         """Draw a text on several lines with the painter's current pen and font."""

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from app.screen.text_sizes import ScreenResolution, TextRole
+
 ACROSS, DOWN = 160.0, 90.0
 MIN_WINDOW_PX = (1024, 600)
 FINGERTIP_PX = 43  # Pixels: 9 mm on the smallest screen, which has a diagonal of 10 inches.
@@ -62,7 +64,7 @@ class AutomaticLayout(NamedTuple):
     keys: Rect
 
 
-HEAD, HEAD_MOVES = 7.4, 10.2  # Units: height of the low readouts.
+HEAD, HEAD_MOVES = 7.4, 10.2  # Units: smallest height of the readouts above a page.
 
 LOW_WINDOW_HEIGHT_PX = 700
 """Window height in pixels below which the rows above and below the page are smaller.
@@ -76,16 +78,38 @@ def find_unit_px(width_px: int, height_px: int) -> float:
     return min(width_px / ACROSS, height_px / DOWN)
 
 
-def make_automatic_layout(width: int, height: int, has_dock: bool) -> AutomaticLayout:
-    """Return the layout of the Automatic page for a window of this size in pixels."""
+_UNKNOWN_SCREEN = ScreenResolution()
+_TITLE_HEIGHT = 2.0  # Units: height of the title of a frame.
+# Height of a row of capitals and of a row of a table, as ratios to the em height of the text.
+_CAPITALS_ROW, TABLE_ROW = 0.82, 0.92
+_LATHE_AXIS_COUNT = 3
+
+
+def find_title_height_px(unit_px: float, screen: ScreenResolution) -> float:
+    """Return the height of the title of a frame in pixels."""
+    return max(_TITLE_HEIGHT * unit_px, TABLE_ROW * screen.find_min_em_px(TextRole.TABLE))
+
+
+def make_automatic_layout(
+    width: int, height: int, has_dock: bool, screen: ScreenResolution = _UNKNOWN_SCREEN
+) -> AutomaticLayout:
+    """Return the layout of the Automatic page for a window of this size in pixels.
+
+    The rows are high enough for the texts that the operator must be able to read on this screen.
+    """
     u = find_unit_px(width, height)
     gap = _gap(u)
     low = height < LOW_WINDOW_HEIGHT_PX
-    title_h, strip_h, prompt_h, keys_h = (
-        round(k * u) for k in (4.0 if low else 4.8, 6.0, 5.2 if low else 7.6, 6.6)
+    two_lines = 2 * TABLE_ROW * screen.find_min_em_px(TextRole.TABLE) + u
+    state_h, prompt_line_h, position_h = (
+        _CAPITALS_ROW * screen.find_min_em_px(role)
+        for role in (TextRole.STATE, TextRole.PROMPT, TextRole.POSITION)
     )
-    strip_h, keys_h = max(strip_h, FINGERTIP_PX), max(keys_h, FINGERTIP_PX)
-    top_h = round(27.2 * u)
+    title_h = round(max((4.0 if low else 4.8) * u, state_h))
+    strip_h = round(max(6.0 * u, FINGERTIP_PX, two_lines))
+    prompt_h = round(max((5.2 if low else 7.6) * u, 2.2 * prompt_line_h))
+    keys_h = round(max(6.6 * u, FINGERTIP_PX, two_lines))
+    top_h = round(max(27.2 * u, find_title_height_px(u, screen) + _LATHE_AXIS_COUNT * position_h + 0.6 * u))
     keys = Rect(gap, height - gap - keys_h, width - 2 * gap, keys_h)
     prompt = Rect(gap, keys.y - gap - prompt_h, width - 2 * gap, prompt_h)
     title = Rect(0, 0, width, title_h)
@@ -125,26 +149,46 @@ def find_work_area(layout: AutomaticLayout) -> Rect:
 
 
 def make_compact_layout(
-    width: int, height: int, has_dock: bool, *, has_axis_motion: bool = False
+    width: int,
+    height: int,
+    has_dock: bool,
+    screen: ScreenResolution = _UNKNOWN_SCREEN,
+    *,
+    has_axis_motion: bool = False,
+    has_run_line: bool = True,
 ) -> CompactLayout:
     """Return the layout with low readouts, for a window of this size in pixels.
 
     The readouts are in one row. On a page on which axes can move, large positions are above the other
-    readouts, unless the touch targets of the page would then become too small. Title, dock, prompt and
-    function keys have the same positions as on the Automatic page.
+    readouts. Without a run line, its rectangle is empty. Title, dock, prompt and function keys have the same
+    positions as on the Automatic page.
     """
-    at, u = make_automatic_layout(width, height, has_dock), find_unit_px(width, height)
+    at, u = make_automatic_layout(width, height, has_dock, screen), find_unit_px(width, height)
     gap, wide = _gap(u), at.strip.w
-    head = Rect(
-        at.strip.x,
-        at.position.y,
-        wide,
-        round((HEAD_MOVES if has_axis_motion and height >= LOW_WINDOW_HEIGHT_PX else HEAD) * u),
-    )
+    head = Rect(at.strip.x, at.position.y, wide, _find_head_height(width, height, screen, has_axis_motion))
     strip = Rect(head.x, head.bottom + gap, wide, at.strip.h)
-    top, high = strip.bottom + gap, round(2.8 * u)
-    run = Rect(head.x, at.prompt.y - gap - high, wide, high)
+    top = strip.bottom + gap
+    high = round(max(2.8 * u, TABLE_ROW * screen.find_min_em_px(TextRole.TABLE)))
+    if not has_run_line:
+        high = -gap
+    run = Rect(head.x, at.prompt.y - gap - high, wide, max(0, high))
     return CompactLayout(head, strip, Rect(head.x, top, wide, run.y - gap - top), run)
+
+
+def find_position_row_count(width: int, height: int) -> int:
+    """Return the number of rows for the large positions, which is 2 in an upright window."""
+    return 2 if height > width else 1
+
+
+def _find_head_height(width: int, height: int, screen: ScreenResolution, has_axis_motion: bool) -> int:
+    """Return the height of the readouts above a page in pixels."""
+    u = find_unit_px(width, height)
+    title, table = find_title_height_px(u, screen), screen.find_min_em_px(TextRole.TABLE)
+    if not has_axis_motion:
+        return round(max(HEAD * u, title + 2 * TABLE_ROW * table + 0.6 * u))
+    rows = find_position_row_count(width, height)
+    needed = rows * screen.find_min_em_px(TextRole.POSITION) + screen.find_min_em_px(TextRole.FEED)
+    return round(max(HEAD_MOVES * u, title + _CAPITALS_ROW * needed + 0.8 * u))
 
 
 def _gap(u: float) -> int:

@@ -75,11 +75,11 @@ class FunctionListPanel(RowPanel):
             painter.fill_rect(QRectF(box.x(), box.y(), wide, box.height()), "lit")
         figure = QRectF(box.x() + u, box.y(), 3.6 * u, box.height())
         painter.draw_text_line(figure, str(number + 1), 2.6, "accent", at=ALIGN_CENTER)
-        text = box.adjusted(5.2 * u, 0.1 * box.height(), -0.6 * u, -0.1 * box.height())
+        text = box.adjusted(5.2 * u, 0.02 * box.height(), -0.6 * u, -0.02 * box.height())
         painter.draw_text_line(
-            QRectF(text.x(), text.y(), text.width(), 0.55 * text.height()), name, 2.0, "text"
+            QRectF(text.x(), text.y(), text.width(), 0.5 * text.height()), name, 2.0, "text"
         )
-        below = QRectF(text.x(), text.y() + 0.55 * text.height(), text.width(), 0.45 * text.height())
+        below = QRectF(text.x(), text.y() + 0.5 * text.height(), text.width(), 0.5 * text.height())
         painter.draw_text_line(below, use, 1.6, "text" if here else "soft", bold=False)
 
 

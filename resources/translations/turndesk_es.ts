@@ -14609,6 +14609,16 @@
       <translation>RECARGAR</translation>
     </message>
     <message>
+      <location filename="app/screen/window/part_placement.py" />
+      <source>HELP</source>
+      <translation>AYUDA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/part_placement.py" />
+      <source>NOT SAVED</source>
+      <translation>SIN GUARDAR</translation>
+    </message>
+    <message>
       <location filename="app/screen/window/readout_panels.py" />
       <source>ACTUAL</source>
       <translation>REAL</translation>
@@ -14740,11 +14750,6 @@
     </message>
     <message>
       <location filename="app/screen/window/window_frame.py" />
-      <source>HELP</source>
-      <translation>AYUDA</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/window_frame.py" />
       <source>LAST</source>
       <translation>ÚLTIMO</translation>
     </message>
@@ -14757,11 +14762,6 @@
       <location filename="app/screen/window/window_frame.py" />
       <source>NO SCOPE RECORD: ONLY ALARMS AND E-STOPS ARE RECORDED</source>
       <translation>SIN REGISTRO: SÓLO SE REGISTRAN ALARMAS Y PAROS DE EMERGENCIA</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/window_frame.py" />
-      <source>NOT SAVED</source>
-      <translation>SIN GUARDAR</translation>
     </message>
     <message>
       <location filename="app/screen/window/window_frame.py" />

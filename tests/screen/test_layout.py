@@ -84,7 +84,7 @@ def test_page_layout_with_low_readouts_does_not_overlap(size: tuple[int, int], d
     parts = [at.title, *low, at.prompt, at.keys, *([at.dock] if dock else [])]
     for one, two in combinations(parts, 2):
         assert apart(one, two), (one, two)
-    assert low.work_area.h >= 49 * find_unit_px(*size) - 1
+    assert low.work_area.h >= 47 * find_unit_px(*size) - 1
 
 
 @pytest.mark.parametrize(

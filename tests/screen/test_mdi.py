@@ -206,6 +206,7 @@ def test_line_is_typed_by_touch_only(at_mdi: Operator) -> None:
     at_mdi.window.grab()
     page.line_panel._places[0][1]()
     assert page.letter_pad.isVisible()
+    at_mdi.window.refresh()
     at_mdi.window.grab()
     keys = dict(zip(chain(*LINE_KEYS), page.letter_pad._places, strict=True))
     assert keys.keys() >= set("()/}=+~")  # without them no loop, no function in parentheses

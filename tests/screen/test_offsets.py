@@ -295,9 +295,9 @@ def test_offset_change_without_store_is_rejected(hands: Hands) -> None:
 def test_offset_is_entered_by_touch_only(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F9)
     page = page_of(hands)
-    hands.sees(lambda: len(page.content_panel._places) == 4)
+    hands.sees(lambda: len(page.content_panel._places) == 4 + 2)  # with the scroll keys
     assert page.number_pad.isHidden()  # until a finger is there
-    touch(hands, page.content_panel, 2)  # the upper half of the right column
+    touch(hands, page.content_panel, ZONES[2])  # the upper half of the right column
     assert page.model.offset_number == 0
     assert page.content_panel.first_enlarged_number == 17
     touch(hands, page.content_panel, 0)
@@ -314,8 +314,12 @@ def test_offset_is_entered_by_touch_only(hands: Hands, store: Store) -> None:
     assert store.offsets.secondary_offsets.read_rows()[17].x == pytest.approx(0.1 * 25.4)
 
 
+ZONES = range(-4, 0)  # Places of the four half columns, which follow the scroll keys.
+
+
 def touch(hands: Hands, panel: Panel, place: int) -> None:
     """A finger in the middle of a place, which is large enough for one; then what is shown now."""
+    hands.window.refresh()
     hands.window.grab()
     assert all(min(box.width(), box.height()) >= FINGERTIP_PX for box, *_ in panel._places)
     box, *_ = panel._places[place]
@@ -332,7 +336,7 @@ def test_every_offset_is_reached_by_touch(
     hands.key(Key.Key_F9)
     page = page_of(hands)
     for place in range(8):
-        touch(hands, page.content_panel, zone)
+        touch(hands, page.content_panel, ZONES[zone])
         touch(hands, page.content_panel, place)
         assert page.model.offset_number == first + place
         hands.key(Key.Key_Escape)
@@ -341,10 +345,10 @@ def test_every_offset_is_reached_by_touch(
 def test_enlarged_offsets_close_by_touch_and_by_esc(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F9)
     page = page_of(hands)
-    touch(hands, page.content_panel, 1)
+    touch(hands, page.content_panel, ZONES[1])
     touch(hands, page.content_panel, 8)  # ALL 32
     assert (page.content_panel.first_enlarged_number, page.model.offset_number) == (0, 0)
-    touch(hands, page.content_panel, 1)
+    touch(hands, page.content_panel, ZONES[1])
     hands.key(Key.Key_Escape)
     assert page.content_panel.first_enlarged_number == 0
     assert hands.frame.current_page is page
@@ -397,10 +401,13 @@ def test_effect_is_not_shown_without_program(hands: Hands, store: Store) -> None
 def test_tools_are_scrolled_and_cells_selected_by_touch(hands: Hands, store: Store) -> None:
     hands.key(Key.Key_F8)
     table = tools_of(hands).content_panel
+    hands.window.grab()
+    shown = table.rows
     touch(hands, table, 1)  # a page down
-    hands.sees(lambda: (tools_of(hands).model.tool_number, table.first_row) == (6, 1))
-    touch(hands, table, 2 + 8 * 4 + 4)  # the last row that is shown, wear X
-    hands.sees(lambda: tools_of(hands).entry_panel.entry_texts.question_text == "T6  WEAR X Ø?")
+    hands.sees(lambda: tools_of(hands).model.tool_number == shown + 1)
+    assert table.first_row == 1
+    touch(hands, table, 2 + 8 * (shown - 1) + 4)  # the last row that is shown, wear X
+    hands.sees(lambda: tools_of(hands).entry_panel.entry_texts.question_text == f"T{shown + 1}  WEAR X Ø?")
     number, *_ = table._places[2 + 8 * 1]
     QTest.mouseClick(
         table, Qt.MouseButton.LeftButton, pos=QPoint(int(number.left()) + 9, int(number.center().y()))

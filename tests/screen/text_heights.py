@@ -31,6 +31,14 @@ def recorded(patch: pytest.MonkeyPatch) -> Iterator[list[Text]]:
     texts: list[Text] = []
     roles = [TextRole.TABLE]
     write, put_raw = screen_theme.ThemedPainter.draw_text_line, screen_theme.draw_raw_text
+    prepared = screen_theme.ThemedPainter.draw_prepared_text
+
+    def prepared_noted(
+        painter: screen_theme.ThemedPainter, rect: QRectF, at: Qt.AlignmentFlag, text: str, role: TextRole
+    ) -> None:
+        roles.append(role)
+        prepared(painter, rect, at, text, role)
+        roles.pop()
 
     def noted(painter: screen_theme.ThemedPainter, *args: Any, **more: Any) -> None:
         roles.append(more.get("role", TextRole.TABLE))
@@ -48,6 +56,7 @@ def recorded(patch: pytest.MonkeyPatch) -> Iterator[list[Text]]:
         put_raw(painter, rect, flags, text)
 
     patch.setattr(screen_theme.ThemedPainter, "draw_text_line", noted)
+    patch.setattr(screen_theme.ThemedPainter, "draw_prepared_text", prepared_noted)
     patch.setattr(screen_theme, "draw_raw_text", put)
     yield texts
     patch.undo()

@@ -115,7 +115,7 @@ class FirstJobCard:
     @property
     def notice_row(self) -> NoticeRow:
         """Return the card's text and keys for the current step."""
-        keys = ((CLOSE_KEY, tr("CLOSE")),)
+        keys: tuple[tuple[str, str], ...] = ((CLOSE_KEY, tr("CLOSE")),)
         if self.step_index >= len(FIRST_JOB_STEPS):
             return NoticeRow(
                 tr("FIRST JOB: DONE"), tr("SHOW THIS CARD AGAIN: F10, 7, ENTER, FIRST JOB CARD"), keys, "run"

@@ -354,6 +354,8 @@ class MainWindow(QWidget):
             self.theme.screen = make_screen_resolution(
                 size.width(), size.height(), real.width(), real.height()
             )
+            if self.frame is not None:
+                self.frame.arrange_parts()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Handle a key press.

@@ -5,9 +5,11 @@ They are large on the Automatic page, and in one row on all other pages.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from PySide6.QtCore import QRectF, Qt
+from PySide6.QtGui import QFont
 from PySide6.QtWidgets import QWidget
 
 from app.desk.status import formats
@@ -23,6 +25,8 @@ from app.screen.screen_theme import (
     ScreenTheme,
     ThemedPainter,
     draw_text,
+    find_narrow_size,
+    measure_text,
 )
 from app.screen.text_sizes import TextRole
 from core.message import Message, join_messages
@@ -58,8 +62,9 @@ class PositionPanel(Panel):
         u = self.theme.unit_px
         self.frame(painter, join_messages("  ·  ", (view.main_kind.value, view.unit, view.x_label)))
         self._heading(painter, view)
-        room = QRectF(0, 3.0 * u, self.width(), self.height() - 3.6 * u)
-        high = min(room.height() / len(view.axes), 10.5 * u)
+        head = self.theme.title_height * u
+        room = QRectF(0, head, self.width(), self.height() - head - 0.4 * u)
+        high = room.height() / len(view.axes)
         top = room.center().y() - high * len(view.axes) / 2
         for row, axis in enumerate(view.axes):
             self._row(painter, QRectF(0, top + row * high, room.width(), high), axis)
@@ -68,20 +73,27 @@ class PositionPanel(Panel):
                 painter.fill_rect(line, "key")
 
     def _heading(self, painter: ThemedPainter, view: PositionReadout) -> None:
-        u = self.theme.unit_px
-        place = QRectF(0, 1.8 * u, self.width() - 1.6 * u, 2.0 * u)
-        painter.draw_text_line(place, view.second_kind.value, 1.5, "soft", at=ALIGN_RIGHT)
+        look, u, name = self.theme, self.theme.unit_px, tr(view.second_kind.value)
+        high = look.title_height * u
+        font = look.fit_font(
+            name, look.find_em_height(1.5, TextRole.TABLE, high), 0.3 * self.width(), is_bold=True
+        )
+        wide = measure_text(name, font)
+        place = QRectF(self.width() - wide - 2.4 * u, 0, wide + 0.8 * u, high)
+        painter.fill_rect(place.adjusted(0, 0.4 * high, 0, 0), "panel")
+        painter.fill_rect(place.adjusted(0, 0, 0, -0.5 * high), "ground")
+        painter.draw_text_line(place, name, 1.5, "soft", at=ALIGN_CENTER, raw=True)
 
     def _row(self, painter: ThemedPainter, row: QRectF, axis: AxisReadout) -> None:
         u = self.theme.unit_px
         share = self._find_row_share(row)
         painter.draw_text_line(
-            QRectF(1.8 * u, row.y(), 5.6 * u, row.height()), axis.name, 5.6 * share, "accent"
+            QRectF(1.4 * u, row.y(), 5.2 * u, row.height()), axis.name, 5.6 * share, "accent"
         )
         if axis.diameter_mark:
-            box = QRectF(7.4 * u, row.center().y() - 2.6 * u, 4.8 * u, 5.2 * u)
+            box = QRectF(6.8 * u, row.center().y() - 2.6 * u, 4.8 * u, 5.2 * u)
             draw_x_symbol(painter, box, axis.diameter_mark, 4.6, 0.4)
-        large = QRectF(13.2 * u, row.y(), 38.4 * u, row.height())
+        large = QRectF(12.0 * u, row.y(), 39.6 * u, row.height())
         plain = axis.is_homed and axis.is_known
         painter.draw_text_line(
             large,
@@ -92,14 +104,15 @@ class PositionPanel(Panel):
             role=TextRole.POSITION,
         )
         second_box = QRectF(52.4 * u, row.y(), self.width() - 54.0 * u, row.height())
+        if not plain:
+            second_box.setHeight(0.5 * row.height())
+            painter.draw_text_line(
+                second_box, "NOT HOMED" if axis.is_known else "LAST KNOWN", 1.5, "alarm", at=ALIGN_RIGHT
+            )
+            second_box.translate(0, second_box.height())
         painter.draw_text_line(
             second_box, axis.second_value, 2.7 * max(share, 0.8), "soft", at=ALIGN_RIGHT, bold=False
         )
-        if not plain:
-            above = QRectF(second_box.x(), row.y() + 0.6 * u, second_box.width(), 2.0 * u)
-            painter.draw_text_line(
-                above, "NOT HOMED" if axis.is_known else "LAST KNOWN", 1.5, "alarm", at=ALIGN_RIGHT
-            )
 
     def _find_row_share(self, row: QRectF) -> float:
         """Return the text scale of the position values, which depends on the space per row.
@@ -135,13 +148,18 @@ class ReadoutPanel(Panel):
         super().__init__(theme, parent)
         self.title = title
 
-    def make_row_area(self, y: float, height: float) -> QRectF:
-        """Return the rectangle of a row inside the frame.
-
-        ``y`` and ``height`` are in theme units.
-        """
-        u = self.theme.unit_px
-        return QRectF(1.4 * u, y * u, self.width() - 2.8 * u, height * u)
+    def make_rows(self) -> tuple[QRectF, QRectF, QRectF]:
+        """Return the rectangles of the large row inside the frame and of two rows below it."""
+        u, top = self.theme.unit_px, self.theme.title_height * self.theme.unit_px
+        room = self.height() - top - 0.4 * u
+        large = max(0.4 * room, room - 2 * self.theme.find_line_height(3.6))
+        low = (room - large) / 2
+        row = QRectF(1.2 * u, top, self.width() - 2.4 * u, large)
+        return (
+            row,
+            QRectF(row.x(), row.bottom(), row.width(), low),
+            QRectF(row.x(), row.bottom() + low, row.width(), low),
+        )
 
     def draw_label(
         self, painter: ThemedPainter, rect: QRectF, text: str, flags: Qt.AlignmentFlag = ALIGN_LEFT
@@ -186,7 +204,7 @@ class FeedPanel(ReadoutPanel):
         view = self.value
         if not isinstance(view, FeedReadout):
             return
-        top = self.make_row_area(2.3, 4.8)
+        top, actual, override = self.make_rows()
         unit = QRectF(top.right() - 7.6 * self.theme.unit_px, top.y(), 7.6 * self.theme.unit_px, top.height())
         self.draw_value(
             painter,
@@ -201,18 +219,19 @@ class FeedPanel(ReadoutPanel):
             view.programmed_unit,
         )
         self.draw_label(painter, top, view.value_prefix)
-        actual = self.make_row_area(7.4, 2.8)
-        self.draw_label(painter, actual, "ACTUAL")
+        self.draw_label(
+            painter, actual.adjusted(0, 0, -(actual.width() - 7.8 * self.theme.unit_px), 0), "ACTUAL"
+        )
         self.draw_value(
             painter,
-            actual.adjusted(7 * self.theme.unit_px, 0, -8.2 * self.theme.unit_px, 0),
+            actual.adjusted(8.2 * self.theme.unit_px, 0, -8.2 * self.theme.unit_px, 0),
             view.measured_value,
             2.5,
         )
         self.draw_label(
             painter, QRectF(unit.x(), actual.y(), unit.width(), actual.height()), view.measured_unit
         )
-        self.draw_override(painter, self.make_row_area(11.2, 2.8), view.override_fraction, 1.5)
+        self.draw_override(painter, override, view.override_fraction, 1.5)
 
 
 class SpindlePanel(ReadoutPanel):
@@ -227,41 +246,42 @@ class SpindlePanel(ReadoutPanel):
         if not isinstance(view, SpindleReadout):
             return
         u = self.theme.unit_px
-        top = self.make_row_area(2.3, 4.8)
+        top, actual, override = self.make_rows()
         if not view.is_known:
-            self._draw_unknown(painter)
+            self._draw_unknown(painter, (top, actual, override))
             return
-        self.draw_label(painter, QRectF(top.x(), top.y() - u, 11.6 * u, top.height()), view.direction)
-        self._switch(painter, QRectF(top.x(), top.y() + 2.8 * u, 9.2 * u, 2.0 * u), view)
-        unit = QRectF(top.right() - 5.0 * u, top.y() + u, 5.0 * u, top.height())
-        self.draw_value(painter, top.adjusted(12 * u, 0, -5.6 * u, 0), view.commanded_rpm, 4.2)
+        turning = QRectF(top.x(), top.y(), 10.6 * u, 0.5 * top.height())
+        self.draw_label(painter, turning, view.direction)
+        self._switch(painter, turning.translated(0, turning.height()), view)
+        unit = QRectF(top.right() - 4.4 * u, top.y() + 0.2 * top.height(), 4.4 * u, 0.8 * top.height())
+        self.draw_value(
+            painter, top.adjusted(11 * u, 0, -4.6 * u, 0), view.commanded_rpm, 4.2, role=TextRole.FEED
+        )
         self.draw_label(painter, unit, "rpm")
-        actual = self.make_row_area(7.4, 2.8)
         half = actual.width() * 0.50
-        self.draw_label(painter, actual, "ACTUAL")
+        self.draw_label(painter, QRectF(actual.x(), actual.y(), 7.8 * u, actual.height()), "ACTUAL")
         self.draw_value(
             painter,
-            QRectF(actual.x() + 7 * u, actual.y(), half - 7 * u, actual.height()),
+            QRectF(actual.x() + 8.2 * u, actual.y(), half - 8.2 * u, actual.height()),
             view.measured_rpm,
             2.5,
         )
         surface = QRectF(actual.x() + half + 1.6 * u, actual.y(), half - 1.6 * u, actual.height())
-        self.draw_label(painter, surface, view.surface_speed_label)
+        self.draw_label(
+            painter, QRectF(surface.x(), surface.y(), 5 * u, surface.height()), view.surface_speed_label
+        )
         self.draw_value(painter, surface.adjusted(5 * u, 0, 0, 0), view.surface_speed, 2.5)
-        self.draw_override(painter, self.make_row_area(11.2, 2.8), view.override_fraction, 1.0)
+        self.draw_override(painter, override, view.override_fraction, 1.0)
         if view.load_text:
             # In the top line, next to the title.
-            patch = QRectF(self.width() - 11.0 * u, 0.0, 9.8 * u, 2.0 * u)
+            patch = QRectF(self.width() - 12.4 * u, 0.0, 11.2 * u, self.theme.title_height * u)
             painter.fill_rect(patch, "panel")
             painter.draw_text_line(patch, f"{tr('LOAD')} {view.load_text}", 1.6, "soft", at=ALIGN_CENTER)
 
-    def _draw_unknown(self, painter: ThemedPainter) -> None:
+    def _draw_unknown(self, painter: ThemedPainter, rows: tuple[QRectF, QRectF, QRectF]) -> None:
         """Draw a warning in place of all values, because the spindle's state is unknown."""
-        for row, size, text in (
-            (self.make_row_area(2.6, 4.0), 3.6, "UNKNOWN"),
-            (self.make_row_area(7.0, 3.0), 2.4, "SPINDLE MAY BE TURNING"),
-            (self.make_row_area(10.6, 3.0), 2.4, "PRESS E-STOP"),
-        ):
+        texts = ((3.6, "UNKNOWN"), (2.4, "SPINDLE MAY BE TURNING"), (2.4, "PRESS E-STOP"))
+        for row, (size, text) in zip(rows, texts, strict=True):
             painter.fill_rect(row, "alarm")
             painter.draw_text_line(row, text, size, "on_state", at=ALIGN_CENTER)
 
@@ -298,31 +318,35 @@ class TimesPanel(ReadoutPanel):
         room = self.inside()
         column = room.width() / len(self.value)
         longest = max((text for _name, text in self.value), key=len)
-        font = self.theme.fit_font(longest, 2.6, column - 0.6 * self.theme.unit_px, is_bold=True)
+        size = self.theme.find_em_height(2.6, TextRole.TABLE, 0.56 * room.height())
+        font = self.theme.fit_font(longest, size, column - 0.6 * self.theme.unit_px, is_bold=True)
         for number, (name, text) in enumerate(self.value):
             at = QRectF(
                 room.x() + number * column, room.y(), column - 0.6 * self.theme.unit_px, room.height()
             )
-            self.draw_label(painter, at.adjusted(0, 0, 0, -room.height() * 0.62), name, ALIGN_CENTER)
+            self.draw_label(painter, at.adjusted(0, 0, 0, -room.height() * 0.56), name, ALIGN_CENTER)
             painter.setFont(font)
             painter.setPen(self.theme.get_color("text"))
-            draw_text(painter, at.adjusted(0, room.height() * 0.36, 0, 0), ALIGN_CENTER, text)
+            draw_text(painter, at.adjusted(0, room.height() * 0.44, 0, 0), ALIGN_CENTER, text)
 
 
 # --- readouts in one row ------------------------------------------------------------------------------
 
 
 LATHE_COLUMN_COUNT = 3  # X, Z and C. A mill has more axes.
-HIGH_PANEL_HEIGHT = 9.0  # Units: a higher panel has room for large positions.
+_LABEL_SHARE = 0.28  # Part of a cell for its label.
+_NAME_WIDTH, _MARK_WIDTH = 3.0, 3.4  # Units: width of an axis name, and of the symbol of X.
 
 
 class ReadoutRow(Panel):
     """Display of all readouts of one snapshot.
 
-    X has a filled Ø (diameter) or a hollow R (radius). A low panel shows the readouts in one row. A high
-    panel shows large positions above the other readouts.
+    X has a filled Ø (diameter) or a hollow R (radius). On a page on which axes can move, large positions
+    are above the other readouts. On all other pages, the readouts are in one row.
     """
 
+    has_axis_motion = RedrawingAttribute(False)
+    position_row_count = RedrawingAttribute(1)  # Rows of large positions.
     status: MachineStatus | None = None
     _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
 
@@ -338,53 +362,75 @@ class ReadoutRow(Panel):
         )
 
     def draw(self, painter: ThemedPainter) -> None:
-        """Draw the axis positions and the other readouts in one row, or in two rows in a high panel."""
+        """Draw the axis positions and the other readouts."""
         view = self.status
         if view is None:
             return
-        position = view.position
+        position, u = view.position, self.theme.unit_px
         self.frame(
             painter, join_messages("  ·  ", (position.main_kind.value, position.unit, position.x_label))
         )
-        u = self.theme.unit_px
-        room = self.find_full_area().adjusted(1.2 * u, 2.2 * u, -1.2 * u, -0.6 * u)
-        columns = max(LATHE_COLUMN_COUNT, len(position.axes))
-        if self.height() > HIGH_PANEL_HEIGHT * u:
-            row = QRectF(room.x(), room.y() - 0.4 * u, room.width(), room.height() - 2.2 * u)
-            self._axes(painter, row, position, room.width() / columns, 1.7)
-            self._readings(
-                painter, QRectF(room.x(), row.bottom(), room.width(), room.bottom() - row.bottom())
-            )
+        top = (self.theme.title_height - 0.1) * u
+        room = self.find_full_area().adjusted(1.2 * u, top, -1.0 * u, -0.3 * u)
+        if self.has_axis_motion:
+            self._draw_large(painter, room, position)
             return
-        share = (0.58 if columns == LATHE_COLUMN_COUNT else 0.7) * room.width() / columns
-        self._axes(painter, room, position, share, 1.0)
-        taken = columns * share
-        rest = QRectF(room.x() + taken, room.y(), room.width() - taken, room.height())
-        self._figures(painter, rest, view)
+        columns = max(LATHE_COLUMN_COUNT, len(position.axes))
+        wide = (0.58 if columns == LATHE_COLUMN_COUNT else 0.7) * room.width()
+        area = QRectF(room.x(), room.y(), wide, room.height())
+        self._draw_axes(painter, area, position.axes, 3.4, TextRole.TABLE)
+        self._figures(painter, room.adjusted(wide, 0, 0, 0), view)
 
-    def _axes(
-        self, painter: ThemedPainter, room: QRectF, position: PositionReadout, share: float, scale: float
+    def _draw_large(self, painter: ThemedPainter, room: QRectF, position: PositionReadout) -> None:
+        """Draw the positions in one or more rows, and the other readouts in a row below them."""
+        look, rows = self.theme, self.position_row_count
+        feed = min(
+            0.45 * room.height(),
+            max(2.9 * look.unit_px, 0.84 * look.screen.find_min_em_px(TextRole.FEED)),
+        )
+        high, columns = (room.height() - feed) / rows, math.ceil(len(position.axes) / rows)
+        for row in range(rows):
+            at = QRectF(room.x(), room.y() + row * high, room.width(), high)
+            axes = position.axes[row * columns : (row + 1) * columns]
+            self._draw_axes(painter, at, axes, 5.8, TextRole.POSITION)
+        self._readings(painter, QRectF(room.x(), room.bottom() - feed, room.width(), feed))
+
+    def _draw_axes(
+        self,
+        painter: ThemedPainter,
+        area: QRectF,
+        axes: Sequence[AxisReadout],
+        size: float,
+        role: TextRole,
     ) -> None:
-        look, gap = self.theme, 1.8 * self.theme.unit_px
-        texts = [axis.value if axis.is_known else f"{axis.value} {UNKNOWN_VALUE}" for axis in position.axes]
-        size = look.find_em_height(3.4 * scale, TextRole.POSITION, room.height())
-        rooms = [share - gap - _before(axis) * scale * look.unit_px for axis in position.axes]
-        fonts = [
-            look.fit_font(text, size, each, is_bold=True) for text, each in zip(texts, rooms, strict=True)
-        ]
-        size = min(font.pixelSize() for font in fonts) / look.unit_px  # All axes have the same size.
-        for number, (axis, text) in enumerate(zip(position.axes, texts, strict=True)):
-            at = QRectF(room.x() + number * share, room.y(), share - gap, room.height())
-            self._name(painter, at, axis, scale)
-            ink = "text" if axis.is_homed and axis.is_known else "alarm"
-            painter.draw_text_line(at, text, size, ink, at=ALIGN_RIGHT, fit=False, role=TextRole.POSITION)
+        """Draw axes side by side. All axes have the same text size, and each has the width that it needs."""
+        look, u = self.theme, self.theme.unit_px
+        texts = [axis.value if axis.is_known else f"{axis.value} {UNKNOWN_VALUE}" for axis in axes]
+        size = look.find_em_height(size, role, area.height() * (1.04 if role is TextRole.POSITION else 1.0))
+        font = look.make_font(size, is_bold=True)
+        widths = [measure_text(_find_widest_value(text), font) for text in texts]
+        names = [(_NAME_WIDTH + (_MARK_WIDTH if axis.diameter_mark else 0.0)) * u for axis in axes]
+        room = area.width() - sum(names) - 1.6 * u * len(axes)
+        pixels, stretch = find_narrow_size(font.pixelSize(), min(1.0, room / sum(widths)))
+        narrow = QFont(font)
+        narrow.setPixelSize(pixels)
+        narrow.setStretch(stretch)
+        x = area.x()
+        for axis, text, name, width in zip(axes, texts, names, widths, strict=True):
+            share = room * width / sum(widths)
+            self._name(painter, QRectF(x, area.y(), name, area.height()), axis)
+            painter.setPen(look.get_color("text" if axis.is_homed and axis.is_known else "alarm"))
+            painter.setFont(narrow)
+            at = QRectF(x + name, area.y(), share, area.height())
+            painter.draw_prepared_text(at, ALIGN_RIGHT, text, role)
+            x += name + share + 1.6 * u
 
-    def _name(self, painter: ThemedPainter, at: QRectF, axis: AxisReadout, scale: float) -> None:
-        u = scale * self.theme.unit_px
-        painter.draw_text_line(QRectF(at.x(), at.y(), 3 * u, at.height()), axis.name, 2.8 * scale, "accent")
+    def _name(self, painter: ThemedPainter, at: QRectF, axis: AxisReadout) -> None:
+        u = self.theme.unit_px
+        painter.draw_text_line(QRectF(at.x(), at.y(), _NAME_WIDTH * u, at.height()), axis.name, 2.8, "accent")
         if axis.diameter_mark:
-            box = QRectF(at.x() + 2.8 * u, at.center().y() - 1.5 * u, 3.0 * u, 3.0 * u)
-            draw_x_symbol(painter, box, axis.diameter_mark, 2.4 * scale, 0.25)
+            box = QRectF(at.x() + _NAME_WIDTH * u - 0.2 * u, at.center().y() - 1.6 * u, 3.2 * u, 3.2 * u)
+            draw_x_symbol(painter, box, axis.diameter_mark, 2.4, 0.25)
 
     def _cells(self, view: MachineStatus) -> tuple[tuple[str, str, float], ...]:
         """Return a label, a value and a fraction of the width for each of feed, spindle and tool."""
@@ -393,24 +439,24 @@ class ReadoutRow(Panel):
             (
                 Message("FEED {override}", override=format_percent(feed.override_fraction)),
                 f"{feed.value_prefix} {feed.measured_value} {tr(feed.measured_unit)}".strip(),
-                0.36,
+                0.38,
             ),
             (
                 Message("SPINDLE {override}", override=format_percent(spindle.override_fraction)),
                 f"{tr(spindle.direction)} {spindle.commanded_rpm}/{spindle.measured_rpm}",
-                0.44,
+                0.45,
             ),
-            ("TOOL", f"{view.tool_text} {view.secondary_offset_text}", 0.2),
+            ("TOOL", f"{view.tool_text} {view.secondary_offset_text}", 0.17),
         )
 
     def _figures(self, painter: ThemedPainter, room: QRectF, view: MachineStatus) -> None:
         """Draw feed, spindle and tool, each with its label above it."""
-        u, x = self.theme.unit_px, room.x() + 1.6 * self.theme.unit_px
+        u, x, high = self.theme.unit_px, room.x() + 0.6 * self.theme.unit_px, room.height() / 2
         for label, figure, share in self._cells(view):
-            wide = share * (room.width() - 1.6 * u)
-            painter.draw_text_line(QRectF(x, room.y() - 0.4 * u, wide - u, 1.9 * u), label, 1.5, "soft")
-            below = QRectF(x, room.y() + 1.5 * u, wide - 1.6 * u, room.height() - 1.7 * u)
-            painter.draw_text_line(below, figure, 2.3, "text", role=TextRole.FEED)
+            wide = share * (room.width() - 0.6 * u)
+            named = QRectF(x, room.y(), wide - u, high)
+            painter.draw_text_line(named, label, 1.5, "soft")
+            painter.draw_text_line(named.translated(0, high), figure, 2.3, "text")
             x += wide
 
     def _readings(self, painter: ThemedPainter, room: QRectF) -> None:
@@ -419,17 +465,23 @@ class ReadoutRow(Panel):
             return
         u, x = self.theme.unit_px, room.x()
         for label, figure, share in self._cells(self.status):
-            wide = share * room.width() - u
-            named = QRectF(x, room.y(), 0.38 * wide, room.height())
-            painter.draw_text_line(named, label, 1.6, "soft")
-            value = named.adjusted(named.width() + 0.6 * u, 0, wide - named.width(), 0)
-            painter.draw_text_line(value, figure, 2.5, "text", role=TextRole.FEED)
-            x += wide + u
+            wide = share * room.width() - 0.6 * u
+            named = QRectF(x, room.y(), _LABEL_SHARE * wide, room.height())
+            painter.draw_text_line(named, label, 1.6, "soft", bold=False)
+            value = named.adjusted(named.width() + 0.3 * u, 0, wide - named.width(), 0)
+            role = TextRole.TABLE if label == "TOOL" else TextRole.FEED
+            painter.draw_text_line(value, figure, 2.5, "text", role=role)
+            x += wide + 0.6 * u
 
 
-def _before(axis: AxisReadout) -> float:
-    """Return the width in theme units of an axis name with its symbol, to the left of the value."""
-    return 6.8 if axis.diameter_mark else 3.2
+_MIN_VALUE_LENGTH = 7
+
+
+def _find_widest_value(text: str) -> str:
+    """Return a text as wide as any value with the same number of digits, so that the columns do not move."""
+    value, unknown, rest = text.partition(" ")
+    digits = value.lstrip("+-−")
+    return "−" + "0" * (_MIN_VALUE_LENGTH - len(digits) - 1) + digits + unknown + rest
 
 
 # --- run in one row -----------------------------------------------------------------------------------

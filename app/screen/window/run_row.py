@@ -66,7 +66,7 @@ class RunStatusRow(Panel):
         """Draw the alarm over the whole row, large enough to read while standing at the machine."""
         look, u = self.theme, self.theme.unit_px
         painter.fill_rect(self.find_full_area(), self._tone)
-        sign = QRectF(u, 0.3 * u, 2.2 * u, 2.2 * u)
+        sign = QRectF(u, self.height() / 2 - 1.1 * u, 2.2 * u, 2.2 * u)
         draw_state_symbol(painter, sign, StatusTone(self._tone), look.get_color("on_state"))
         painter.draw_text_line(
             self.find_full_area().adjusted(4.4 * u, 0, -u, 0), self.stop_text, 2.5, "on_state"
@@ -85,9 +85,9 @@ class RunStatusRow(Panel):
         u, share = self.theme.unit_px, area.width() / max(1, len(self.time_texts))
         for number, (name, figure) in enumerate(self.time_texts):
             box = QRectF(area.x() + number * share, 0, share - 0.8 * u, area.height())
-            half = 0.46 * box.width()
+            half = 0.5 * box.width()
             painter.draw_text_line(QRectF(box.x(), 0, half, box.height()), name, 1.5, "soft", at=ALIGN_RIGHT)
-            painter.draw_text_line(box.adjusted(half + u, 0, 0, 0), figure, 2.0, "text", raw=True)
+            painter.draw_text_line(box.adjusted(half + 0.6 * u, 0, 0, 0), figure, 2.0, "text", raw=True)
 
 
 def describe_stop(status: MachineStatus) -> str:

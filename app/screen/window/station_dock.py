@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import NamedTuple
 
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QFontMetricsF, QWheelEvent
+from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.desk import Desk
@@ -20,6 +21,21 @@ from app.screen.window_layout import FINGERTIP_PX
 from core.executor.snapshot import Snapshot
 
 DESIGN_HEIGHT = 71.6  # Height in units for which the rows are designed. A taller dock scales them.
+
+
+class DockRows(NamedTuple):
+    """Rectangles of the controls of the operator station and of their labels, from top to bottom."""
+
+    estop: QRectF
+    switch_label: QRectF
+    switch: QRectF
+    spindle_label: QRectF
+    spindle: QRectF
+    feed_label: QRectF
+    feed: QRectF
+    hold: QRectF
+    start_label: QRectF
+    start: QRectF
 
 
 class StationDock(TouchPanel):
@@ -61,31 +77,43 @@ class StationDock(TouchPanel):
         elif self._spindle_box().contains(event.position()):
             self._desk.station_controls.turn_spindle_pot(steps)
 
-    def _row(self, y: float, high: float) -> QRectF:
-        u = self.theme.unit_px
-        scale = self.height() / DESIGN_HEIGHT
-        return QRectF(1.4 * u, y * scale, self.width() - 2.8 * u, high * scale)
+    def _find_rows(self) -> DockRows:
+        """Return the rectangles of the controls and of their labels from top to bottom.
+
+        The labels are as high as their texts require. The other controls are as high as a fingertip at
+        least, and the E-stop and the palm buttons share the remaining height.
+        """
+        u, scale = self.theme.unit_px, self.height() / DESIGN_HEIGHT
+        label, control = self.theme.find_line_height(2.4 * scale / u), max(6.5 * scale, float(FINGERTIP_PX))
+        top, gap = self.theme.title_height * u, 0.35 * scale
+        large = 0.5 * (self.height() - top - 4 * label - 4 * control - 6 * gap)
+        pair = (label, control + gap)
+        rows, y = list[QRectF](), top
+        for high in (large + gap, *pair, *pair, *pair, control + gap, label, large):
+            rows.append(QRectF(1.2 * u, y, self.width() - 2.4 * u, high - (gap if high > label + gap else 0)))
+            y += high
+        return DockRows(*rows)
 
     def _spindle_box(self) -> QRectF:
-        return self._row(28.8, 6.5)
+        return self._find_rows().spindle
 
     def _feed_box(self) -> QRectF:
-        return self._row(38.7, 6.5)
+        return self._find_rows().feed
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the controls of the operator station, and set their touch targets."""
         self.controls.clear()
-        desk = self._desk
+        desk, rows = self._desk, self._find_rows()
         self._mushroom(painter)
         self._switch(painter)
         spindle, feed = desk.station_controls.spindle_pot, desk.station_controls.feed_pot
         self._label(
-            painter, self._row(26.2, 2.4), "SPINDLE SPEED", formats.format_percent(spindle.wanted), "text"
+            painter, rows.spindle_label, "SPINDLE SPEED", formats.format_percent(spindle.wanted), "text"
         )
         keys = ("−", "+") if "," in self.hidden_keys else (",", ".")
         name = "SPINDLE SPEED"
         self._pot(painter, self._spindle_box(), name, keys, spindle, desk.station_controls.turn_spindle_pot)
-        self._label(painter, self._row(36.1, 2.4), "FEED RATE", formats.format_percent(feed.wanted), "text")
+        self._label(painter, rows.feed_label, "FEED RATE", formats.format_percent(feed.wanted), "text")
         self._pot(
             painter, self._feed_box(), "FEED RATE", ("−", "+"), feed, desk.station_keys.step_feed_override
         )
@@ -93,14 +121,15 @@ class StationDock(TouchPanel):
         self._start(painter)
 
     def _label(self, painter: ThemedPainter, at: QRectF, text: str, right: str, colour: str) -> None:
-        painter.draw_text_line(at, text, 1.6, "soft", fit=False)
-        painter.draw_text_line(at, right, 2.0, colour, at=ALIGN_RIGHT)
+        split = (0.66 if len(right) > 1 else 0.84) * at.width()
+        painter.draw_text_line(at.adjusted(0, 0, split - at.width(), 0), text, 1.6, "soft")
+        painter.draw_text_line(at.adjusted(split, 0, 0, 0), right, 2.0, colour, at=ALIGN_RIGHT)
 
     def _mushroom(self, painter: ThemedPainter) -> None:
         look, u = self.theme, self.theme.unit_px
-        box, pressed = self._row(2.6, 13.2), self._desk.station_controls.is_estop_pressed
+        box, pressed = self._find_rows().estop, self._desk.station_controls.is_estop_pressed
         painter.fill_rect(box, "estop_plate")
-        side = min(box.width() - 8.0 * u, box.height() - 1.6 * u)
+        side = min(box.width() - 8.0 * u, box.height() - 0.6 * u)
         head = QRectF(box.x() + 0.8 * u, box.center().y() - side / 2, side, side)
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(look.get_color("estop_rim"))
@@ -143,9 +172,13 @@ class StationDock(TouchPanel):
 
     def _switch(self, painter: ThemedPainter) -> None:
         self._label(
-            painter, self._row(16.4, 2.4), "SPINDLE SWITCH", "" if "A" in self.hidden_keys else "A", "accent"
+            painter,
+            self._find_rows().switch_label,
+            "SPINDLE SWITCH",
+            "" if "A" in self.hidden_keys else "A",
+            "accent",
         )
-        box = self._row(18.9, 6.5)
+        box = self._find_rows().switch
         half = box.width() / 2
         for number, word in enumerate(("OFF", "AUTO")):
             on = self._auto is (word == "AUTO")
@@ -191,24 +224,19 @@ class StationDock(TouchPanel):
         painter.fill_rect(QRectF(x, inner.y(), u, inner.height()), "accent")
 
     def _hold(self, painter: ThemedPainter) -> None:
-        look, u, desk = self.theme, self.theme.unit_px, self._desk
-        box = self._row(46.4, 7.0)
+        u, desk = self.theme.unit_px, self._desk
+        box = self._find_rows().hold
         painter.draw_box(box.adjusted(0.15 * u, 0.15 * u, -0.15 * u, -0.15 * u), "pause", 0.3, "panel")
-        inner = box.adjusted(1.4 * u, 0, -1.4 * u, 0)
-        room = inner.adjusted(0, 0, -3.0 * u, 0)
-        words = tr("FEED HOLD")
-        wide = QFontMetricsF(look.make_font(2.3, is_bold=True)).horizontalAdvance(words) > room.width()
-        lines = words.split(" ", 1) if wide else [words]
-        high = min(room.height() / len(lines), 3.0 * u)
-        top = room.center().y() - high * len(lines) / 2
+        inner = box.adjusted(0.8 * u, 0, -0.8 * u, 0)
+        room = inner.adjusted(0, 0, -0.42 * inner.width(), 0)
+        lines = tr("FEED HOLD").split(" ", 1)
+        high = room.height() / len(lines)
         for number, line in enumerate(lines):
-            row = QRectF(room.x(), top + number * high, room.width(), high)
-            painter.draw_text_line(row, line, 2.3, "text", fit=False)
-        inner.setHeight(inner.height() / 2)
-        painter.draw_text_line(inner, "" if "H" in self.hidden_keys else "H", 2.2, "accent", at=ALIGN_RIGHT)
-        painter.draw_text_line(
-            inner.translated(0, inner.height()), "PAUSE", 1.5, "accent", at=ALIGN_RIGHT, fit=False
-        )
+            row = QRectF(room.x(), room.y() + number * high, room.width(), high)
+            painter.draw_text_line(row, line, 2.3, "text")
+        right = QRectF(room.right(), inner.y(), inner.right() - room.right(), 0.5 * inner.height())
+        painter.draw_text_line(right, "" if "H" in self.hidden_keys else "H", 2.2, "accent", at=ALIGN_RIGHT)
+        painter.draw_text_line(right.translated(0, right.height()), "PAUSE", 1.5, "accent", at=ALIGN_RIGHT)
         press, release = (
             partial(desk.station_controls.hold, is_down=True),
             partial(desk.station_controls.hold, is_down=False),
@@ -217,12 +245,12 @@ class StationDock(TouchPanel):
 
     def _start(self, painter: ThemedPainter) -> None:
         desk = self._desk
-        head = self._row(54.2, 2.4)
+        head = self._find_rows().start_label
         text = "CYCLE START: BOTH BUTTONS" if desk.machine.has_two_hand_start else "CYCLE START"
         if self._is_latching:
             text = "CYCLE START: TAP F11, F12"
         painter.draw_text_line(head, text, 1.6, "pause" if self._is_latching else "soft")
-        box = self._row(56.8, 13.6)
+        box = self._find_rows().start
         if not desk.machine.has_two_hand_start:
             self._palm(painter, box, "F12", down=False)
             self.controls.append(make_press_control(box, desk.station_keys.press_start))

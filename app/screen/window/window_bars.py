@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QFont, QFontMetricsF
+from PySide6.QtGui import QFont
 from PySide6.QtWidgets import QWidget
 
 from app.desk.status.interrupted_notice import NoticeRow
@@ -29,7 +29,7 @@ from app.screen.screen_theme import (
 )
 from app.screen.text_sizes import TextRole
 from app.screen.window.key_table import NO_KEY, YES_KEY
-from app.screen.window_layout import FINGERTIP_PX
+from app.screen.window_layout import ACROSS, FINGERTIP_PX
 
 ANSWER_KEY_WIDTH = 13.0  # Units: width of the touch target of an answer.
 # Background color and sign.
@@ -41,6 +41,9 @@ MESSAGE_STYLES = {
 PROMPT_WIDTH_FRACTION = 0.47  # Fraction of the prompt line's height for message and question.
 MIN_TWO_LINE_HEIGHT = 5.0  # Units: smallest height of the state for two lines.
 SYMBOL_WIDTH = 5.0  # Units: width of the sign.
+_STATE_LEFT, _STATE_WIDTH = 30.0, 92.0  # Units: box of the machine state in the title line.
+_CLOCK_WIDTH = 15.0  # Units.
+MIN_ONE_LINE_STRETCH = 0.8  # A text that would be drawn narrower in one line is drawn in two lines.
 
 
 class TitleLine(Panel):
@@ -71,33 +74,39 @@ class TitleLine(Panel):
         program, state, tone, machine, clock = self._shown
         u, high = self.theme.unit_px, self.height()
         painter.fill_rect(QRectF(0, high - 0.16 * u, self.width(), 0.16 * u), "frame")
-        painter.draw_text_line(QRectF(1.4 * u, 0, 24 * u, high), self.page_title, 2.2, "accent")
-        painter.draw_text_line(
-            QRectF(27 * u, 0, 31 * u, high), program or tr("NO PROGRAM"), 2.4, "text", raw=True
-        )
-        self._draw_state(painter, state, tone)
-        right = QRectF(self.width() - 47 * u, 0, 30 * u, high)
+        upper = QRectF(1.4 * u, 0.1 * u, (_STATE_LEFT - 2.4) * u, 0.5 * high - 0.1 * u)
+        lower = upper.translated(0, upper.height())
+        painter.draw_text_line(upper, self.page_title, 1.9, "accent")
+        painter.draw_text_line(lower, program or tr("NO PROGRAM"), 2.1, "text", raw=True)
+        box = self._draw_state(painter, state, tone)
+        left = box.right() + 0.8 * u
+        for row in (upper, lower):
+            row.setLeft(left)
+            row.setRight(self.width() - 1.2 * u)
+        painter.draw_text_line(upper, machine, 1.8, "soft", at=ALIGN_RIGHT, bold=False)
+        painter.draw_text_line(lower, clock, 2.0, "text", at=ALIGN_RIGHT, bold=False)
         if self.access_text:
-            half = 0.5 * high
-            below = QRectF(right.x(), half, right.width(), half - 0.2 * u)
-            painter.draw_text_line(below, self.access_text, 1.7, "accent", at=ALIGN_RIGHT)
-            right.setHeight(half)
-        painter.draw_text_line(right, machine, 1.8, "soft", at=ALIGN_RIGHT, bold=False)
-        right = QRectF(self.width() - 16 * u, 0, 14.6 * u, high)
-        painter.draw_text_line(right, clock, 2.2, "text", at=ALIGN_RIGHT, bold=False)
+            lower.setRight(lower.right() - _CLOCK_WIDTH * u)
+            painter.draw_text_line(lower, self.access_text, 1.7, "accent")
 
-    def _draw_state(self, painter: ThemedPainter, state: str, tone: StatusTone) -> None:
+    def _draw_state(self, painter: ThemedPainter, state: str, tone: StatusTone) -> QRectF:
+        """Draw the machine state as large as its distance requires, and return its box."""
         look, u, high, state = self.theme, self.theme.unit_px, self.height(), tr(state)
-        box = QRectF(60 * u, 0.2 * u, 50 * u, high - 0.5 * u)
-        painter.fill_rect(box, tone.value)
+        box = QRectF(
+            _STATE_LEFT * u, 0, max(_STATE_WIDTH * u, self.width() - (ACROSS - _STATE_WIDTH) * u), high
+        )
+        painter.fill_rect(box.adjusted(0, 0, 0, -0.2 * u), tone.value)
         ink = look.get_color("on_state")
-        size = look.find_em_height(2.5, TextRole.STATE, box.height())
-        painter.setFont(look.fit_font(state, size, box.width() - 8 * u, is_bold=True))
-        wide = QFontMetricsF(painter.font()).horizontalAdvance(state)
-        left = box.center().x() - (wide + 3.6 * u) / 2
-        draw_state_symbol(painter, QRectF(left, box.center().y() - 1.2 * u, 2.4 * u, 2.4 * u), tone, ink)
+        size = look.find_em_height(2.5, TextRole.STATE, 1.2 * box.height())
+        side = max(2.4 * u, 0.5 * high)
+        painter.setFont(look.fit_font(state, size, box.width() - 2.5 * u - side, is_bold=True))
+        wide = measure_text(state, painter.font())
+        left = box.center().x() - (wide + side + 0.8 * u) / 2
+        draw_state_symbol(painter, QRectF(left, box.center().y() - side / 2, side, side), tone, ink)
         painter.setPen(ink)
-        draw_text(painter, QRectF(left + 3.6 * u, box.y(), wide + u, box.height()), ALIGN_LEFT, state)
+        room = QRectF(left + side + 0.8 * u, box.y(), wide + u, box.height())
+        draw_text(painter, room, ALIGN_LEFT, state)
+        return box
 
 
 class PromptLine(Panel):
@@ -164,6 +173,8 @@ class PromptLine(Panel):
         self._state(painter, area.adjusted(0, upper.height() if noticed else 0, 0, 0))
         both = bool(self.message_text and self.question_text)
         half = upper.width() / 2
+        if noticed and not both and self._needs_two_lines(self.message_text or self.question_text, upper):
+            upper = area
         if self.message_text:
             place = upper.adjusted(0, 0, -half - 2 if both else 0, 0)
             self._notice(painter, place, self.message_text, self.message_kind or MessageKind.REFUSAL)
@@ -190,7 +201,7 @@ class PromptLine(Panel):
         look, words = self.theme, text.split(" ")
         one = look.find_em_height(2.3, TextRole.PROMPT, room.height())
         two = look.find_em_height(2.3, TextRole.PROMPT, room.height() / 2)
-        wide = measure_text(text, look.make_font(one, is_bold=True))
+        wide = MIN_ONE_LINE_STRETCH * measure_text(text, look.make_font(one, is_bold=True))
         if (
             len(words) < 2
             or room.height() < MIN_TWO_LINE_HEIGHT * look.unit_px
@@ -201,6 +212,12 @@ class PromptLine(Panel):
         cuts = (" ".join(words[:at]) for at in range(1, len(words)))
         first = min(cuts, key=lambda part: abs(2 * len(part) - len(text)))
         return [first, text[len(first) + 1 :].strip()]
+
+    def _needs_two_lines(self, text: str, row: QRectF) -> bool:
+        """Return whether a notice is too wide for one line of the prompt line."""
+        size = self.theme.find_em_height(2.3, TextRole.PROMPT, row.height())
+        wide = MIN_ONE_LINE_STRETCH * measure_text(tr(text), self.theme.make_font(size, is_bold=True))
+        return wide > row.width() - (SYMBOL_WIDTH + 1.4) * self.theme.unit_px
 
     def _notice(self, painter: ThemedPainter, area: QRectF, text: str, sort: MessageKind) -> None:
         u = self.theme.unit_px
@@ -214,9 +231,12 @@ class PromptLine(Panel):
             at=ALIGN_CENTER,
             raw=True,
         )
-        painter.draw_text_line(
-            area.adjusted(SYMBOL_WIDTH * u, 0, -1.4 * u, 0), text, 2.3, "on_state", role=TextRole.PROMPT
-        )
+        room = area.adjusted(SYMBOL_WIDTH * u, 0, -1.4 * u, 0)
+        lines = self._lines(tr(text), room)
+        room.setHeight(room.height() / len(lines))
+        for number, line in enumerate(lines):
+            row = room.translated(0, number * room.height())
+            painter.draw_text_line(row, line, 2.3, "on_state", raw=True, role=TextRole.PROMPT)
 
     def _draw_answer_keys(self, painter: ThemedPainter, area: QRectF) -> float:
         """Draw the targets for yes and no at the right end.
@@ -242,7 +262,9 @@ class CommentLine(Panel):
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the last comment of the program."""
         u = self.theme.unit_px
-        room = self.find_full_area().adjusted(1.4 * u, 1.5 * u, -1.2 * u, -0.5 * u)
+        room = self.find_full_area().adjusted(
+            1.4 * u, (self.theme.title_height - 0.3) * u, -1.2 * u, -0.2 * u
+        )
         painter.draw_text_line(room, self.text, 2.0, "accent", bold=False, raw=True)
 
 
@@ -277,11 +299,12 @@ class FunctionKeyBar(Panel):
             box = QRectF((number - 1) * wide, 0, wide - gap, self.height())
             barred = f"F{number}" in self.disabled_keys
             painter.fill_rect(box, "panel" if barred else "key")
-            upper = QRectF(box.x(), box.y() + 0.5 * u, box.width(), 2.4 * u)
+            high = 0.47 * box.height()
+            upper = QRectF(box.x(), box.y() + 0.03 * box.height(), box.width(), high)
             painter.draw_text_line(upper, f"F{number}", 1.8, "soft" if barred else "accent", at=ALIGN_CENTER)
-            lower = QRectF(box.x(), box.y() + 3.0 * u, box.width(), 3.2 * u)
+            lower = upper.translated(0, high)
             painter.draw_text_line(
-                lower, label, 2.1, "soft" if barred else "text", at=ALIGN_CENTER, margin=1.0
+                lower, label, 2.1, "soft" if barred else "text", at=ALIGN_CENTER, margin=0.4
             )
             self.add_target(box, partial(self._press, number), is_disabled=barred)
 
@@ -327,20 +350,24 @@ class LampStrip(Panel):
             box.adjusted(inset, inset, -inset, -inset), line, 0.14, lit if lamp.is_lit else "panel"
         )
         ink = ("on_state" if lamp.is_warning else "on_lit") if lamp.is_lit else "soft"
-        room = box.adjusted(0.5 * u, 0.5 * u, -0.5 * u, -0.5 * u)
-        if lamp.switch_key and lamp.switch_key not in self.hidden_keys:
-            cap = QRectF(room.x() + 0.1 * u, room.center().y() - 1.5 * u, 2.6 * u, 3.0 * u)
-            painter.setPen(look.get_color(ink))
-            painter.setBrush(Qt.BrushStyle.NoBrush)
-            painter.drawRect(cap)
-            painter.draw_text_line(cap, lamp.switch_key, 2.2, ink, at=ALIGN_CENTER)
-            room.setLeft(cap.right() + 0.4 * u)
+        room = box.adjusted(0.4 * u, 0.4 * u, -0.4 * u, -0.4 * u)
         words = tr(lamp.label).split(" ", 1)
         room.setHeight(room.height() / len(words))
-        for number, word in enumerate(words):
-            painter.draw_text_line(
-                room.translated(0, number * room.height()), word, 1.75, ink, at=ALIGN_CENTER
-            )
+        rows = [room.translated(0, number * room.height()) for number in range(len(words))]
+        if lamp.switch_key and lamp.switch_key not in self.hidden_keys:
+            rows[-1].setLeft(self._draw_switch_key(painter, rows[-1], lamp.switch_key, ink))
+        for row, word in zip(rows, words, strict=True):
+            painter.draw_text_line(row, word, 1.75, ink, at=ALIGN_CENTER)
+
+    def _draw_switch_key(self, painter: ThemedPainter, row: QRectF, key: str, ink: str) -> float:
+        """Draw the key of a lamp at the left end of a row, and return where the label can begin."""
+        u, high = self.theme.unit_px, min(row.height() - 2, self.theme.find_line_height(3.0))
+        cap = QRectF(row.x() + 0.1 * u, row.center().y() - high / 2, max(2.4 * u, 0.8 * high), high)
+        painter.setPen(self.theme.get_color(ink))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawRect(cap)
+        painter.draw_text_line(cap, key, 1.75, ink, at=ALIGN_CENTER)
+        return cap.right() + 0.2 * u
 
 
 # --- notices ------------------------------------------------------------------------------------------

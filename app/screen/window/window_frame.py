@@ -14,7 +14,6 @@ from app.desk.pages.first_job import CLOSE_KEY
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status import formats, prompt_line
 from app.desk.status.machine_status import MachineStatus
-from app.desk.status.readouts import Lamp, make_drives_lamp
 from app.desk.status.state_prompt import find_remaining_time_s, make_page_prompt
 from app.desk.translation import tr
 from app.screen import page_table
@@ -27,6 +26,13 @@ from app.screen.window.alarm_panels import AlarmList, AlarmNotice
 from app.screen.window.help_panel import HelpPanel
 from app.screen.window.key_table import AUTOMATIC_KEYS, HELP_KEY
 from app.screen.window.notices import make_notices
+from app.screen.window.part_placement import (
+    GAP_PX,
+    find_area_below,
+    find_needed_readouts,
+    make_lamp_row,
+    place_widget,
+)
 from app.screen.window.readout_panels import (
     FeedPanel,
     PositionPanel,
@@ -41,6 +47,7 @@ from app.screen.window.window_bars import FunctionKeyBar, LampStrip, NoticeRows,
 from app.screen.window_layout import (
     AutomaticLayout,
     Rect,
+    find_position_row_count,
     find_unit_px,
     find_work_area,
     make_automatic_layout,
@@ -49,7 +56,6 @@ from app.screen.window_layout import (
 from core.executor.snapshot import MachineState, Snapshot
 from core.message import Message
 
-GAP_PX = 4  # Pixels below the notice rows.
 _REST_STATES = frozenset({MachineState.ESTOP, MachineState.DISABLED, MachineState.IDLE, MachineState.FAULT})
 MAX_REFRESH_AGE_S = 0.45  # Seconds after which everything is refreshed even without a visible change.
 _LAYOUT_DELAY_S = 3.0  # Seconds after a manual move before the layout of a page may change.
@@ -92,6 +98,7 @@ class WindowFrame(QWidget):
         self.help_panel = HelpPanel(theme, self)
         self._help_area = Rect(0, 0, 0, 0)
         self._docked = True
+        self._readouts = (False, True)  # Large position and run line of the last layout.
         host = PageHost(theme, desk, press, self.open_page, self.alarm_list.hide)
         self._host = host
         self._before_scope = page_table.AUTOMATIC
@@ -158,7 +165,7 @@ class WindowFrame(QWidget):
             page.make_key_labels(),
             page.find_disabled_keys(),
         )
-        self._lay_out()
+        self.arrange_parts()
         self.alarm_list.hide()
         self.alarm_notice.stackUnder(self.alarm_list)
         page.stackUnder(self.alarm_notice)
@@ -277,9 +284,10 @@ class WindowFrame(QWidget):
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Set the unit of size for the new size of the window, and arrange all parts."""
-        self._lay_out()
+        self.arrange_parts()
 
-    def _lay_out(self) -> None:
+    def arrange_parts(self) -> None:
+        """Arrange all parts for the current size of the window and of the screen."""
         place_widget(self.current_page, self._place_parts(large=self.current_page is self.automatic_page))
 
     def _place_parts(self, *, large: bool) -> Rect:
@@ -287,20 +295,28 @@ class WindowFrame(QWidget):
         width, height = self.width(), self.height()
         self.theme.set_unit_px(find_unit_px(width, height))
         with_dock = self.station_dock is not None and self.desk.settings_store.current_settings.dock
-        at = make_automatic_layout(width, height, with_dock)
+        at = make_automatic_layout(width, height, with_dock, self.theme.screen)
         low = make_compact_layout(
-            width, height, with_dock, has_axis_motion=self.current_page.CAN_START_CYCLES
+            width,
+            height,
+            with_dock,
+            self.theme.screen,
+            has_axis_motion=self._needed_readouts[0],
+            has_run_line=self._needed_readouts[1],
         )
+        self._readouts = self._needed_readouts
+        self.readout_line.has_axis_motion = self._readouts[0]
+        self.readout_line.position_row_count = find_position_row_count(width, height)
         self._docked = with_dock
         work = find_work_area(at) if large else low.work_area
-        rows = Rect(work.x, work.y, work.w, min(self.notice_rows.apply_needed_height(), work.h // 3))
-        work, over = _find_area_below(work, rows), _find_area_below(at.path if large else low.work_area, rows)
+        rows = Rect(work.x, work.y, work.w, min(self.notice_rows.apply_needed_height(), work.h // 2))
+        work, over = find_area_below(work, rows), find_area_below(at.path if large else low.work_area, rows)
         place_widget(self.notice_rows, rows)
         self.notice_rows.setVisible(bool(rows.h))
         self._stand_readouts(at, large)
         for part, rect in ((self.readout_line, low.readout_line), (self.run_line, low.run_line)):
             place_widget(part, rect)
-            part.setVisible(not large)
+            part.setVisible(not large and rect.h > 0)
         if self.station_dock is not None:
             self.station_dock.release_all_controls()
             self.station_dock.setVisible(with_dock)
@@ -314,6 +330,11 @@ class WindowFrame(QWidget):
         self._help_area = work
         self._place_help()
         return work
+
+    @property
+    def _needed_readouts(self) -> tuple[bool, bool]:
+        """Return whether a large position and a run line are shown."""
+        return find_needed_readouts(self.current_page, self.height(), bool(self.notice_rows.notice_rows))
 
     @property
     def _has_dock_changed(self) -> bool:
@@ -370,10 +391,11 @@ class WindowFrame(QWidget):
             self.desk, snapshot, loaded, here=self.current_page is self.automatic_page
         )
         by_hand = self._is_manual_motion(snapshot)
-        if self._has_dock_changed or (self.notice_rows.needs_new_height and not by_hand):
-            self._lay_out()
+        is_new_height = self.notice_rows.needs_new_height or self._readouts != self._needed_readouts
+        if self._has_dock_changed or (is_new_height and not by_hand):
+            self.arrange_parts()
         self._show_bars(snapshot, view, loaded)
-        lamps = self._make_lamps(snapshot, view)
+        lamps = make_lamp_row(self.desk, snapshot, view)
         self.strip.lamps = lamps
         self.strip.hidden_keys = frozenset(
             lamp.switch_key for lamp in lamps if self._is_dead(lamp.switch_key)
@@ -469,31 +491,3 @@ class WindowFrame(QWidget):
             ("LEFT", left),
             ("LAST", view.last_cycle_time_text),
         )
-
-    def _make_lamps(self, snapshot: Snapshot, view: MachineStatus) -> tuple[Lamp, ...]:
-        """Return the lamps from left to right."""
-        kept = (
-            (Lamp("NOT SAVED", is_lit=True, is_warning=True),)
-            if self.desk.storage_state.read_storage_problem()
-            else ()
-        )
-        return (
-            *view.mode_lamps,
-            *view.lamps,
-            *kept,
-            make_drives_lamp(snapshot, "D"),
-            Lamp("RESET", False, "R"),
-            Lamp("HELP", False, HELP_KEY),
-        )
-
-
-def _find_area_below(area: Rect, rows: Rect) -> Rect:
-    """Return the part of a rectangle that is below the notice rows."""
-    taken = rows.h + GAP_PX if rows.h else 0
-    return Rect(area.x, area.y + taken, area.w, area.h - taken)
-
-
-def place_widget(widget: QWidget, rect: Rect) -> None:
-    """Set the geometry of a widget, and redraw it."""
-    widget.setGeometry(*rect)
-    widget.update()
