@@ -21,6 +21,7 @@ from app.screen.page_base import KeyActions, PageHost
 from app.screen.panel import Panel, RedrawingAttribute
 from app.screen.screen_theme import ALIGN_CENTER, ALIGN_LEFT, ALIGN_RIGHT, ScreenTheme, ThemedPainter
 from app.screen.table_panel import RowPanel
+from app.screen.window_layout import FINGERTIP_PX
 from core.executor.snapshot import Snapshot
 from core.message import Message, join_messages
 from core.tool_edges import format_edge_suffix, get_edge_number, get_tool_number
@@ -214,8 +215,8 @@ class ToolOffsetsPage(OffsetPage):
         self.content_panel.update_rows()
 
 
-FIELD_ROWS = 6  # Fields in each of the two columns.
-FIELDS_WIDTH_FRACTION = 0.6  # Fraction of the width for both columns.
+FIELD_ROWS, LOW_FIELD_ROWS = 6, 4  # Fields in each of two columns, and in each of three in a low panel.
+FIELDS_WIDTH_FRACTION = 0.6  # Fraction of the width for all columns.
 
 
 class ToolShapePanel(Panel):
@@ -245,9 +246,11 @@ class ToolShapePanel(Panel):
         self.frame(painter, title)
         room = self.inside().adjusted(-0.7 * u, 0, 0.7 * u, 0.5 * u)
         fields = QRectF(room.x(), room.y(), FIELDS_WIDTH_FRACTION * room.width(), room.height())
-        wide, high = fields.width() / 2, fields.height() / FIELD_ROWS
+        rows = FIELD_ROWS if fields.height() >= FIELD_ROWS * FINGERTIP_PX else LOW_FIELD_ROWS
+        columns = 2 * FIELD_ROWS // rows
+        wide, high = fields.width() / columns, fields.height() / rows
         for place, name in enumerate(model.field_names):
-            column, row = divmod(place, FIELD_ROWS)
+            column, row = divmod(place, rows)
             cell = QRectF(fields.x() + column * wide, fields.y() + row * high, wide, high)
             self._draw_field(painter, cell.adjusted(0, 0, -0.5 * u, -0.5 * u), name)
             self.add_target(cell, partial(model.select_field, place))
@@ -263,13 +266,13 @@ class ToolShapePanel(Panel):
         u, model = self.theme.unit_px, self._model
         here = name == model.name
         painter.fill_rect(cell, "here" if here else "key")
-        head = cell.adjusted(0.8 * u, 0.3 * u, -0.8 * u, 0)
-        head.setHeight(1.8 * u)
+        head = cell.adjusted(0.6 * u, 0, -0.6 * u, 0)
+        head.setHeight(min(self.theme.find_line_height(2.2), 0.5 * cell.height()))
         painter.draw_text_line(head, make_field_heading(name, model.unit_mode), 1.5, "soft")
         wrong = name in {
             "quadrant" if each.field_name == "tip" else each.field_name for each in model.shape_mistakes
         }
-        foot = cell.adjusted(0.8 * u, 2.2 * u, -0.8 * u, -0.4 * u)
+        foot = QRectF(head.x(), head.bottom(), head.width(), cell.bottom() - head.bottom())
         text = model.format_field(name)
         free = name in {"insert", "holder", "profile"}
         if name == "quadrant" and text:

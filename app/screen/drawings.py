@@ -195,12 +195,12 @@ def draw_tool_outline(
     place = _make_transform(box, outline)
     painter.save()
     painter.setClipRect(box)
-    for polygons, ink, ground in (
-        (outline.body_outlines, "frame", "ghost"),
-        (outline.cutting_outlines, "accent", "key"),
+    for polygons, ink, width, ground in (
+        (outline.body_outlines, "frame", 0.16, "ghost"),
+        (outline.cutting_outlines, "accent", 0.32, "key"),
     ):
         for points in polygons:
-            painter.setPen(look.make_pen(ink, 0.16))
+            painter.setPen(look.make_pen(ink, width))
             painter.setBrush(look.get_color(ground))
             painter.drawPolygon(place.map(_polygon(points)))
     at = place.map(QPointF(0.0, 0.0))

@@ -206,8 +206,19 @@ class Panel(QWidget):
             1.2 * u, (self.theme.title_height + 0.6) * u, -1.2 * u, -0.9 * u
         )
 
-    def frame(self, painter: ThemedPainter, title: str, color: str = "frame", width: float = 0.16) -> None:
-        """Draw a frame with a title in its top edge, in the style of text-mode programs."""
+    def frame(
+        self,
+        painter: ThemedPainter,
+        title: str,
+        color: str = "frame",
+        width: float = 0.16,
+        *,
+        reserved_px: float = 0.0,
+    ) -> None:
+        """Draw a frame with a title in its top edge, as in text-mode programs.
+
+        ``reserved_px`` is the width at the right end of the edge that the title must leave free.
+        """
         look, u, title = self.theme, self.theme.unit_px, tr(title)
         self._titled = title
         high = look.title_height * u
@@ -222,7 +233,7 @@ class Panel(QWidget):
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.drawRect(box)
         size = look.find_em_height(1.7, TextRole.TABLE, high)
-        font = look.fit_font(title, size, self.width() - 4 * u, is_bold=True)
+        font = look.fit_font(title, size, self.width() - 4 * u - reserved_px, is_bold=True)
         painter.setFont(font)
         wide = QFontMetricsF(font).horizontalAdvance(title)
         patch = QRectF(1.6 * u, 0.0, wide + 1.2 * u, high)

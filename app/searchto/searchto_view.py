@@ -424,6 +424,10 @@ class RestartPage(ModelPage):
         only = () if leaving.error_text else (tr("AXES ONLY"),)
         self.functions_panel.show_functions(only, choices, leaving.error_text, is_confirmed=ready)
 
+    def needs_height(self) -> bool:
+        """Return whether the number pad is shown."""
+        return not self.number_pad.isHidden()
+
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Arrange the program, the state, the path, and the list of functions that will start."""
         u = self.theme.unit_px

@@ -145,6 +145,7 @@ def test_line_is_marked_or_its_number_typed_by_touch(operator: Operator) -> None
     assert entry.height() >= FINGERTIP_PX
     press(page.entry_panel, entry)
     assert page.number_pad.isVisible()
+    operator.window.refresh()
     page.number_pad.grab()
     keys = dict(zip("789/456*123-0.(+", page.number_pad._places, strict=False))
     for figure in "12":

@@ -32,6 +32,7 @@ from app.screen.text_sizes import TextRole
 from core.message import Message, join_messages
 
 LATHE_ROW_COUNT = 3
+_SECOND_TITLE_SHARE = 0.34  # Part of the title line for the title of the second value.
 FULL_SIZE_ROW_HEIGHT = 6.3  # Units of row height that numbers of full size need.
 
 
@@ -60,7 +61,8 @@ class PositionPanel(Panel):
             self.frame(painter, "POSITION")
             return
         u = self.theme.unit_px
-        self.frame(painter, join_messages("  ·  ", (view.main_kind.value, view.unit, view.x_label)))
+        title = join_messages("  ·  ", (view.main_kind.value, view.unit, view.x_label))
+        self.frame(painter, title, reserved_px=_SECOND_TITLE_SHARE * self.width())
         self._heading(painter, view)
         head = self.theme.title_height * u
         room = QRectF(0, head, self.width(), self.height() - head - 0.4 * u)
@@ -76,7 +78,10 @@ class PositionPanel(Panel):
         look, u, name = self.theme, self.theme.unit_px, tr(view.second_kind.value)
         high = look.title_height * u
         font = look.fit_font(
-            name, look.find_em_height(1.5, TextRole.TABLE, high), 0.3 * self.width(), is_bold=True
+            name,
+            look.find_em_height(1.5, TextRole.TABLE, high),
+            _SECOND_TITLE_SHARE * self.width() - 3.2 * u,
+            is_bold=True,
         )
         wide = measure_text(name, font)
         place = QRectF(self.width() - wide - 2.4 * u, 0, wide + 0.8 * u, high)
