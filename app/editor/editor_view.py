@@ -153,6 +153,10 @@ class EditorPage(EditorParts):
             self.discard_and_leave()
         return True
 
+    def needs_height(self) -> bool:
+        """Return whether the letter keyboard is shown."""
+        return not self.letter_pad.isHidden()
+
     def find_pending_question(self) -> str:
         """Return the question that F6 confirms, or an empty string if no question is pending."""
         return self.editor.message if self.editor.pending_action else ""

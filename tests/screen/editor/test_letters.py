@@ -103,6 +103,7 @@ def test_letter_pad_closes_and_path_is_visible_again(writer: Writer) -> None:
 def test_text_field_has_minimum_height_above_letter_pad(writer: Writer) -> None:
     writer.new("touched")
     shown(writer)
+    writer.window.refresh()
     writer.window.grab()
     assert writer.editor.text_field.height() >= 3 * writer.editor.text_field.fontMetrics().height()
     assert writer.editor.text_field.geometry().bottom() < writer.editor.letter_pad.geometry().top()
