@@ -475,6 +475,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>CRASH FOUND BEFORE IT HAPPENS</source>
+      <translation>CHOQUE DETECTADO ANTES DE QUE OCURRA</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>CYCLE RUNNING</source>
       <translation>CICLO EN MARCHA</translation>
     </message>
@@ -532,6 +537,11 @@
       <location filename="" />
       <source>Chamfers the corner between two straight lines.</source>
       <translation>Achaflana la esquina entre dos rectas.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Change a tool offset, see its effect, and undo the change.</source>
+      <translation>Cambie un corrector de herramienta, vea su efecto y deshaga el cambio.</translation>
     </message>
     <message>
       <location filename="" />
@@ -637,6 +647,11 @@
       <location filename="" />
       <source>Correct S.</source>
       <translation>Corrija S.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Correct a diameter that is too large because the tool is worn.</source>
+      <translation>Corrija un diámetro demasiado grande por el desgaste de la herramienta.</translation>
     </message>
     <message>
       <location filename="" />
@@ -777,6 +792,11 @@
       <location filename="" />
       <source>Divides one value by another.</source>
       <translation>Divide un valor entre otro.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Drill three holes in the face, and turn the C axis by hand.</source>
+      <translation>Taladre tres agujeros en la cara y gire el eje C a mano.</translation>
     </message>
     <message>
       <location filename="" />
@@ -1355,6 +1375,16 @@
     </message>
     <message>
       <location filename="" />
+      <source>INTERRUPTED JOB</source>
+      <translation>TRABAJO INTERRUMPIDO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>If the drives are off, press D.</source>
+      <translation>Si los servos están apagados, pulse D.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>In a block that moves one axis (X+10 R+ F300; L is optional), R+ lengthens the move by the tool radius and R- shortens it.</source>
       <translation>En un bloque que mueve un solo eje (X+10 R+ F300; L es opcional), R+ alarga el movimiento en el radio de la herramienta y R- lo acorta.</translation>
     </message>
@@ -1630,6 +1660,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Make a dry run, stop and resume it, and make the first part.</source>
+      <translation>Haga una marcha en vacío, deténgala, reanúdela y haga la primera pieza.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Marks the start of a subprogram or of a section to be repeated; LBL 0 ends a subprogram.</source>
       <translation>Marca el inicio de un subprograma o de una parte que se repite; LBL 0 termina un subprograma.</translation>
     </message>
@@ -1890,8 +1925,18 @@
     </message>
     <message>
       <location filename="" />
+      <source>OFFSETS</source>
+      <translation>CORRECTORES</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Offset suppression</source>
       <translation>Supresión de decalajes</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>On the Automatic page, press F2, type PIN4, press F3 and then F1. The editor opens.</source>
+      <translation>En la página Automático pulse F2, escriba PIN4, pulse F3 y luego F1. Se abre el editor.</translation>
     </message>
     <message>
       <location filename="" />
@@ -1952,6 +1997,11 @@
       <location filename="" />
       <source>POINT -</source>
       <translation>PUNTO -</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>PROGRAM BY SHAPES</source>
+      <translation>PROGRAMA CON FORMAS</translation>
     </message>
     <message>
       <location filename="" />
@@ -2065,6 +2115,176 @@
     </message>
     <message>
       <location filename="" />
+      <source>Press B, F2, select STICK-OUT, type 1.2 and press Enter. The proof finds no error.</source>
+      <translation>Pulse B, F2, elija VOLADIZO, escriba 1.2 y pulse Enter. La prueba no encuentra errores.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press B. The page PART shows the findings of the proof.</source>
+      <translation>Pulse B. La página PIEZA muestra los hallazgos de la prueba.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press D if the drives are off, then F11 and F12. Wait until the program ends.</source>
+      <translation>Pulse D si los servos están apagados, luego F11 y F12. Espere a que termine el programa.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press D to turn the drives on.</source>
+      <translation>Pulse D para encender los servos.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press D to turn the drives on. The NO COUNT lamp (P) must be off.</source>
+      <translation>Pulse D para encender los servos. La lámpara SIN CONT (P) debe estar apagada.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press D. The start is rejected, because the tool may be inside the part.</source>
+      <translation>Pulse D. El arranque se rechaza, porque la herramienta puede estar dentro de la pieza.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press Enter, read the path of the tool, and press F10. Wait a second, then press F11 and F12.</source>
+      <translation>Pulse Enter, lea el recorrido de la herramienta y pulse F10. Espere un segundo y pulse F11 y F12.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F1, F2, D, then F11 and F12 together. Read why the start is rejected.</source>
+      <translation>Pulse F1, F2, D y luego F11 y F12 a la vez. Lea por qué se rechaza el arranque.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F1, F2. If the drives are off, press D.</source>
+      <translation>Pulse F1, F2. Si los servos están apagados, pulse D.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F1, then F2, to open the Automatic page. Line 17 (G33) cuts the thread with T5.</source>
+      <translation>Pulse F1 y luego F2 para abrir la página Automático. La línea 17 (G33) corta la rosca con T5.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F1, then F2, to open the Automatic page. The program turns C with the word CA.</source>
+      <translation>Pulse F1 y luego F2 para abrir la página Automático. El programa gira C con la palabra CA.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F1, then F2, to open the Automatic page. TurnDesk proves bushing.nc.</source>
+      <translation>Pulse F1 y luego F2 para abrir la página Automático. TurnDesk prueba bushing.nc.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F1, then F2. The program can start again.</source>
+      <translation>Pulse F1 y luego F2. El programa puede arrancar de nuevo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F1, then F2. TurnDesk has proved the program again with the old offset.</source>
+      <translation>Pulse F1 y luego F2. TurnDesk ha probado otra vez el programa con el corrector anterior.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F1, then F4, to open the MDI page.</source>
+      <translation>Pulse F1 y luego F4 para abrir la página MDI.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F11 and F12 together to make the part. Wait until PARTS has increased by 1.</source>
+      <translation>Pulse F11 y F12 a la vez para hacer la pieza. Espere a que PIEZAS aumente en 1.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F11 and F12 together to resume. Wait until the program ends.</source>
+      <translation>Pulse F11 y F12 a la vez para reanudar. Espere a que termine el programa.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F11 and F12 together to start the program. The tool moves along the path.</source>
+      <translation>Pulse F11 y F12 a la vez para arrancar el programa. La herramienta sigue la trayectoria.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F11 and F12 together, and wait until the tool cuts in line 10.</source>
+      <translation>Pulse F11 y F12 a la vez y espere a que la herramienta corte en la línea 10.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F11 and F12 together. M19 locks the spindle. Line 11 turns C to 120 degrees.</source>
+      <translation>Pulse F11 y F12 a la vez. M19 bloquea el husillo. La línea 11 gira C a 120 grados.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F11 and F12 together. The program cuts with D1 from line 22 to line 31.</source>
+      <translation>Pulse F11 y F12 a la vez. El programa corta con D1 de la línea 22 a la 31.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F11 and F12 together. Wait for line 17. Each pass starts at the same spindle angle.</source>
+      <translation>Pulse F11 y F12 a la vez. Espere a la línea 17. Cada pasada empieza en el mismo ángulo del husillo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F3 to edit again. Go to the last line, press Shift+F3, F (FACE), F2, F10, then F3.</source>
+      <translation>Pulse F3 para editar de nuevo. Vaya a la última línea, pulse Mayús+F3, F (REFRENTADO), F2, F10 y F3.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F3, Shift+F3, T (TURN). Type .5, Z-.8, X.65, Z-1.2, each with Enter. Select TOOL (up arrow), type 1, Enter, F2, F10, F3.</source>
+      <translation>Pulse F3, Mayús+F3, T (CILINDRADO). Escriba .5, Z-.8, X.65, Z-1.2 con Enter. HERRAMIENTA (flecha arriba): 1, Enter, F2, F10, F3.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F6 to compare the paths. Press Esc until the Automatic page opens.</source>
+      <translation>Pulse F6 para comparar las trayectorias. Pulse Esc hasta que se abra la página Automático.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F6 to see the effect on the path. Press Esc until the Automatic page opens.</source>
+      <translation>Pulse F6 para ver el efecto en la trayectoria. Pulse Esc hasta que se abra la página Automático.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F6. SEARCHTO opens at the interrupted line.</source>
+      <translation>Pulse F6. BUSCAR A se abre en la línea interrumpida.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press F8. The page lists the position of each tool tip.</source>
+      <translation>Pulse F8. La página muestra la posición de la punta de cada herramienta.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press H during a pass. The axes stop after the end of this pass, so that the thread stays good.</source>
+      <translation>Pulse H durante una pasada. Los ejes paran al final de esta pasada, y la rosca no se daña.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press H. The axes stop on the path. This is feed hold.</source>
+      <translation>Pulse H. Los ejes se detienen en la trayectoria. Es la retención de avance.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press P. The NO COUNT lamp turns off. On a real lathe, load the stock now.</source>
+      <translation>Pulse P. La lámpara SIN CONT se apaga. En un torno real, cargue ahora el material.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press P. The NO COUNT lamp turns on, so that the dry run is not counted as a part.</source>
+      <translation>Pulse P. La lámpara SIN CONT se enciende, y la marcha en vacío no cuenta como pieza.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press Scroll Lock, the E-stop of the simulated lathe.</source>
+      <translation>Pulse Bloq Despl, el paro de emergencia del torno simulado.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Press Shift+F3, N (HEAD). Select BAR DIAMETER, type .75, Enter, F2. Press F10, F3 to save and load.</source>
+      <translation>Pulse Mayús+F3, N (CABECERA). Elija DIÁMETRO DE LA BARRA, escriba .75, Enter, F2. F10, F3: guardar y cargar.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Prints on the original control. This control prints nothing and shows a message.</source>
       <translation>Imprime en el control original. Este control no imprime nada y muestra un mensaje.</translation>
     </message>
@@ -2152,6 +2372,11 @@
       <location filename="" />
       <source>Rapid; all axes arrive at the same time.</source>
       <translation>Rápido; todos los ejes llegan al mismo tiempo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Read the row INTERRUPTED. Press U, wait a second, then press Y to release the E-stop.</source>
+      <translation>Lea la fila INTERRUMPIDO. Pulse U, espere un segundo y pulse Y para soltar el paro de emergencia.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2282,6 +2507,11 @@
       <location filename="" />
       <source>Repeats the following lines n times, up to the line with LF.</source>
       <translation>Repite n veces las líneas siguientes, hasta la línea con LF.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Restore D1 for the next lesson. Press F9, type 1, Enter, F4 (UNDO), Y.</source>
+      <translation>Restaure D1 para la próxima lección. Pulse F9, escriba 1, Enter, F4 (DESHACER), Y.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2645,6 +2875,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>See how the proof rejects a program that would hit the chuck.</source>
+      <translation>Vea cómo la prueba rechaza un programa que chocaría con el plato.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Selects the SINUMERIK language mode; accepted.</source>
       <translation>Selecciona el modo de lenguaje SINUMERIK; aceptado.</translation>
     </message>
@@ -2682,6 +2917,11 @@
       <location filename="" />
       <source>Set a cutting feed with G95Fn or G94Fn.</source>
       <translation>Ponga un avance de corte con G95Fn o G94Fn.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Set a threading tool, cut a thread, and stop between two passes.</source>
+      <translation>Ponga una herramienta de roscar, corte una rosca y pare entre dos pasadas.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2860,6 +3100,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>Stop in the middle of a cut with the E-stop, and resume the part.</source>
+      <translation>Pare en medio de un corte con el paro de emergencia y reanude la pieza.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Stop the spindle with M05 first.</source>
       <translation>Pare antes el husillo con M05.</translation>
     </message>
@@ -2952,6 +3197,21 @@
       <location filename="" />
       <source>T is not allowed between G35 and G36.</source>
       <translation>No se permite T entre G35 y G36.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>T2 must cut .010 in less deep in Z. Select Z of T2 with the arrows, type .01, press F2 (ADD).</source>
+      <translation>T2 debe cortar .010 in menos en Z. Elija Z de T2 con las flechas, escriba .01 y pulse F2 (SUMAR).</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>T5 has no offset, so the program is rejected. Press F8.</source>
+      <translation>T5 no tiene corrector, así que el programa se rechaza. Pulse F8.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>T5 is where T1 is. Select X of T5, type the X of T1, Enter, then the Z of T1, Enter.</source>
+      <translation>T5 está donde T1. Elija X de T5, escriba la X de T1, Enter, luego la Z de T1, Enter.</translation>
     </message>
     <message>
       <location filename="" />
@@ -3055,6 +3315,16 @@
     </message>
     <message>
       <location filename="" />
+      <source>The bar sticks out only .7 in. Press F2 (STOCK), select STICK-OUT, type .7 and press Enter.</source>
+      <translation>La barra sobresale solo .7 in. Pulse F2 (MATERIAL), elija VOLADIZO, escriba .7 y pulse Enter.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The change was wrong. Press F8, select T2, press F4 (UNDO), read the values and press Y.</source>
+      <translation>El cambio era erróneo. Pulse F8, elija T2, pulse F4 (DESHACER), lea los valores y pulse Y.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>The coordinates of the block are machine coordinates.</source>
       <translation>Las coordenadas del bloque son coordenadas de máquina.</translation>
     </message>
@@ -3105,6 +3375,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>The outside diameter is .7520 instead of .7500. D1 corrects it. Press F1, then F9.</source>
+      <translation>El diámetro exterior es .7520 en vez de .7500. D1 lo corrige. Pulse F1 y luego F9.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>The position of the tool tip relative to the workpiece does not change while the rotary axes move.</source>
       <translation>La posición de la punta de la herramienta respecto a la pieza no cambia mientras se mueven los ejes giratorios.</translation>
     </message>
@@ -3142,6 +3417,11 @@
       <location filename="" />
       <source>The spindle stops at 0 degrees, like SPOS=0.</source>
       <translation>El husillo para a 0 grados, como SPOS=0.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>The tool cuts the interrupted line again. Wait until the part is counted.</source>
+      <translation>La herramienta corta otra vez la línea interrumpida. Espere a que se cuente la pieza.</translation>
     </message>
     <message>
       <location filename="" />
@@ -3370,6 +3650,26 @@
     </message>
     <message>
       <location filename="" />
+      <source>Type 1, Enter. At X DIAMETER CORRECTION? type -.002, Enter. Press Enter for Z and R.</source>
+      <translation>Escriba 1, Enter. En ¿CORRECCIÓN EN DIÁMETRO X? escriba -.002, Enter. Pulse Enter para Z y R.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Type CA90S60, press Enter, then F11 and F12. C turns to 90 degrees.</source>
+      <translation>Escriba CA90S60, pulse Enter, luego F11 y F12. C gira a 90 grados.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Type M05, press Enter, then F11 and F12, to release the spindle.</source>
+      <translation>Escriba M05, pulse Enter, luego F11 y F12, para soltar el husillo.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Type M19S60, press Enter, then F11 and F12. The spindle turns to 0 degrees.</source>
+      <translation>Escriba M19S60, pulse Enter, luego F11 y F12. El husillo gira a 0 grados.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>UNAVAILABLE</source>
       <translation>NO DISPONIBLE</translation>
     </message>
@@ -3475,6 +3775,16 @@
     </message>
     <message>
       <location filename="" />
+      <source>Wait until the part is finished and counted. The NO COUNT lamp (P) must be off.</source>
+      <translation>Espere a que la pieza esté terminada y contada. La lámpara SIN CONT (P) debe estar apagada.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Wait until the program is proved. Press V to see the part.</source>
+      <translation>Espere a que el programa esté probado. Pulse V para ver la pieza.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Waits for SPOSA. This is not necessary on this control, because SPOSA itself waits until the spindle is at its angle.</source>
       <translation>Espera a SPOSA. En este control no es necesario, porque SPOSA ya espera hasta que el husillo está en su ángulo.</translation>
     </message>
@@ -3497,6 +3807,11 @@
       <location filename="" />
       <source>Waits until TB2-7 is open.</source>
       <translation>Espera hasta que TB2-7 se abra.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Watch C on the position display. Wait until the program ends.</source>
+      <translation>Observe C en el indicador de posición. Espere a que termine el programa.</translation>
     </message>
     <message>
       <location filename="" />
@@ -3657,6 +3972,11 @@
       <location filename="" />
       <source>Write Z.</source>
       <translation>Escriba Z.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>Write a program with forms, without G codes.</source>
+      <translation>Escriba un programa con formularios, sin códigos G.</translation>
     </message>
     <message>
       <location filename="" />
@@ -9422,6 +9742,71 @@
       <location filename="app/extras/jobs/jobs_watch.py" />
       <source>{count} SETUP ITEMS NOT READY</source>
       <translation>{count} PUNTOS DE PREPARACIÓN SIN TERMINAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/lessons/lesson_card.py" />
+      <source>LESSON {number}, {title}: ALL STEPS DONE ✓</source>
+      <translation>LECCIÓN {number}, {title}: TODOS LOS PASOS HECHOS ✓</translation>
+    </message>
+    <message>
+      <location filename="app/extras/lessons/lesson_card.py" />
+      <source>LESSON {number}, {title}: STEP {step} OF {count}</source>
+      <translation>LECCIÓN {number}, {title}: PASO {step} DE {count}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/lessons/lesson_card.py" />
+      <source>NEXT LESSON: F1, F10, LESSONS</source>
+      <translation>PRÓXIMA LECCIÓN: F1, F10, LECCIONES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/lessons/lessons_function.py" />
+      <source>BEGIN</source>
+      <translation>EMPEZAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/lessons/lessons_function.py" />
+      <source>DAMAGED</source>
+      <translation>DAÑADA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/lessons/lessons_function.py" />
+      <source>ENTER: BEGIN LESSON   F4: CLOSE LESSON   ESC: BACK TO THE LIST</source>
+      <translation>ENTER: EMPEZAR LECCIÓN   F4: CERRAR LECCIÓN   ESC: VOLVER A LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/lessons/lessons_function.py" />
+      <source>LESSONS</source>
+      <translation>LECCIONES</translation>
+    </message>
+    <message>
+      <location filename="app/extras/lessons/lessons_function.py" />
+      <source>LESSONS NEED A SIMULATED MACHINE. START turndesk --demo</source>
+      <translation>LAS LECCIONES NECESITAN UNA MÁQUINA SIMULADA. ARRANQUE turndesk --demo</translation>
+    </message>
+    <message>
+      <location filename="app/extras/lessons/lessons_function.py" />
+      <source>NO LESSON IS STARTED</source>
+      <translation>NO HAY NINGUNA LECCIÓN EMPEZADA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/lessons/lessons_function.py" />
+      <source>learn TurnDesk step by step</source>
+      <translation>aprenda TurnDesk paso a paso</translation>
+    </message>
+    <message>
+      <location filename="app/extras/lessons/lessons_function.py" />
+      <source>{done} OF {count} STEPS</source>
+      <translation>{done} DE {count} PASOS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/lessons/lessons_function.py" />
+      <source>{minutes} min</source>
+      <translation>{minutes} min</translation>
+    </message>
+    <message>
+      <location filename="app/extras/lessons/lessons_function.py" />
+      <source>✓ DONE</source>
+      <translation>✓ HECHA</translation>
     </message>
     <message>
       <location filename="app/extras/mtconnect/extra.py" />
@@ -20772,6 +21157,46 @@
       <location filename="core/extras/drawings/unit_check.py" />
       <source>{size} {unit} long</source>
       <translation>{size} {unit} de largo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/lessons/lesson_file.py" />
+      <source>a table is missing</source>
+      <translation>falta una tabla</translation>
+    </message>
+    <message>
+      <location filename="core/extras/lessons/lesson_file.py" />
+      <source>step {number}: {error}</source>
+      <translation>paso {number}: {error}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/lessons/lesson_file.py" />
+      <source>the key {key} is missing</source>
+      <translation>falta la clave {key}</translation>
+    </message>
+    <message>
+      <location filename="core/extras/lessons/lesson_file.py" />
+      <source>the key {key} is unknown</source>
+      <translation>la clave {key} es desconocida</translation>
+    </message>
+    <message>
+      <location filename="core/extras/lessons/lesson_file.py" />
+      <source>the lesson has no steps</source>
+      <translation>la lección no tiene pasos</translation>
+    </message>
+    <message>
+      <location filename="core/extras/lessons/lesson_file.py" />
+      <source>the step has no condition</source>
+      <translation>el paso no tiene condición</translation>
+    </message>
+    <message>
+      <location filename="core/extras/lessons/lesson_file.py" />
+      <source>{file} cannot be used: {error}. Install TurnDesk again</source>
+      <translation>{file} no se puede usar: {error}. Instale TurnDesk de nuevo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/lessons/lesson_file.py" />
+      <source>{value} is not a valid value of {key}</source>
+      <translation>{value} no es un valor válido de {key}</translation>
     </message>
     <message>
       <location filename="core/extras/quality/control_charts.py" />

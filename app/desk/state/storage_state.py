@@ -37,7 +37,7 @@ class StorageState:
     ) -> None:
         """Set the functions of the program file monitor.
 
-        ``read_file_difference``, ``recheck_file`` and ``can_reload_file`` call these functions.
+        ``describe_file_difference``, ``recheck_file`` and ``can_reload_file`` call these functions.
         """
         self._difference, self._recheck_file, self._can_reload = read_difference, recheck_file, can_reload
 
