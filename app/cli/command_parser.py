@@ -18,7 +18,8 @@ from app.desk.command_errors import EXIT_USAGE, CommandError
 from core.message import Message, find_similar_word
 
 # The texts are English. For each of them, argparse would search the system for catalogs of translations.
-argparse._ = str  # type: ignore[attr-defined]
+# argparse also passes None for a missing text, which must remain None.
+argparse._ = lambda text: text  # type: ignore[attr-defined]
 
 _DEFAULT_WIDTH = 80  # characters
 PRE_COMMAND_OPTIONS = ("machine", "program", "offsets")

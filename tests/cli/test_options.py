@@ -410,3 +410,18 @@ def test_a_program_from_stdin_is_proved_as_from_a_file(
     assert turndesk("prove", "-", part).status == 2
     monkeypatch.setattr("sys.stdin", TextIOWrapper(BytesIO(b"")))
     assert turndesk("prove", "-").status == 2  # nothing came
+
+
+def test_help_has_no_none_where_a_text_is_missing(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["help"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[lines.index("commands:") + 1].split() == ["COMMAND"]
+    assert [name for name, parser in parsers() if "None" in parser.format_help().split()] == []
+
+
+@pytest.mark.parametrize("word", ["None", "no-such-command"])
+def test_help_rejects_a_command_that_does_not_exist(word: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stopped:
+        main(["help", word])
+    assert stopped.value.code == 2
+    assert word in capsys.readouterr().err
