@@ -25,6 +25,9 @@ screen, in `F7` with the time, in the event log and in `status.json`. The alarm 
 the program line and the drive's own text if they are known. Technical details are in
 `logs/turndesk.log`.
 
+The address of an alarm on this page ends in its number, for example `alarms.html#102`. The help of
+the screen (`?`) shows it.
+
 The kind in parentheses is what the alarm does:
 """
 _KINDS = {
@@ -59,7 +62,8 @@ def _subjects() -> Iterator[str]:
 
 
 def _entry(entry: AlarmEntry) -> Iterator[str]:
-    yield f"**{entry.number} {entry.text.upper()}** ({get_alarm_kind(entry.reaction)})  "
+    anchor = f'<a id="{entry.number}"></a>'
+    yield f"{anchor}**{entry.number} {entry.text.upper()}** ({get_alarm_kind(entry.reaction)})  "
     yield Message("Likely causes: {causes}.  ", causes="; ".join(entry.causes))
     yield f"Remedy: {entry.remedy}."
     yield ""

@@ -6284,6 +6284,16 @@
       <translation>SÍ</translation>
     </message>
     <message>
+      <location filename="app/desk/pages/alarm_help.py" />
+      <source>CAUSES, MOST LIKELY FIRST</source>
+      <translation>CAUSAS, LA MÁS PROBABLE PRIMERO</translation>
+    </message>
+    <message>
+      <location filename="app/desk/pages/alarm_help.py" />
+      <source>WHAT TO DO</source>
+      <translation>QUÉ HACER</translation>
+    </message>
+    <message>
       <location filename="app/desk/pages/code_help.py" />
       <source>MATCHING CODES</source>
       <translation>CÓDIGOS QUE COINCIDEN</translation>
@@ -14915,11 +14925,6 @@
     </message>
     <message>
       <location filename="app/screen/window/alarm_panels.py" />
-      <source>CAUSES, MOST LIKELY FIRST</source>
-      <translation>CAUSAS, LA MÁS PROBABLE PRIMERO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/alarm_panels.py" />
       <source>No alarms or stops yet.</source>
       <translation>Todavía no hay alarmas ni paros.</translation>
     </message>
@@ -14930,13 +14935,23 @@
     </message>
     <message>
       <location filename="app/screen/window/alarm_panels.py" />
-      <source>WHAT TO DO</source>
-      <translation>QUÉ HACER</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/alarm_panels.py" />
       <source>line {line}</source>
       <translation>línea {line}</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/documentation_browser.py" />
+      <source>STOP AXES AND SPINDLE BEFORE OPENING THE BROWSER</source>
+      <translation>PARE EJES Y HUSILLO ANTES DE ABRIR EL NAVEGADOR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/documentation_browser.py" />
+      <source>THE BROWSER DOES NOT START. OPEN THE ADDRESS ON ANOTHER COMPUTER</source>
+      <translation>EL NAVEGADOR NO ARRANCA. ABRA LA DIRECCIÓN EN OTRO ORDENADOR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/documentation_browser.py" />
+      <source>THE DOCUMENTATION IS NOT INSTALLED ON THIS COMPUTER</source>
+      <translation>LA DOCUMENTACIÓN NO ESTÁ INSTALADA EN ESTE ORDENADOR</translation>
     </message>
     <message>
       <location filename="app/screen/window/file_opening.py" />
@@ -14957,6 +14972,21 @@
       <location filename="app/screen/window/help_panel.py" />
       <source>HELP  ·  ?: NEXT  ·  ARROWS: SCROLL  ·  ANY OTHER KEY: CLOSE</source>
       <translation>AYUDA  ·  ?: SIGUIENTE  ·  FLECHAS: DESPLAZAR  ·  OTRA TECLA: CERRAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/help_panel.py" />
+      <source>IN THE DOCUMENTATION: {path}</source>
+      <translation>EN LA DOCUMENTACIÓN: {path}</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/help_panel.py" />
+      <source>IN THE DOCUMENTATION: {path} · B: OPEN IN THE BROWSER</source>
+      <translation>EN LA DOCUMENTACIÓN: {path} · B: ABRIR EN EL NAVEGADOR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/help_panel.py" />
+      <source>OPEN IN THE BROWSER</source>
+      <translation>ABRIR EN EL NAVEGADOR</translation>
     </message>
     <message>
       <location filename="app/screen/window/main_window.py" />

@@ -8,10 +8,13 @@ from pathlib import Path
 
 import pytest
 
+from app.desk.pages.alarm_help import find_alarm_address
+from app.desk.pages.guide_text import find_page_address
 from resources.documentation import build_site
 from resources.documentation.build_site import SiteError
 from resources.documentation.site_pages import Navigation, convert_lists, list_site_files, make_navigation
 from tests.documents.pages import ROOT, pages
+from tests.documents.test_help_addresses import NUMBERS, TOPICS
 
 
 def paths_of(navigation: Navigation) -> Iterator[str]:
@@ -37,6 +40,17 @@ def test_site_is_built_without_a_warning_and_has_every_page(site: Path) -> None:
 
 
 @pytest.mark.long
+def test_site_has_a_target_for_every_address_that_the_help_shows(site: Path) -> None:
+    addresses = [find_page_address(topic, language) for topic in TOPICS for language in ("en", "es")]
+    addresses += map(find_alarm_address, NUMBERS)
+    missing = []
+    for address in addresses:
+        file, _, anchor = address.partition("#")
+        if f'id="{anchor}"' not in (site / file).read_text("utf-8"):
+            missing.append(address)
+    assert missing == []
+
+
 def test_pages_load_nothing_from_a_network(site: Path) -> None:
     loaded = re.compile(r'<(?:script|link|img|iframe)\b[^>]*\b(?:src|href)="?(?:https?:)?//')
     assert [path.name for path in site.rglob("*.html") if loaded.search(path.read_text("utf-8"))] == []

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import sys
+from dataclasses import replace
+from pathlib import Path
+
 import pytest
+from PySide6.QtCore import QUrl
+from PySide6.QtGui import QDesktopServices
 from PySide6.QtTest import QTest
 
 from app.desk.pages import guide_text
 from app.screen import page_table
+from app.screen.window import documentation_browser
 from app.screen.window.help_panel import wrap_words
 from app.screen.window.key_table import HELP_KEY
 from core.executor.commands import CycleStart, FeedHold, SetSwitch
-from core.executor.snapshot import Alarm, MachineState
+from core.executor.snapshot import Alarm, LogEvent, MachineState
 from tests.screen.hands import Hands, Key
 from tests.screen.lathe import Operator
 from tests.screen.test_text_sizes import PAGES
@@ -164,6 +171,110 @@ def test_help_about_the_alarm_log(hands: Hands) -> None:
     hands.key(Key.Key_F7)
     ask(hands)
     assert "Scroll the list" in hands.frame.help_panel.shown_text
+
+
+def test_help_explains_the_selected_alarm_of_the_log(hands: Hands) -> None:
+    older = Alarm(102, "following", "FOLLOWING ERROR", "cause", "remedy")
+    newer = Alarm(103, "in-position", "NOT IN POSITION", "cause", "remedy")
+    for alarm in (older, newer):
+        hands.desk.alarm_log.hear(LogEvent(0.0, "alarm", alarm.text, alarm=alarm))
+    hands.window.refresh()
+    hands.key(Key.Key_F7)
+    hands.window.press_key("Pan down")  # The log shows the newest entry first, so this is the older one.
+    ask(hands)
+    assert hands.frame.help_panel.shown_text.startswith("102  ·  FOLLOWING ERROR\ndocs/alarms.html#102")
+
+
+@pytest.mark.parametrize("page", [page_table.AUTOMATIC, page_table.TOOLS])
+def test_help_begins_with_the_active_alarm(hands: Hands, page: str) -> None:
+    assert hands.frame.open_page(page)
+    hands.machine.fault(Alarm(102, "following", "FOLLOWING ERROR", "cause", "remedy"))
+    hands.window.refresh()
+    hands.window.press_key(HELP_KEY)
+    assert hands.frame.help_panel.addresses[0] == "docs/alarms.html#102"
+    assert "cause" in hands.frame.help_panel.shown_text
+
+
+def test_help_without_an_alarm_has_no_alarm_address(hands: Hands) -> None:
+    hands.key(Key.Key_F7)
+    ask(hands)
+    assert hands.frame.help_panel.addresses == ("docs/guide/screen.html#alarms-and-stops-f7",)
+
+
+@pytest.fixture
+def opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[QUrl]:
+    """The addresses that were opened in the browser of a desktop on which the site is installed."""
+    found: list[QUrl] = []
+    site = tmp_path / "documents"
+    (site / "docs" / "guide").mkdir(parents=True)
+    for name in ("index.html", "docs/guide/screen.html"):
+        (site / name).touch()
+    monkeypatch.setattr(sys, "prefix", str(tmp_path))
+    monkeypatch.setattr(documentation_browser, "has_browser", lambda: True)
+
+    def open_url(url: QUrl) -> bool:
+        found.append(url)
+        return True
+
+    monkeypatch.setattr(QDesktopServices, "openUrl", open_url)
+    return found
+
+
+def test_b_opens_the_section_in_the_browser(hands: Hands, opened: list[QUrl]) -> None:
+    ask(hands)
+    shown = " ".join(row.text for row in hands.frame.help_panel._rows)
+    assert "documents/docs/guide/screen.html#automatic · B: OPEN IN THE BROWSER" in shown
+    hands.type("b")
+    assert not is_open(hands)
+    assert [url.fragment() for url in opened] == ["automatic"]
+    assert opened[0].toLocalFile().endswith("documents/docs/guide/screen.html")
+
+
+def test_b_only_closes_the_help_on_a_kiosk(hands: Hands, opened: list[QUrl]) -> None:
+    hands.frame.help_panel.browser = documentation_browser.DocumentationBrowser(hands.desk, is_kiosk=True)
+    ask(hands)
+    assert not any("BROWSER" in row.text for row in hands.frame.help_panel._rows)
+    hands.type("b")
+    assert not is_open(hands)
+    assert opened == []
+
+
+def test_b_only_closes_the_help_without_an_installed_site(
+    hands: Hands, opened: list[QUrl], tmp_path: Path
+) -> None:
+    (tmp_path / "documents" / "index.html").unlink()
+    ask(hands)
+    hands.type("b")
+    assert not is_open(hands)
+    assert opened == []
+
+
+def test_the_browser_is_not_opened_while_a_program_is_stopped_in_a_cycle(
+    hands: Hands, opened: list[QUrl]
+) -> None:
+    hands.machine.now = replace(hands.machine.now, state=MachineState.HOLD)
+    ask(hands)
+    hands.type("b")
+    assert opened == []
+    assert hands.desk.prompt_notice
+
+
+@pytest.mark.parametrize("address", ["docs/missing.html#a", "", "../../etc/passwd"])
+def test_a_section_that_is_not_installed_is_reported(hands: Hands, opened: list[QUrl], address: str) -> None:
+    browser = hands.frame.help_panel.browser
+    assert browser is not None
+    assert not browser.open_section(address)
+    assert opened == []
+    assert hands.desk.prompt_notice
+
+
+def test_a_browser_that_does_not_start_is_reported(
+    hands: Hands, opened: list[QUrl], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(QDesktopServices, "openUrl", lambda _url: False)
+    ask(hands)
+    hands.type("b")
+    assert hands.desk.prompt_notice
 
 
 def test_missing_guide_is_reported(hands: Hands, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,6 +14,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from app.desk.translation import ENGLISH_CODE
+from core.page_contents import make_anchor
 
 REFERENCE_FILE, FUNCTIONS_FILE = "guide/screen.md", "guide/special-functions.md"
 COMMON_KEYS, ALARM_LOG = "EVERY PAGE", "ALARMS AND STOPS"  # Topics that are not pages.
@@ -57,13 +58,15 @@ class BlockKind(Enum):
     TEXT = "text"
     KEY = "key"
     PICTURE = "picture"
+    ADDRESS = "address"
 
 
 @dataclass(frozen=True, slots=True)
 class GuideBlock:
-    """One heading, paragraph, key description or picture of the guide.
+    """One heading, paragraph, key description, picture or address of the guide.
 
     ``text`` of a picture is its path. ``key`` of a key description is the first cell of its table row.
+    ``text`` of an address is the address of a section, from the folder of the documentation site.
     """
 
     kind: BlockKind
@@ -83,18 +86,39 @@ def read_page_help(topic: str, language: str) -> tuple[GuideBlock, ...]:
     ``topic`` is the name of the page, ``COMMON_KEYS`` or ``ALARM_LOG``. The result is empty if the guide
     does not describe the page.
     """
-    return _read_translated_section(REFERENCE_FILE, _PAGE_HEADINGS.get(topic, ""), language)
+    return read_section(*_find_page_heading(topic, language))
+
+
+def find_page_address(topic: str, language: str) -> str:
+    """Return the address of the section about a page, or an empty string if the guide has no such section.
+
+    The address is a path from the folder of the documentation site, with an anchor.
+    """
+    name, heading = _find_page_heading(topic, language)
+    return make_section_address(name, heading) if heading else ""
+
+
+def make_section_address(name: str, heading: str) -> str:
+    """Return the address of a section of a file in ``docs``, from the folder of the documentation site."""
+    return f"docs/{name.removesuffix('.md')}.html#{make_anchor(heading)}"
+
+
+def _find_page_heading(topic: str, language: str) -> tuple[str, str]:
+    """Return the guide file of a language and the heading of a page, which is empty for an unknown page."""
+    english, spanish = _PAGE_HEADINGS.get(topic, ("", ""))
+    return (REFERENCE_FILE, english) if language == ENGLISH_CODE else (_SPANISH_FILE, spanish)
 
 
 def read_function_help(name: str, language: str) -> tuple[GuideBlock, ...]:
-    """Return the section about a special function, or an empty tuple if the guide does not describe it.
+    """Return the address and the section of a special function, or an empty tuple if the guide has neither.
 
     ``name`` is the English name of the function.
     """
     wanted = name.casefold()
     for heading in _list_headings(find_guide_folder(), FUNCTIONS_FILE):
         if heading.lstrip("0123456789 ").casefold() == wanted:
-            return _read_translated_section(FUNCTIONS_FILE, heading, language)
+            address = GuideBlock(BlockKind.ADDRESS, make_section_address(FUNCTIONS_FILE, heading))
+            return (address, *read_section(FUNCTIONS_FILE, heading))
     return ()
 
 

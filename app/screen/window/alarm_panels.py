@@ -181,6 +181,16 @@ class AlarmList(RowPanel):
         """Return the name of the selected entry's recording, or an empty string if there is no recording."""
         return self.logged_stops[self.marked].recording_name if self.marked < len(self.logged_stops) else ""
 
+    def find_explained_alarm(self, active_alarms: Sequence[Alarm]) -> Alarm | None:
+        """Return the alarm that the help explains, or None without an alarm.
+
+        It is the selected alarm while the log is open, and the first active alarm while the log is closed.
+        """
+        shown = (
+            [stop.alarm for stop in self.logged_stops[self.marked :]] if self.isVisible() else active_alarms
+        )
+        return shown[0] if shown else None
+
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the logged alarms and stops, or a message if the log is empty."""
         u = self.theme.unit_px

@@ -15,14 +15,22 @@ from app.screen.panel import RedrawingAttribute
 from app.screen.screen_theme import ScreenTheme, ThemedPainter, measure_text
 from app.screen.table_panel import RowPanel
 from app.screen.text_sizes import TextRole
+from app.screen.window.documentation_browser import DOCUMENTS_FOLDER_NAME, DocumentationBrowser
 from app.screen.window.key_table import HELP_KEY, MODIFIER_KEYS
+from core.message import Message
 
 TEXT_SIZE, MAX_TEXT_SIZE = 2.1, 3.0  # Units.
 ROW_RATIO = 1.6  # Height of a row as a ratio to the em height of its text.
 KEY_SHARE = 0.3  # Largest width of the key column as a ratio to the width of the panel.
 _MAX_PICTURE_SHARE = 0.9  # Largest height of a picture as a ratio to the height of the visible rows.
 _SPACED_KINDS = frozenset({BlockKind.HEADING, BlockKind.PICTURE})  # A blank row precedes these blocks.
-_KIND_COLORS = {BlockKind.HEADING: "accent", BlockKind.TEXT: "text", BlockKind.KEY: "text"}
+_KIND_COLORS = {
+    BlockKind.HEADING: "accent",
+    BlockKind.TEXT: "text",
+    BlockKind.KEY: "text",
+    BlockKind.ADDRESS: "soft",
+}
+_BROWSER_KEY = Qt.Key.Key_B
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +59,7 @@ class HelpPanel(RowPanel):
     def __init__(self, theme: ScreenTheme, parent: QWidget) -> None:
         super().__init__(theme, parent)
         self._blocks: tuple[GuideBlock, ...] = ()
+        self.browser: DocumentationBrowser | None = None
         self._previous_focus: QWidget | None = None
         self._pictures: dict[str, QPixmap] = {}
         self.hide()
@@ -59,6 +68,11 @@ class HelpPanel(RowPanel):
     def shown_text(self) -> str:
         """Return the whole text of the help, including rows that are not visible."""
         return "\n".join(f"{block.key} {block.text}".strip() for block in self._blocks)
+
+    @property
+    def addresses(self) -> tuple[str, ...]:
+        """Return the addresses of the shown sections in the documentation site."""
+        return tuple(block.text for block in self._blocks if block.kind is BlockKind.ADDRESS)
 
     def open_help(self, blocks: Sequence[GuideBlock]) -> None:
         """Show the given blocks of help, and take the keyboard focus from an input field."""
@@ -105,8 +119,16 @@ class HelpPanel(RowPanel):
             return
         elif event.text() == HELP_KEY:
             self.show_next_screenful()
+        elif key == _BROWSER_KEY:
+            self._press_browser_key()
         else:
             self.close_help()
+
+    def _press_browser_key(self) -> None:
+        """Close the help, and show its first section in the browser if the desktop has one."""
+        self.close_help()
+        if self.addresses and self.browser is not None and self.browser.is_available():
+            self.browser.open_section(self.addresses[0])
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Press a scroll key. A touch anywhere else closes the panel."""
@@ -143,12 +165,15 @@ class HelpPanel(RowPanel):
         if wide <= 0 or not self._blocks:
             return
         previous = BlockKind.HEADING
+        linked = self.addresses[:1] if self.browser is not None and self.browser.is_available() else ()
         for block in self._blocks:
             if rows and (block.kind in _SPACED_KINDS or block.kind is not previous is not BlockKind.HEADING):
                 rows.append(HelpRow(BlockKind.TEXT))
             previous = block.kind
             if block.kind is BlockKind.PICTURE:
                 rows += self._slice_picture(block.text)
+            elif block.kind is BlockKind.ADDRESS:
+                rows += self._wrap_address(block.text, wide, has_browser=block.text in linked)
             else:
                 rows += self._wrap_block(block, wide)
         self._rows = tuple(rows)
@@ -165,6 +190,17 @@ class HelpPanel(RowPanel):
         keys += [""] * (count - len(keys))
         lines += [""] * (count - len(lines))
         return [HelpRow(BlockKind.KEY, line, key) for key, line in zip(keys, lines, strict=True)]
+
+    def _wrap_address(self, address: str, wide: float, *, has_browser: bool) -> list[HelpRow]:
+        """Return the rows of an address, whose key opens it if the desktop has a browser."""
+        path = f"{DOCUMENTS_FOLDER_NAME}/{address}"
+        pattern = (
+            "IN THE DOCUMENTATION: {path} · B: OPEN IN THE BROWSER"
+            if has_browser
+            else "IN THE DOCUMENTATION: {path}"
+        )
+        lines = wrap_words(tr(Message(pattern, path=path)), self._make_font(is_bold=False), wide)
+        return [HelpRow(BlockKind.ADDRESS, line, "B" if has_browser else "") for line in lines]
 
     def _slice_picture(self, path: str) -> list[HelpRow]:
         """Return a row for each slice of a picture, or no rows if the picture cannot be read."""
@@ -194,7 +230,10 @@ class HelpPanel(RowPanel):
         fits = max(1, int(room.height() / high))
         room = self.draw_scroll_keys(painter, room, fits, len(self._rows))
         for number, box in self.find_row_boxes(room, high):
-            self._draw_row(painter, box, self._rows[number])
+            row = self._rows[number]
+            self._draw_row(painter, box, row)
+            if row.kind is BlockKind.ADDRESS and row.key:
+                self.add_target(box, self._press_browser_key, "OPEN IN THE BROWSER")
         self.add_target(self.find_full_area(), self.close_help, "CLOSE HELP")
 
     def _draw_row(self, painter: ThemedPainter, box: QRectF, row: HelpRow) -> None:

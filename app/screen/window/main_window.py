@@ -30,6 +30,7 @@ from app.screen.page_table import AUTOMATIC, PagePreloader
 from app.screen.panel import TouchPanel
 from app.screen.screen_theme import ScreenTheme, find_palette, set_language, style_application
 from app.screen.text_sizes import make_screen_resolution
+from app.screen.window.documentation_browser import DocumentationBrowser
 from app.screen.window.input_times import InputTimes
 from app.screen.window.key_actions import make_key_actions
 from app.screen.window.key_table import HELP_KEY, PALM_BUTTON_KEYS, REPEATING_KEYS, find_key_name
@@ -83,6 +84,7 @@ class MainWindow(QWidget):
     def show_model(self, desk: Desk) -> None:
         """Show the model on the screen, and start polling it."""
         self.frame = WindowFrame(self.theme, desk, self.press_key, self)
+        self.frame.help_panel.browser = DocumentationBrowser(desk, is_kiosk=self.is_kiosk)
         # It belongs to another window of this model.
         if (earlier := desk.page_registry.find_model(PagePreloader)) is not None:
             earlier.close()

@@ -226,7 +226,12 @@ class WindowFrame(QWidget):
             self.help_panel.show_next_screenful()
             return
         page = self.current_page
-        blocks = make_page_help(page.NAME, page.find_marked_help(), is_log=self.alarm_list.isVisible())
+        blocks = make_page_help(
+            page.NAME,
+            page.find_marked_help(),
+            is_log=self.alarm_list.isVisible(),
+            alarm=self.alarm_list.find_explained_alarm(self.desk.read_snapshot().alarms),
+        )
         if blocks:
             page.stop_held_key_actions()
             self.help_panel.open_help(blocks)
