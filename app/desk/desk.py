@@ -22,6 +22,7 @@ from app.desk.programs.program_choice import LAST_PROGRAM_SETTING, ProgramChoice
 from app.desk.programs.program_folder import ProgramFolders
 from app.desk.programs.program_loading import LoadedProgram, LoadingPhase, ProgramLoader
 from app.desk.programs.program_renewal import ProgramRenewal
+from app.desk.programs.recent_programs import RecentPrograms
 from app.desk.programs.start_watch import FirstMoveWatch
 from app.desk.screen_settings import SettingsStore
 from app.desk.state.desk_clock import DeskClock
@@ -108,6 +109,7 @@ class Desk:
         self.user_access: Final = UserAccess(persistence, self.say, self.clock.read_seconds)
         self.offset_book.user_access = self.user_access
         self.renewal: Final = ProgramRenewal(program_loader, self.show_warning)
+        self.recent_programs: Final = RecentPrograms(persistence, self.try_save)
         self.program_choice: Final = ProgramChoice(
             folders, program_loader, self.read_snapshot, self.prompt_line, self._save_path
         )
@@ -137,6 +139,7 @@ class Desk:
 
     def _save_path(self, path: str) -> None:
         self.try_save(partial(self.settings_store.persistence.save_setting, LAST_PROGRAM_SETTING, path))
+        self.recent_programs.add(path)
 
     def post(self, command: Command) -> None:
         """Send a command to the control. Later snapshots show its effect."""

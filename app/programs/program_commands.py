@@ -186,6 +186,8 @@ class ProgramCommands:
 
     def _find_protection(self, program: ListedFile) -> str:
         """Return why a program cannot be changed, or an empty string if it can."""
+        if program.is_outside:
+            return tr(Message("{name} IS IN ANOTHER FOLDER. F4: COPY IT FIRST", name=program.name))
         if program.is_sample:
             return SAMPLE_READ_ONLY
         found = self.desk.read_snapshot().interrupted

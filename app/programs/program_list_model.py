@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
 
 from app.desk.background_work import LatestRequestWorker
@@ -22,17 +21,22 @@ from app.desk.translation import tr
 from app.programs.import_export import ProgramTransfer
 from app.programs.program_commands import COPY, NO_SELECTION, RENAME, ProgramCommands
 from app.programs.program_rows import (
-    SORT_ORDERS,
+    LIST_VIEWS,
+    RECENT,
     ListedFile,
     ProgramPreview,
+    find_missing_reason,
     format_file_time,
     format_stored_time,
     list_programs,
+    list_recent_programs,
     sort_programs,
 )
 from core.message import Message, join_messages
 
 DRAWING_HINT = "{name} IS A DRAWING. F3: MAKE A PROGRAM FROM IT"
+MISSING_FILE = "{name} CANNOT BE LOADED: {reason}"
+MISSING_RECENT = "{name} CANNOT BE LOADED: {reason}. F6: REMOVE FROM THIS LIST"
 
 
 @dataclass(slots=True)
@@ -52,6 +56,7 @@ class ProgramListModel:
     selected_row: int = 0
     search_field: InputField = field(default_factory=lambda: InputField(words=True))
     all_programs: tuple[ListedFile, ...] = ()
+    recent_programs: tuple[ListedFile, ...] = ()
     listed_programs: tuple[ListedFile, ...] = ()
     program_commands: ProgramCommands = field(init=False)
     _after: str = ""  # name to select after the list was read again
@@ -89,10 +94,20 @@ class ProgramListModel:
 
         The result is shown in a later frame.
         """
-        work = partial(
-            list_programs, self.desk.program_choice.program_folders, self.operator_folder, self.persistence
+        folders, own, persistence = (
+            self.desk.program_choice.program_folders,
+            self.operator_folder,
+            self.persistence,
         )
-        self.worker.enqueue_work(work, self._found, self.desk.show_refusal)
+        paths = self.desk.recent_programs.paths
+
+        def read_lists() -> tuple[tuple[ListedFile, ...], tuple[ListedFile, ...]]:
+            return (
+                list_programs(folders, own, persistence),
+                list_recent_programs(paths, folders, own, persistence),
+            )
+
+        self.worker.enqueue_work(read_lists, self._found, self.desk.show_refusal)
 
     def poll(self) -> None:
         """Process the results of the worker.
@@ -101,17 +116,24 @@ class ProgramListModel:
         """
         self.worker.deliver_results()
 
-    def _found(self, found: tuple[ListedFile, ...]) -> None:
+    def _found(self, found: tuple[tuple[ListedFile, ...], tuple[ListedFile, ...]]) -> None:
         name = self._after or (self.selected_program.name if self.selected_program else "")
-        self._after, self.all_programs = "", found
+        self._after = ""
+        self.all_programs, self.recent_programs = found
         self._narrow(name)
 
     def _narrow(self, mark: str = "") -> None:
         part = self.search_field.text.strip().lower()
-        found = [program for program in self.all_programs if part in program.name.lower()]
-        self.listed_programs = sort_programs(self.sort_order, found)
+        programs = self.recent_programs if self.is_recent_view else self.all_programs
+        found = tuple(program for program in programs if part in program.name.lower())
+        self.listed_programs = found if self.is_recent_view else sort_programs(self.sort_order, found)
         names = [program.name for program in self.listed_programs]
         self.selected_row = names.index(mark) if mark in names else 0
+
+    @property
+    def is_recent_view(self) -> bool:
+        """Return whether the list shows the recently loaded programs."""
+        return self.sort_order == RECENT
 
     @property
     def selected_program(self) -> ListedFile | None:
@@ -132,6 +154,10 @@ class ProgramListModel:
         """Return the function keys that are available now."""
         if self.program_transfer.is_open:
             return self.program_transfer.make_function_keys()
+        delete = FunctionKey(
+            "DELETE", self.program_commands.confirm_delete, barred=self.program_commands.is_protected
+        )
+        remove = FunctionKey("REMOVE", self.remove_recent_program, barred=self.selected_program is None)
         return {
             "F2": FunctionKey("SORT", self.select_next_sort_order),
             "F4": FunctionKey("COPY", lambda: self.program_commands.ask_for_name(COPY)),
@@ -140,9 +166,7 @@ class ProgramListModel:
                 lambda: self.program_commands.ask_for_name(RENAME),
                 barred=self.program_commands.is_protected,
             ),
-            "F6": FunctionKey(
-                "DELETE", self.program_commands.confirm_delete, barred=self.program_commands.is_protected
-            ),
+            "F6": remove if self.is_recent_view else delete,
             "F8": FunctionKey("IMPORT", lambda: self._transfer(out=False)),
             "F9": FunctionKey("EXPORT", lambda: self._transfer(out=True)),
         }
@@ -205,9 +229,22 @@ class ProgramListModel:
         self._narrow(self.selected_program.name if self.selected_program else "")
 
     def select_next_sort_order(self) -> None:
-        """Handle F2: sort the list by the next criterion."""
-        self.sort_order = following(SORT_ORDERS, self.sort_order)
+        """Handle F2: sort the list by the next criterion, or show the recently loaded programs."""
+        self.sort_order = following(LIST_VIEWS, self.sort_order)
         self._narrow(self.selected_program.name if self.selected_program else "")
+
+    def remove_recent_program(self) -> None:
+        """Remove the selected program from the recently loaded programs. Its file is not changed."""
+        program = self.selected_program
+        if program is None:
+            self.desk.say(NO_SELECTION)
+            return
+        self.desk.recent_programs.remove(program.path)
+        self.recent_programs = tuple(each for each in self.recent_programs if each.path != program.path)
+        row = self.selected_row
+        self._narrow()
+        self.selected_row = max(0, min(row, len(self.listed_programs) - 1))
+        self.desk.show_success(tr(Message("{name} REMOVED FROM THIS LIST", name=program.name)))
 
     def can_load(self) -> bool:
         """Return whether the selected program can be loaded, and show the reason if not."""
@@ -218,11 +255,13 @@ class ProgramListModel:
                 else tr(Message(DRAWING_HINT, name=self.selected_program.name))
             )
             return False
-        programs = self.desk.program_choice
-        return (
-            programs.can_choose_program()
-            and programs.program_folders.find_path(str(self.selected_program.path)) is not None
-        )
+        if not self.desk.program_choice.can_choose_program():
+            return False
+        reason = find_missing_reason(self.selected_program.path)
+        if reason:
+            words = MISSING_RECENT if self.is_recent_view else MISSING_FILE
+            self.desk.say(tr(Message(words, name=self.selected_program.name, reason=tr(reason))))
+        return not reason
 
     def load_selected_program(self) -> bool:
         """Load the selected program, after the operator confirms if necessary.
@@ -246,7 +285,7 @@ class ProgramListModel:
         else:
             self.desk.clear_prompt_line()
             self.program_transfer.open_chooser(
-                tuple(p.path for p in self.listed_programs),
+                tuple(p.path for p in self.listed_programs if not p.missing_reason),
                 self.selected_program.path if self.selected_program else None,
                 out,
             )
@@ -274,6 +313,8 @@ class ProgramListModel:
 # --- rows of the list and details of the selected program ------------------------------------------------
 
 ProgramDetail = tuple[str, str]
+LONG_DETAILS = frozenset({"LAST RUN", "LAST PROOF", "FOLDER"})
+"""Labels of the details whose texts can be long."""
 
 
 def make_program_table(model: ProgramListModel) -> TableContent:
@@ -283,7 +324,7 @@ def make_program_table(model: ProgramListModel) -> TableContent:
         Message(
             "{listed_count} OF {all_count} PROGRAMS",
             listed_count=len(model.listed_programs),
-            all_count=len(model.all_programs),
+            all_count=len(model.recent_programs if model.is_recent_view else model.all_programs),
         )
         if model.search_field.text
         else Message("{rows_count} PROGRAMS", rows_count=len(rows))
@@ -291,8 +332,13 @@ def make_program_table(model: ProgramListModel) -> TableContent:
     question, text = model.name_question, model.name_field.text
     if not question:
         question, text = "NAME TO FIND OR CREATE", model.search_field.text
+    title = (
+        Message("PROGRAMS  ·  {count}  ·  RECENTLY LOADED", count=count)
+        if model.is_recent_view
+        else Message("PROGRAMS  ·  {count}  ·  SORTED BY {order}", count=count, order=model.sort_order)
+    )
     return TableContent(
-        Message("PROGRAMS  ·  {count}  ·  SORTED BY {order}", count=count, order=model.sort_order),
+        title,
         ("NAME", "CHANGED", "LAST RUN", "PARTS", "BEST"),
         (0.32, 0.25, 0.25, 0.09, 0.09),
         rows,
@@ -309,25 +355,27 @@ def _row(program: ListedFile) -> TableRow:
     best = formats.format_duration(run.best) if run.best is not None else formats.NO_VALUE
     cells = (
         program.name,
-        format_file_time(program.modified_time_s),
+        formats.NO_VALUE if program.missing_reason else format_file_time(program.modified_time_s),
         format_stored_time(run.started),
         str(run.parts),
         best,
     )
     good = run.proof == "PROVED"
     lit = None if not run.proof else good
+    if program.missing_reason:
+        lit, good = False, False
     return TableRow(cells, lit, StatusTone.RUN if good else StatusTone.ALARM)
 
 
 def make_program_details(program: ListedFile) -> tuple[ProgramDetail, ...]:
     """Return the details of a program as texts for display.
 
-    The last two texts can be long. The others are short.
+    The texts of ``LONG_DETAILS`` can be long. The others are short.
     """
     run = program.run_row
     return (
         ("SIZE", formats.format_file_size(program.size_bytes)),
-        ("TYPE", "DRAWING" if program.is_drawing else "SAMPLE" if program.is_sample else "USER PROGRAM"),
+        ("TYPE", _find_type(program)),
         ("PARTS", str(run.parts)),
         ("BEST CYCLE", _time(run.best)),
         ("LAST CYCLE", _time(run.latest)),
@@ -344,7 +392,16 @@ def make_program_details(program: ListedFile) -> tuple[ProgramDetail, ...]:
             if run.proof
             else "NEVER PROVED",
         ),
+        *([("FOLDER", str(program.path.parent))] if program.is_outside or program.missing_reason else []),
     )
+
+
+def _find_type(program: ListedFile) -> str:
+    if program.missing_reason:
+        return "NOT FOUND"
+    if program.is_outside:
+        return "OTHER FOLDER"
+    return "DRAWING" if program.is_drawing else "SAMPLE" if program.is_sample else "USER PROGRAM"
 
 
 def _time(seconds: float | None) -> str:

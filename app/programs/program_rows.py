@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 from collections import OrderedDict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -29,7 +30,8 @@ if TYPE_CHECKING:
 class ListedFile:
     """Program file in the list, with its size in bytes and its modification time.
 
-    The time is in seconds since 1970. Sample programs are read-only.
+    The time is in seconds since 1970. Sample programs are read-only. ``is_outside`` is True for a file that
+    is not in a program folder. ``missing_reason`` states why a recently loaded file cannot be read.
     """
 
     name: str
@@ -39,6 +41,8 @@ class ListedFile:
     is_sample: bool
     run_row: RunRow
     is_drawing: bool = False  # a drawing from which a program can be made
+    is_outside: bool = False
+    missing_reason: str = ""
 
     @property
     def content_key(self) -> tuple[str, float, int]:
@@ -69,6 +73,33 @@ def list_programs(
     return tuple(found)
 
 
+def list_recent_programs(
+    paths: Sequence[Path], program_folders: ProgramFolders, own_folder: Path, persistence: Persistence
+) -> tuple[ListedFile, ...]:
+    """Return the programs at the given paths in this order, each with its run record.
+
+    A file that cannot be read is also returned, with the reason. Call this function on a worker. Raise
+    StoreError if the store cannot be read.
+    """
+    runs = persistence.runs.read_records_by_text()
+    found = []
+    for path in paths:
+        outside = path.parent not in program_folders.folders
+        sample = not outside and path.parent != own_folder
+        reason, status = find_missing_reason(path), _status(path)
+        if reason or status is None:
+            row = RunRow(path.name)
+            missing = ListedFile(
+                path.name, path, 0, 0.0, sample, row, is_outside=outside, missing_reason=reason
+            )
+            found.append(missing)
+            continue
+        run = runs.get(_find_run_row(path, status.st_mtime_ns, status.st_size), RunRow(path.name))
+        file = ListedFile(path.name, path, status.st_size, status.st_mtime, sample, run, is_outside=outside)
+        found.append(file)
+    return tuple(found)
+
+
 @lru_cache(maxsize=2 * MAX_PROGRAM_COUNT)
 def _find_run_row(path: Path, _changed: int, _size: int) -> str:
     """Return the key of a file's run record, or an empty string if the file is not a program."""
@@ -78,6 +109,16 @@ def _find_run_row(path: Path, _changed: int, _size: int) -> str:
         return ""
 
 
+def find_missing_reason(path: Path) -> str:
+    """Return why a program file cannot be read, or an empty string if it is a file."""
+    try:
+        return "" if stat.S_ISREG(path.stat().st_mode) else "IT IS NOT A FILE"
+    except FileNotFoundError:
+        return "THE FILE NO LONGER EXISTS"
+    except OSError as error:
+        return error.strerror or str(error)
+
+
 def _status(path: Path) -> os.stat_result | None:
     try:
         return path.stat()
@@ -85,6 +126,7 @@ def _status(path: Path) -> os.stat_result | None:
         return None  # The file was deleted in the meantime.
 
 
+RECENT = "RECENT"  # View of the recently loaded programs, newest first.
 SortKey = tuple[float, str]
 SortOrder = Callable[[ListedFile], SortKey]
 # Newest and largest first; equal programs are sorted by name.
@@ -95,6 +137,8 @@ SORT_ORDERS: Mapping[str, SortOrder] = {
     "PARTS": lambda p: (-p.run_row.parts, p.name.lower()),
     "SIZE": lambda p: (-p.size_bytes, p.name.lower()),
 }
+LIST_VIEWS = ("NAME", RECENT, *(order for order in SORT_ORDERS if order != "NAME"))
+"""Views of the list in the order in which the key F2 selects them."""
 
 
 def _backwards(at: str | None) -> float:

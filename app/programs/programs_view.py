@@ -21,7 +21,7 @@ from app.desk.status.machine_status import MachineStatus
 from app.editor.editor_model import EditorModel
 from app.path.path_view import PathView
 from app.programs.program_commands import NO_SELECTION
-from app.programs.program_list_model import ProgramListModel, make_program_details
+from app.programs.program_list_model import LONG_DETAILS, ProgramListModel, make_program_details
 from app.programs.program_rows import ListedFile, Thumbnail
 from app.screen import page_table
 from app.screen.entry_panel import WIDE_NAME_KEYS, LetterPad
@@ -40,7 +40,6 @@ if TYPE_CHECKING:
 
 
 LABEL_WIDTH = 11.0  # units
-FULL_WIDTH_ROWS = 2  # rows at the end that use the whole width
 
 
 class ProgramDetailPanel(Panel):
@@ -58,7 +57,7 @@ class ProgramDetailPanel(Panel):
         """
         u = self.theme.unit_px
         rows = list(make_program_details(self.program)) if self.program is not None else []
-        preview_row_count = len(rows) - FULL_WIDTH_ROWS
+        preview_row_count = sum(label not in LONG_DETAILS for label, _ in rows)
         if self.error_text:
             rows.append(("PREVIEW", self.error_text))
         room = self.inside()
@@ -154,6 +153,10 @@ class ProgramsPage(ListPage):
         if here is None or editor is None:
             self.desk.say(NO_SELECTION)
             return
+        if here.missing_reason:
+            model = self.model
+            model.can_load()  # shows the reason
+            return
         editor.source_drawing = here.path if here.is_drawing else None
         editor.pending_name = f"{here.path.stem}.nc" if here.is_drawing else str(here.path)
         if not self.host.open_page(page_table.EDITOR):
@@ -203,13 +206,14 @@ class ProgramsPage(ListPage):
         model.poll()
         self.table_panel.show_table(model.make_table())
         here = model.selected_program
-        self._show_picture(model.preview.find_picture(None if here is not None and here.is_drawing else here))
+        has_path = here is not None and not here.is_drawing and not here.missing_reason
+        self._show_picture(model.preview.find_picture(here if has_path else None))
         lettered = (bool(model.name_question) or self._with_letters) and not model.program_transfer.is_open
         if lettered is self.letter_pad.isHidden():
             self.letter_pad.setVisible(lettered)
             self._lay_out()
         self.detail_panel.program = here
-        self.detail_panel.part_thumbnail = model.preview.find_thumbnail(here)
+        self.detail_panel.part_thumbnail = model.preview.find_thumbnail(here if has_path else None)
         self.path_view.is_loading = model.preview.is_busy
         self.detail_panel.error_text = (
             "DRAWING THE PREVIEW …" if model.preview.is_busy else model.preview.error_text

@@ -8375,11 +8375,6 @@
     </message>
     <message>
       <location filename="app/extras/access/access_levels.py" />
-      <source>REMOVE</source>
-      <translation>QUITAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/access/access_levels.py" />
       <source>SELECT YOUR NAME   ENTER: SIGN IN   F2: SIGN OUT   ESC: BACK</source>
       <translation>ELIJA SU NOMBRE   ENTER: ENTRAR   F2: SALIR   ESC: VOLVER</translation>
     </message>
@@ -13875,6 +13870,11 @@
     </message>
     <message>
       <location filename="app/programs/program_commands.py" />
+      <source>{name} IS IN ANOTHER FOLDER. F4: COPY IT FIRST</source>
+      <translation>{name} ESTÁ EN OTRA CARPETA. F4: CÓPIELO PRIMERO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_commands.py" />
       <source>{name} IS RUNNING. LET IT FINISH FIRST</source>
       <translation>{name} ESTÁ EN MARCHA. DEJE QUE TERMINE</translation>
     </message>
@@ -13925,6 +13925,11 @@
     </message>
     <message>
       <location filename="app/programs/program_list_model.py" />
+      <source>FOLDER</source>
+      <translation>CARPETA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list_model.py" />
       <source>LAST CYCLE</source>
       <translation>ÚLTIMO CICLO</translation>
     </message>
@@ -13960,6 +13965,11 @@
     </message>
     <message>
       <location filename="app/programs/program_list_model.py" />
+      <source>OTHER FOLDER</source>
+      <translation>OTRA CARPETA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list_model.py" />
       <source>PARTS</source>
       <translation>PIEZAS</translation>
     </message>
@@ -13970,6 +13980,11 @@
     </message>
     <message>
       <location filename="app/programs/program_list_model.py" />
+      <source>PROGRAMS  ·  {count}  ·  RECENTLY LOADED</source>
+      <translation>PROGRAMAS  ·  {count}  ·  CARGADOS ÚLTIMAMENTE</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list_model.py" />
       <source>PROGRAMS  ·  {count}  ·  SORTED BY {order}</source>
       <translation>PROGRAMAS  ·  {count}  ·  ORDENADOS POR {order}</translation>
     </message>
@@ -13977,6 +13992,11 @@
       <location filename="app/programs/program_list_model.py" />
       <source>PROVED</source>
       <translation>COMPROBADO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list_model.py" />
+      <source>REMOVE</source>
+      <translation>QUITAR</translation>
     </message>
     <message>
       <location filename="app/programs/program_list_model.py" />
@@ -14030,8 +14050,23 @@
     </message>
     <message>
       <location filename="app/programs/program_list_model.py" />
+      <source>{name} CANNOT BE LOADED: {reason}</source>
+      <translation>{name} NO SE PUEDE CARGAR: {reason}</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list_model.py" />
+      <source>{name} CANNOT BE LOADED: {reason}. F6: REMOVE FROM THIS LIST</source>
+      <translation>{name} NO SE PUEDE CARGAR: {reason}. F6: QUITAR DE ESTA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list_model.py" />
       <source>{name} IS A DRAWING. F3: MAKE A PROGRAM FROM IT</source>
       <translation>{name} ES UN DIBUJO. F3: HACER UN PROGRAMA A PARTIR DE ÉL</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list_model.py" />
+      <source>{name} REMOVED FROM THIS LIST</source>
+      <translation>{name} QUITADO DE ESTA LISTA</translation>
     </message>
     <message>
       <location filename="app/programs/program_list_model.py" />
@@ -14042,6 +14077,21 @@
       <location filename="app/programs/program_rows.py" />
       <source>DATE</source>
       <translation>FECHA</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>IT IS NOT A FILE</source>
+      <translation>NO ES UN ARCHIVO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>RECENT</source>
+      <translation>RECIENTES</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_rows.py" />
+      <source>THE FILE NO LONGER EXISTS</source>
+      <translation>EL ARCHIVO YA NO EXISTE</translation>
     </message>
     <message>
       <location filename="app/programs/program_rows.py" />
@@ -14062,11 +14112,6 @@
       <location filename="app/programs/programs_view.py" />
       <source>PREVIEW</source>
       <translation>VISTA PREVIA</translation>
-    </message>
-    <message>
-      <location filename="app/programs/removable_media.py" />
-      <source>FOLDER</source>
-      <translation>CARPETA</translation>
     </message>
     <message>
       <location filename="app/programs/removable_media.py" />

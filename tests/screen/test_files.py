@@ -15,7 +15,7 @@ from pytestqt.qtbot import QtBot
 
 from app.compose.runs.journal import Journal
 from app.programs.program_commands import add_missing_extension, remove_extension
-from app.programs.program_list_model import ProgramListModel
+from app.programs.program_list_model import ProgramListModel, make_program_details
 from app.programs.programs_view import ProgramsPage
 from app.programs.removable_media import UsbStick, list_usb_sticks
 from app.screen import page_table
@@ -147,6 +147,7 @@ def test_programs_are_sorted_by_name_date_run_parts_and_size(shop: Shop) -> None
     shop.sees(lambda: shop.journal is not None and bool(shop.journal.require_store().runs.read_run_records()))
     shop.open_list()
     assert shop.rows() == sorted(shop.rows())
+    shop.key(Key.Key_F2)  # the recently loaded programs
     shop.key(Key.Key_F2)
     shop.key(Key.Key_F2)
     shop.sees(lambda: shop.rows()[0] == "knob.nc")
@@ -155,6 +156,75 @@ def test_programs_are_sorted_by_name_date_run_parts_and_size(shop: Shop) -> None
     shop.key(Key.Key_F2)
     largest = max(shop.programs.model.all_programs, key=lambda program: program.size_bytes).name
     shop.sees(lambda: shop.rows()[0] == largest)
+
+
+def show_recent(shop: Shop, *paths: Path) -> None:
+    """Put the programs at the top of the recently loaded ones, and open the list that shows them."""
+    for path in paths:
+        shop.desk.recent_programs.add(str(path))
+    shop.open_list()
+    shop.key(Key.Key_F2)
+    shop.sees(lambda: shop.programs.model.is_recent_view)
+
+
+def test_recent_program_outside_the_folder_is_loaded_with_enter(shop: Shop, tmp_path: Path) -> None:
+    outside = Path(shutil.copy(SAMPLES / "pin.nc", tmp_path / "visitor.nc"))
+    show_recent(shop, shop.own / "beta.nc", outside)
+    assert shop.rows()[:2] == ["visitor.nc", "beta.nc"]
+    assert ("TYPE", "OTHER FOLDER") in make_program_details(shop.programs.model.listed_programs[0])
+    shop.programs.model.select_row(0)
+    shop.key(Key.Key_Return)
+    shop.sees(lambda: shop.desk.program_loader.loaded_program.path == outside)
+    assert shop.frame.current_page.NAME == page_table.AUTOMATIC
+    assert shop.desk.recent_programs.paths[0] == outside
+
+
+def test_recent_list_follows_what_is_loaded(shop: Shop) -> None:
+    for name in ("alpha", "beta"):
+        assert shop.desk.program_choice.load_by_name(name)
+    assert shop.desk.recent_programs.paths[:2] == (shop.own / "beta.nc", shop.own / "alpha.nc")
+
+
+def test_missing_recent_program_is_named_with_the_reason_and_removed(shop: Shop, tmp_path: Path) -> None:
+    gone = tmp_path / "gone.nc"
+    show_recent(shop, shop.own / "alpha.nc", gone)
+    before = shop.desk.program_loader.loaded_program.path
+    shop.programs.model.select_row(0)
+    shop.key(Key.Key_Return)
+    assert "gone.nc" in shop.prompt()
+    assert "THE FILE NO LONGER EXISTS" in shop.prompt()
+    assert shop.frame.current_page.NAME == page_table.PROGRAMS
+    assert shop.desk.program_loader.loaded_program.path == before
+    shop.key(Key.Key_F6)
+    shop.sees(lambda: "gone.nc" not in shop.rows())
+    assert gone not in shop.desk.recent_programs.paths
+
+
+def test_remove_leaves_the_file_of_a_recent_program(shop: Shop) -> None:
+    show_recent(shop, shop.own / "alpha.nc")
+    shop.programs.model.select_row(0)
+    shop.key(Key.Key_F6)
+    shop.sees(lambda: "alpha.nc" not in shop.rows())
+    assert (shop.own / "alpha.nc").is_file()
+
+
+def test_remove_without_a_recent_program_is_rejected(shop: Shop) -> None:
+    show_recent(shop)
+    for path in shop.desk.recent_programs.paths:
+        shop.desk.recent_programs.remove(path)
+    shop.programs.model.reload_list()
+    shop.sees(lambda: shop.rows() == [])
+    shop.programs.model.remove_recent_program()
+    assert shop.desk.prompt_notice == "SELECT A PROGRAM FIRST"
+
+
+def test_program_outside_the_folder_is_not_renamed(shop: Shop, tmp_path: Path) -> None:
+    outside = Path(shutil.copy(SAMPLES / "pin.nc", tmp_path / "visitor.nc"))
+    show_recent(shop, outside)
+    shop.programs.model.select_row(0)
+    shop.key(Key.Key_F5)
+    assert not shop.programs.model.name_question
+    assert "visitor.nc" in shop.prompt()
 
 
 def test_copy_gets_typed_name_and_extension(shop: Shop) -> None:
