@@ -121,6 +121,10 @@ class EditorModel:
 
     # --- opening -------------------------------------------------------------------------------------
 
+    def choose_drawing(self, drawing: Path) -> None:
+        """Choose the drawing from which the editor makes a program of the same name when it opens."""
+        self.source_drawing, self.pending_name = drawing, f"{drawing.stem}.nc"
+
     def open_program(self, path: Path, block_delete: bool = False) -> None:
         """Start reading a program into the editor."""
         self.clear_message()

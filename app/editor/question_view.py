@@ -108,6 +108,7 @@ class QuestionLine(Panel):
         self._labels: tuple[str, ...] = ("",)
         for edit in (self.first_field, self.second_field):
             edit.setMaxLength(250)
+            edit.setAcceptDrops(False)  # The window opens a dropped file.
             edit.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
             edit.installEventFilter(toggle_keyboard)
         self.hide()

@@ -45,6 +45,7 @@ class FilePrompt(RowPanel):
         self.is_not_found = False
         self.name_edit = QLineEdit(self)
         self.name_edit.setMaxLength(250)
+        self.name_edit.setAcceptDrops(False)  # The window opens a dropped file.
         self.name_edit.textEdited.connect(self._typed)
         self.name_edit.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
         self.name_edit.installEventFilter(self)

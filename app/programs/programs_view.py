@@ -154,11 +154,12 @@ class ProgramsPage(ListPage):
             self.desk.say(NO_SELECTION)
             return
         if here.missing_reason:
-            model = self.model
-            model.can_load()  # shows the reason
+            self.model.can_load()  # shows the reason
             return
-        editor.source_drawing = here.path if here.is_drawing else None
-        editor.pending_name = f"{here.path.stem}.nc" if here.is_drawing else str(here.path)
+        if here.is_drawing:
+            editor.choose_drawing(here.path)
+        else:
+            editor.source_drawing, editor.pending_name = None, str(here.path)
         if not self.host.open_page(page_table.EDITOR):
             editor.source_drawing = None
 

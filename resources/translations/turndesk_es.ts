@@ -15009,6 +15009,16 @@
       <translation>{name} ES UNA CARPETA. SUELTE UN PROGRAMA</translation>
     </message>
     <message>
+      <location filename="app/screen/window/file_opening.py" />
+      <source>{name} NOT OPENED. DROP IT AGAIN WHEN THIS PAGE IS CLOSED</source>
+      <translation>{name} NO SE HA ABIERTO. SUÉLTELO OTRA VEZ CUANDO ESTA PÁGINA SE CIERRE</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/file_opening.py" />
+      <source>{name} NOT OPENED. NO PAGE OPENS {extension} FILES</source>
+      <translation>{name} NO SE HA ABIERTO. NINGUNA PÁGINA ABRE ARCHIVOS {extension}</translation>
+    </message>
+    <message>
       <location filename="app/screen/window/help_panel.py" />
       <source>CLOSE HELP</source>
       <translation>CERRAR LA AYUDA</translation>
