@@ -89,14 +89,28 @@ def open_store(*, read_only: bool = False) -> Iterator[Store]:
         yield store
 
 
+@contextmanager
+def _show_pages(description: str) -> Iterator[Callable[[int, int], None]]:
+    """Show the progress of a copy on a terminal. Yield the function that reports the copied pages."""
+    from app.cli.proofs.progress_bar import ProgressBar
+
+    with ProgressBar(description) as progress:
+
+        def report_pages(copied: int, total: int) -> None:
+            progress.total = total
+            progress.report_progress(copied)
+
+        yield report_pages
+
+
 # --- Actions ---------------------------------------------------------------------------------------------
 
 
 def _backup(args: argparse.Namespace) -> int:
     from core.store import backup
 
-    with convert_store_errors():
-        backup.back_up_store(find_data_folder(), Path(args.path))
+    with convert_store_errors(), _show_pages(f"backing up to {args.path}") as report_pages:
+        backup.back_up_store(find_data_folder(), Path(args.path), report_pages)
     sys.stdout.write(f"{find_data_folder()} was backed up to {args.path}\n")
     return EXIT_OK
 
@@ -105,8 +119,8 @@ def _restore(args: argparse.Namespace) -> int:
     from core.store import backup
 
     who = get_permitted_user(open_store, args, ProtectedChange.RESTORE)
-    with convert_store_errors():
-        kept = backup.restore_store(find_data_folder(), Path(args.path))
+    with convert_store_errors(), _show_pages(f"restoring {args.path}") as report_pages:
+        kept = backup.restore_store(find_data_folder(), Path(args.path), report_pages)
     saved = Message("; the previous data was saved as {saved}", saved=kept) if kept else ""
     log_user_change(open_store, who, Message("restored from {path}{saved}", path=args.path, saved=saved))
     done = Message(

@@ -46,6 +46,9 @@ _NEWEST_VERSION_QUERY = (
     " WHERE number = (SELECT max(number) FROM program_versions WHERE program = programs.id)"
 )
 Found = dict[tuple[str, object], str]
+ReportPages = Callable[[int, int], None]
+"""Function that is called with the number of copied pages and the total number of pages."""
+_PAGES_PER_STEP = 256  # pages of 4 KB that are copied between two progress reports
 
 
 def find_store_problems(path: Path) -> tuple[str, ...]:
@@ -103,7 +106,7 @@ def _found(connection: sqlite3.Connection) -> tuple[str, ...]:
     return tuple(found)
 
 
-def back_up_store(folder: Path, target: Path) -> None:
+def back_up_store(folder: Path, target: Path, report_pages: ReportPages | None = None) -> None:
     """Copy the store of ``folder`` to ``target`` in its current state.
 
     This is possible even while the store is being written. The copy contains the names and levels of the
@@ -137,10 +140,10 @@ def back_up_store(folder: Path, target: Path) -> None:
             ),
             "damaged",
         )
-    _copy(path, target, user_records.erase_pins)
+    _copy(path, target, user_records.erase_pins, report_pages)
 
 
-def restore_store(folder: Path, source: Path) -> Path | None:
+def restore_store(folder: Path, source: Path, report_pages: ReportPages | None = None) -> Path | None:
     """Replace the store of ``folder`` by a backup, and return the path of the copy of the old store.
 
     The result is None if the folder had no store. The backup is checked first. The users and PINs of this
@@ -174,7 +177,7 @@ def restore_store(folder: Path, source: Path) -> Path | None:
         here = _read_users(path) if there else None
         kept = _save_old_store(path) if there else None
         _remove_log(path)
-        _copy(source, resolve_link(path), partial(_replace_users, here))
+        _copy(source, resolve_link(path), partial(_replace_users, here), report_pages)
         return kept
 
 
@@ -264,7 +267,12 @@ def _empty_log(path: Path) -> None:
         )
 
 
-def _copy(source: Path, target: Path, change: Callable[[sqlite3.Connection], None]) -> None:
+def _copy(
+    source: Path,
+    target: Path,
+    change: Callable[[sqlite3.Connection], None],
+    report_pages: ReportPages | None = None,
+) -> None:
     """Copy a store with SQLite's backup function, so that ``target`` is always complete.
 
     ``change`` modifies the copy before the copy receives its final name. Raises StoreError if the copy
@@ -276,12 +284,32 @@ def _copy(source: Path, target: Path, change: Callable[[sqlite3.Connection], Non
                 closing(connect_store(source, is_read_only=True)) as reading,
                 closing(sqlite3.connect(unfinished, isolation_level=None)) as writing,
             ):
-                reading.backup(writing)
+                if report_pages is None:
+                    reading.backup(writing)
+                else:
+                    _copy_in_steps(reading, writing, report_pages)
                 writing.execute("PRAGMA journal_mode = DELETE")
                 change(writing)
             replace_atomically(unfinished, target)
     except (OSError, sqlite3.Error) as error:
         raise _unwritable(target, error) from error
+
+
+def _copy_in_steps(
+    reading: sqlite3.Connection, writing: sqlite3.Connection, report_pages: ReportPages
+) -> None:
+    """Copy a store in steps, and report the progress after each step.
+
+    The open read transaction prevents that a change of the store restarts the copy.
+    """
+    reading.execute("BEGIN")
+    reading.execute("SELECT count(*) FROM sqlite_master").fetchone()
+    reading.backup(
+        writing,
+        pages=_PAGES_PER_STEP,
+        progress=lambda _status, remaining, total: report_pages(total - remaining, total),
+    )
+    reading.rollback()
 
 
 def _unwritable(target: Path, error: Exception) -> StoreError:
