@@ -154,13 +154,14 @@ class ProgramListModel:
         """Return the function keys that are available now."""
         if self.program_transfer.is_open:
             return self.program_transfer.make_function_keys()
+        is_empty = self.selected_program is None
         delete = FunctionKey(
             "DELETE", self.program_commands.confirm_delete, barred=self.program_commands.is_protected
         )
-        remove = FunctionKey("REMOVE", self.remove_recent_program, barred=self.selected_program is None)
+        remove = FunctionKey("REMOVE", self.remove_recent_program, barred=is_empty)
         return {
             "F2": FunctionKey("SORT", self.select_next_sort_order),
-            "F4": FunctionKey("COPY", lambda: self.program_commands.ask_for_name(COPY)),
+            "F4": FunctionKey("COPY", lambda: self.program_commands.ask_for_name(COPY), barred=is_empty),
             "F5": FunctionKey(
                 "RENAME",
                 lambda: self.program_commands.ask_for_name(RENAME),
@@ -168,7 +169,7 @@ class ProgramListModel:
             ),
             "F6": remove if self.is_recent_view else delete,
             "F8": FunctionKey("IMPORT", lambda: self._transfer(out=False)),
-            "F9": FunctionKey("EXPORT", lambda: self._transfer(out=True)),
+            "F9": FunctionKey("EXPORT", lambda: self._transfer(out=True), barred=is_empty),
         }
 
     def accepts_key(self, key: str) -> bool:

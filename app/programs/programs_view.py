@@ -115,9 +115,12 @@ class ProgramsPage(ListPage):
         self.table_panel.on_entry_touched = self._turn_letters
 
     def find_disabled_keys(self) -> frozenset[str]:
-        """Return the disabled keys of the list, and F3 while the editor cannot be opened."""
-        closed = not self.model.program_transfer.is_open and find_editor_refusal(self.desk.read_snapshot())
-        return super().find_disabled_keys() | ({"F3"} if closed else set())
+        """Return the keys that cannot be used now, such as F3 while the editor cannot be opened."""
+        if self.model.program_transfer.is_open:
+            return super().find_disabled_keys()
+        closed = find_editor_refusal(self.desk.read_snapshot())
+        without_program = self.desk.page_registry.program_keys if self.model.selected_program is None else ()
+        return super().find_disabled_keys() | ({"F3"} if closed else set()) | set(without_program)
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys of the model."""

@@ -37,6 +37,7 @@ EVERYWHERE = {"+": "feed_pot", "-": "feed_pot", ",": "spindle_pot", ".": "spindl
 LAMPS = {"S": "single_block", "O": "optional_stop", "C": "cycle_repeat", "P": "no_count", "/": "load"}
 LAMPS |= {"A": "set_spindle_auto", "D": "EnableDrives", "R": "Reset"}
 LABELS = {
+    "REMOVE": {"store"},  # takes a program out of the recently loaded ones
     "READOUT": {"setting readout"},
     "DRIVES": {"EnableDrives"},
     "RESET": {"Reset"},
