@@ -93,8 +93,26 @@ def test_a_special_function_is_found_by_its_name() -> None:
     address, first, *_ = read_function_help("DRIVE STATUS", "en")
     assert address == GuideBlock(BlockKind.ADDRESS, "docs/guide/special-functions.html#4-drive-status")
     assert first.text.startswith("For each axis")
-    assert read_function_help("NO SUCH FUNCTION", "en") == ()
-    assert read_function_help("DRIVE STATUS", "es") == ()
+    address, first, *_ = read_function_help("DRIVE STATUS", "es")
+    assert address.text.startswith("docs/guide/es/special-functions.html#4-")
+    assert first.text.startswith("De cada eje")
+
+
+@pytest.mark.parametrize("language", ["en", "es", "fr"])
+def test_an_unknown_special_function_has_no_help(language: str) -> None:
+    assert read_function_help("NO SUCH FUNCTION", language) == ()
+
+
+def test_a_language_without_a_guide_has_no_help() -> None:
+    assert read_function_help("DRIVE STATUS", "fr") == ()
+    assert read_page_help("JOG", "fr") == ()
+
+
+def test_spanish_help_is_the_section_in_the_same_place() -> None:
+    """The English page has `F9` and `F10` of MDI in one row, and the Spanish page the same row."""
+    keys = {block.key: block.text for block in read_page_help("MDI", "es") if block.kind is BlockKind.KEY}
+    assert keys["F8 PARO HUS"] == "Parar el husillo"
+    assert "F9 CORR SEC, F10 OSCILO" in keys
 
 
 def test_marks_of_markdown_are_removed() -> None:

@@ -105,8 +105,7 @@ def make_section_address(name: str, heading: str) -> str:
 
 def _find_page_heading(topic: str, language: str) -> tuple[str, str]:
     """Return the guide file of a language and the heading of a page, which is empty for an unknown page."""
-    english, spanish = _PAGE_HEADINGS.get(topic, ("", ""))
-    return (REFERENCE_FILE, english) if language == ENGLISH_CODE else (_SPANISH_FILE, spanish)
+    return _find_translation(REFERENCE_FILE, _PAGE_HEADINGS.get(topic, ""), language)
 
 
 def read_function_help(name: str, language: str) -> tuple[GuideBlock, ...]:
@@ -117,23 +116,25 @@ def read_function_help(name: str, language: str) -> tuple[GuideBlock, ...]:
     wanted = name.casefold()
     for heading in _list_headings(find_guide_folder(), FUNCTIONS_FILE):
         if heading.lstrip("0123456789 ").casefold() == wanted:
-            address = GuideBlock(BlockKind.ADDRESS, make_section_address(FUNCTIONS_FILE, heading))
-            return (address, *read_section(FUNCTIONS_FILE, heading))
+            section = _find_translation(FUNCTIONS_FILE, heading, language)
+            blocks = read_section(*section)
+            return (GuideBlock(BlockKind.ADDRESS, make_section_address(*section)), *blocks) if blocks else ()
     return ()
 
 
-def _read_translated_section(name: str, heading: str, language: str) -> tuple[GuideBlock, ...]:
-    """Return the section with this English heading in a language.
+def _find_translation(name: str, heading: str, language: str) -> tuple[str, str]:
+    """Return the file and the heading of a section in a language; the heading is empty if there is none.
 
-    The folder of a translated file has the code of the language, and its headings are in the same order.
+    ``heading`` is the English heading. The folder of a translated file has the code of the language, and
+    its headings are in the same order.
     """
     if language == ENGLISH_CODE:
-        return read_section(name, heading)
+        return name, heading
     folder = find_guide_folder()
     path = Path(name)
     translated = (path.parent / language / path.name).as_posix()
     pairs = zip(_list_headings(folder, name), _list_headings(folder, translated), strict=False)
-    return read_section(translated, dict(pairs).get(heading, ""))
+    return translated, dict(pairs).get(heading, "")
 
 
 @cache
