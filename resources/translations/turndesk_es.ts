@@ -9210,13 +9210,13 @@
     </message>
     <message>
       <location filename="app/extras/convert/convert_function.py" />
-      <source>NOT RECOGNIZED</source>
-      <translation>NO RECONOCIDO</translation>
+      <source>NOT SPECIFIED</source>
+      <translation>SIN INDICAR</translation>
     </message>
     <message>
       <location filename="app/extras/convert/convert_function.py" />
-      <source>NOT SPECIFIED</source>
-      <translation>SIN INDICAR</translation>
+      <source>NOT USED</source>
+      <translation>NO SE USA</translation>
     </message>
     <message>
       <location filename="app/extras/convert/convert_function.py" />
@@ -9240,13 +9240,18 @@
     </message>
     <message>
       <location filename="app/extras/convert/convert_function.py" />
-      <source>THE CONTROL IS NOT RECOGNIZED. SELECT IT IN THE FIRST ROW</source>
-      <translation>NO SE RECONOCE EL CONTROL. SELECCIÓNELO EN LA PRIMERA FILA</translation>
+      <source>TARGET</source>
+      <translation>DESTINO</translation>
     </message>
     <message>
       <location filename="app/extras/convert/convert_function.py" />
       <source>THE PROGRAM IS NOT CONVERTED</source>
       <translation>EL PROGRAMA NO ESTÁ CONVERTIDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>THIS SETTING HAS NO EFFECT ON AN OMNITURN PROGRAM</source>
+      <translation>ESTE AJUSTE NO TIENE EFECTO EN UN PROGRAMA OMNITURN</translation>
     </message>
     <message>
       <location filename="app/extras/convert/convert_function.py" />
@@ -9265,8 +9270,8 @@
     </message>
     <message>
       <location filename="app/extras/convert/convert_function.py" />
-      <source>loaded program of another control, with preview</source>
-      <translation>programa cargado de otro control, con vista previa</translation>
+      <source>loaded program from or to another control</source>
+      <translation>programa cargado, de otro control o para otro control</translation>
     </message>
     <message>
       <location filename="app/extras/convert/convert_function.py" />
@@ -9275,8 +9280,13 @@
     </message>
     <message>
       <location filename="app/extras/convert/convert_function.py" />
-      <source>{name} SAVED. SET ITS TOOL OFFSETS</source>
-      <translation>{name} GUARDADO. INTRODUZCA SUS CORRECTORES</translation>
+      <source>{name} SAVED, NOT LOADED. LOAD IT FROM THE LIST OF PROGRAMS</source>
+      <translation>{name} GUARDADO, NO CARGADO. CÁRGUELO DESDE LA LISTA DE PROGRAMAS</translation>
+    </message>
+    <message>
+      <location filename="app/extras/convert/convert_function.py" />
+      <source>{name} SAVED. F9 IN THE LIST OF PROGRAMS EXPORTS IT</source>
+      <translation>{name} GUARDADO. F9 EN LA LISTA DE PROGRAMAS LO EXPORTA</translation>
     </message>
     <message>
       <location filename="app/extras/convert/extra.py" />

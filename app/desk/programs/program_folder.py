@@ -21,6 +21,7 @@ from core.message import Message
 
 MAX_PROGRAM_COUNT = 2000  # Maximum number of listed programs in a folder.
 PROGRAM_EXTENSIONS = frozenset({"", ".nc", ".txt", ".tap", ".cnc", ".prg", ".h", ".mpf", ".spf"})
+_LISTED_EXTENSIONS = PROGRAM_EXTENSIONS | {".ngc"}  # The list also shows programs for LinuxCNC.
 
 
 AcceptsName = Callable[[str], bool]
@@ -28,8 +29,8 @@ AcceptsName = Callable[[str], bool]
 
 
 def is_program_name(name: str) -> bool:
-    """Return whether a file name has the extension of a program."""
-    return Path(name).suffix.lower() in PROGRAM_EXTENSIONS
+    """Return whether a file name has the extension of a program that is listed, copied and exported."""
+    return Path(name).suffix.lower() in _LISTED_EXTENSIONS
 
 
 @dataclass(frozen=True, slots=True)

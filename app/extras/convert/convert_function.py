@@ -1,15 +1,14 @@
-"""Special function CONVERT PROGRAM, which converts the loaded program of another control.
+"""Special function CONVERT PROGRAM, which converts the loaded program from or to another control.
 
 The function shows the findings and the converted program before it saves a new file.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
@@ -17,24 +16,32 @@ from app.desk.pages.table_content import FunctionKey, TableContent, TableRow, fo
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import StatusTone
 from app.desk.translation import tr
-from app.extras.convert.conversion_settings import ConversionSettings, make_options
+from app.extras.convert.conversion_settings import ConversionSettings
+from app.extras.convert.screen_conversion import (
+    FILE_ENDINGS,
+    ConversionRequest,
+    ConversionResult,
+    ProgramControl,
+    convert_request,
+    list_targets,
+)
 from app.programs.atomic_files import write_new_file
 from app.special.special_functions import SpecialFunction
 from core.access.access_table import ProtectedChange
 from core.executor.snapshot import Snapshot
-from core.extras.convert.source_options import SourceControl
+from core.extras.convert.source_options import SourceControl, TargetControl
 from core.interpreter.shared.job_setup import ControlLimits
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, ProgramSource
 from core.machine.machine_model import Machine
 from core.message import Message
 
-if TYPE_CHECKING:
-    from core.extras.convert.conversion import Conversion
-
 RECOGNIZED_CODE = "other-control-program"
 _MAX_PREVIEW_ROWS = 500
-_SETTING_COUNT = 6
+_SETTING_COUNT = 7
+_FIRST_SOURCE_ROW, _LAST_SOURCE_ROW = 2, 4  # Settings that have no effect on an OmniTurn program.
+_PENDING = "…"
+_UNUSED = "NOT USED"
 _NOT_SPECIFIED = "NOT SPECIFIED"
 _UNITS: Mapping[bool | None, str] = {None: _NOT_SPECIFIED, False: "INCH", True: "MM"}
 _X_VALUES: Mapping[bool | None, str] = {None: _NOT_SPECIFIED, True: "DIAMETER", False: "RADIUS"}
@@ -52,42 +59,27 @@ _TONES = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class _Request:
-    """Program to convert, with the settings of the conversion."""
-
-    source: ProgramSource
-    control: SourceControl | None
-    settings: ConversionSettings
-
-
-@dataclass(frozen=True, slots=True)
-class _Result:
-    """Control of the program, its conversion (None if no control was recognized), and the converted lines."""
-
-    control: SourceControl | None
-    conversion: Conversion | None = None
-
-
 class ConvertFunction(SpecialFunction):
-    """Special function that converts the loaded program to OmniTurn, shows the result and saves a new file.
+    """Special function that converts the loaded program, shows the result and saves a new file.
 
     A worker converts the program when the function opens and when a setting changes.
     """
 
     name = "CONVERT PROGRAM"
-    use = "loaded program of another control, with preview"
+    use = "loaded program from or to another control"
 
     def __init__(
         self, desk: Desk, machine: Machine, limits: ControlLimits, worker: LatestRequestWorker
     ) -> None:
         super().__init__(desk)
         self.machine, self.limits, self.worker = machine, limits, worker
-        self.control: SourceControl | None = None  # None: recognized from the program
+        self.control: ProgramControl | None = None  # None: recognized from the program
+        self.target: TargetControl | None = None  # None: the default for the control of the program
         self.settings = ConversionSettings()
         self.error_text = ""
-        self._requested: _Request | None = None
-        self._result: _Result | None = None
+        self._requested: ConversionRequest | None = None
+        self._result: ConversionResult | None = None
+        self._recognized: ProgramControl | None = None
 
     # --- display
 
@@ -123,8 +115,6 @@ class ConvertFunction(SpecialFunction):
         result = self._result
         if result is None:
             return "Converting the program …"
-        if result.conversion is None:
-            return "THE CONTROL IS NOT RECOGNIZED. SELECT IT IN THE FIRST ROW"
         count = len(result.conversion.errors)
         if count:
             return Message("NOT CONVERTED. CORRECT {count} ERROR(S) OR CHANGE A SETTING", count=count)
@@ -137,28 +127,46 @@ class ConvertFunction(SpecialFunction):
 
     def _rows(self) -> list[TableRow]:
         rows = [TableRow((tr(name), tr(value))) for name, value in self._setting_values()]
-        if self._result is None or self._result.conversion is None:
+        if self._result is None:
             return rows
-        rows += [_make_finding_row(*each) for each in _group(self._result.conversion.findings)]
-        if not self._result.conversion.errors:
+        rows += [_make_finding_row(*each) for each in self._result.grouped_findings]
+        if self._is_converted:
             rows += [
                 TableRow((f"L{each.source_line_number}" if each.source_line_number else "", each.text))
                 for each in self._result.conversion.lines[:_MAX_PREVIEW_ROWS]
             ]
         return rows
 
+    @property
+    def _shown_control(self) -> ProgramControl | None:
+        """Return the selected or recognized control, or None while it is not known."""
+        return self.control or self._recognized
+
+    @property
+    def _shown_target(self) -> TargetControl | None:
+        """Return the target of the conversion, or None while it is not known."""
+        if self._result is not None:
+            return self._result.target
+        control = self._shown_control
+        targets = list_targets(control, self.machine.mdi_language) if control is not None else ()
+        return self.target if self.target in targets else next(iter(targets), None)
+
     def _setting_values(self) -> list[tuple[str, str]]:
-        control = self.control or (self._result.control if self._result is not None else None)
-        shown = "NOT RECOGNIZED" if control is None else str(control).upper()
+        control, target = self._shown_control, self._shown_target
         codes = ", ".join(f"M{code:02d}" for code in sorted(self.settings.skipped_m_codes)) or "NONE"
-        return [
-            ("CONTROL", shown),
+        values = [
+            ("CONTROL", str(control).upper() if control is not None else _PENDING),
+            ("TARGET", str(target).upper() if target is not None else _PENDING),
             ("UNIT WITHOUT G20 OR G21", _UNITS[self.settings.is_metric]),
             ("X1000 WITHOUT A POINT IS", _POINTS[self.settings.no_point]),
             ("X IS", _X_VALUES[self.settings.is_diameter]),
             ("TOOL POST", "FRONT" if self.settings.has_front_tool_post else "REAR"),
             ("M CODES LEFT OUT", codes),
         ]
+        if control is Dialect.OMNITURN:
+            for row in range(_FIRST_SOURCE_ROW, _LAST_SOURCE_ROW + 1):
+                values[row] = (values[row][0], _UNUSED)
+        return values
 
     # --- conversion
 
@@ -167,17 +175,22 @@ class ConvertFunction(SpecialFunction):
         if source is None:
             self._requested = self._result = None
             return
-        wanted = _Request(source, self.control, self.settings)
+        wanted = ConversionRequest(source, self.control, self.target, self.settings)
         if wanted == self._requested:
             return
+        if self._requested is None or self._requested.source is not source:
+            self._recognized = None
         self._requested, self._result, self.error_text = wanted, None, ""
         self.worker.enqueue_work(
-            partial(_convert, wanted, self.machine, self.limits), partial(self._take, wanted), self._fail
+            partial(convert_request, wanted, self.machine, self.limits),
+            partial(self._take, wanted),
+            self._fail,
         )
 
-    def _take(self, request: _Request, result: _Result) -> None:
+    def _take(self, request: ConversionRequest, result: ConversionResult) -> None:
         if request == self._requested:
             self._result = result
+            self._recognized = result.control if request.control is None else self._recognized
 
     def _fail(self, why: str) -> None:
         self.error_text = why
@@ -190,8 +203,7 @@ class ConvertFunction(SpecialFunction):
 
     @property
     def _is_converted(self) -> bool:
-        conversion = self._result.conversion if self._result is not None else None
-        return conversion is not None and not conversion.errors
+        return self._result is not None and not self._result.conversion.errors
 
     def activate_selected_row(self) -> bool:
         """Change the selected setting, and return whether a setting was selected."""
@@ -200,18 +212,28 @@ class ConvertFunction(SpecialFunction):
         self.desk.clear_prompt_line()
         settings = self.settings
         if self.marked == 0:
-            self.control = following((None, *SourceControl), self.control)
+            self.control = following((None, *SourceControl, Dialect.OMNITURN), self.control)
         elif self.marked == 1:
-            self.settings = replace(settings, is_metric=following(_UNITS, settings.is_metric))
+            self._select_next_target()
+        elif self.marked <= _LAST_SOURCE_ROW and self._shown_control is Dialect.OMNITURN:
+            self.desk.say("THIS SETTING HAS NO EFFECT ON AN OMNITURN PROGRAM")
         elif self.marked == 2:
-            self.settings = replace(settings, no_point=following(_POINTS, settings.no_point))
+            self.settings = replace(settings, is_metric=following(_UNITS, settings.is_metric))
         elif self.marked == 3:
-            self.settings = replace(settings, is_diameter=following(_X_VALUES, settings.is_diameter))
+            self.settings = replace(settings, no_point=following(_POINTS, settings.no_point))
         elif self.marked == 4:
+            self.settings = replace(settings, is_diameter=following(_X_VALUES, settings.is_diameter))
+        elif self.marked == 5:
             self.settings = replace(settings, has_front_tool_post=not settings.has_front_tool_post)
         else:
             self._skip_m_code()
         return True
+
+    def _select_next_target(self) -> None:
+        """Select the next target that is possible for the control of the program."""
+        control = self._shown_control
+        if control is not None:
+            self.target = following(list_targets(control, self.machine.mdi_language), self._shown_target)
 
     def _skip_m_code(self) -> None:
         """Add the M code of the current error to the codes that are left out of the converted program.
@@ -219,8 +241,7 @@ class ConvertFunction(SpecialFunction):
         If the current error is not about an M code, clear these codes. An M code that is not a whole number
         cannot be left out.
         """
-        conversion = self._result.conversion if self._result is not None else None
-        error = next(iter(conversion.errors), None) if conversion is not None else None
+        error = next(iter(self._result.conversion.errors), None) if self._result is not None else None
         codes: frozenset[int] = frozenset()
         if error is not None and error.code == "m-code" and isinstance(error.hint, Message):
             number = str(error.hint.values["number"])
@@ -228,22 +249,22 @@ class ConvertFunction(SpecialFunction):
         self.settings = replace(self.settings, skipped_m_codes=codes)
 
     def save_program(self) -> None:
-        """Save the converted program as a new file and load it, so that it is proved before a start."""
-        conversion = self._result.conversion if self._result is not None else None
-        path = self.desk.program_loader.loaded_program.path
-        if conversion is None or conversion.errors or path is None:
+        """Save the converted program as a new file. The file is not loaded."""
+        result, path = self._result, self.desk.program_loader.loaded_program.path
+        if result is None or result.conversion.errors or path is None:
             self.desk.say("THE PROGRAM IS NOT CONVERTED")
-        elif self.desk.program_choice.can_choose_program() and not self.desk.is_refused(
-            ProtectedChange.PROGRAMS
-        ):
+        elif not self.desk.is_refused(ProtectedChange.PROGRAMS):
             folder = self.desk.program_choice.program_folders.folders[0]
-            target = folder / f"{path.stem}-omniturn.nc"
-            work = partial(_save, target, conversion.text)
-            self.worker.enqueue_work(work, self._saved, self.desk.show_refusal)
+            target = folder / f"{path.stem}{FILE_ENDINGS[result.target]}"
+            work = partial(_save, target, result.conversion.text)
+            self.worker.enqueue_work(work, partial(self._saved, result.target), self.desk.show_refusal)
 
-    def _saved(self, path: Path) -> None:
-        self.desk.show_success(tr(Message("{name} SAVED. SET ITS TOOL OFFSETS", name=path.name)))
-        self.desk.program_choice.load_path(path)
+    def _saved(self, target: TargetControl, path: Path) -> None:
+        if target == self.machine.mdi_language:
+            text = "{name} SAVED, NOT LOADED. LOAD IT FROM THE LIST OF PROGRAMS"
+        else:
+            text = "{name} SAVED. F9 IN THE LIST OF PROGRAMS EXPORTS IT"
+        self.desk.show_success(tr(Message(text, name=path.name)))
 
     def on_open(self) -> None:
         """Start with the first setting."""
@@ -271,29 +292,10 @@ class RecognitionNotice:
             self._desk.say("PROGRAM OF ANOTHER CONTROL. F10, CONVERT PROGRAM CONVERTS IT")
 
 
-def _convert(request: _Request, machine: Machine, limits: ControlLimits) -> _Result:
-    """Convert and prove the program on the worker."""
-    from core.extras.convert.conversion import convert_program
-    from core.extras.convert.recognition import recognize_control
-
-    lines = request.source.lines
-    control = request.control or recognize_control(lines)
-    if control is None:
-        return _Result(None)
-    options = make_options(control, request.settings, machine)
-    return _Result(control, convert_program(lines, options, limits))
-
-
 def _save(target: Path, text: str) -> Path:
     """Write the new file on the worker. Raises FileOperationError if the name exists."""
     write_new_file(target, text.encode("ascii", "replace"))
     return target
-
-
-def _group(findings: Sequence[Diagnostic]) -> list[tuple[Diagnostic, str]]:
-    from core.extras.convert.conversion import group_findings
-
-    return group_findings(findings)
 
 
 def _make_finding_row(finding: Diagnostic, further_lines: str) -> TableRow:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from app.compose.optional_features import OptionalFeature, Subcommand
+from core.language.source import Dialect
 
 if TYPE_CHECKING:
     from app.compose.runs.journal import Journal
@@ -31,20 +32,20 @@ class ConvertExtra(OptionalFeature):
         """Attach the notice that suggests converting a loaded program that is for a different control."""
         from app.extras.convert.convert_function import RecognitionNotice
 
-        if _runs_omniturn(machine):
+        if _can_run_conversions(machine):
             desk.page_registry.add_frame_watcher(RecognitionNotice(desk).observe_frame)
 
     def list_special_functions(
         self, desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker
     ) -> Sequence[tuple[SpecialFunction, str]]:
-        """Return the special function CONVERT PROGRAM of an OmniTurn lathe.
+        """Return the special function CONVERT PROGRAM of a lathe.
 
         The function is paired with ACCESS LEVELS, after which it is listed.
         """
         from app.compose.machine.machine_setup import get_control_limits
         from app.extras.convert.convert_function import ConvertFunction
 
-        if not _runs_omniturn(machine):
+        if not _can_run_conversions(machine):
             return ()
         return ((ConvertFunction(desk, machine, get_control_limits(machine), worker), "ACCESS LEVELS"),)
 
@@ -55,8 +56,9 @@ class ConvertExtra(OptionalFeature):
         return {"access table --json": OUTPUTS}
 
 
-def _runs_omniturn(machine: Machine) -> bool:
-    return machine.kind == "lathe" and machine.mdi_language == "omniturn"
+def _can_run_conversions(machine: Machine) -> bool:
+    """Return whether the machine runs programs that a conversion writes."""
+    return machine.kind == "lathe" and machine.mdi_language in {Dialect.OMNITURN, Dialect.SINUMERIK}
 
 
 EXTRA = ConvertExtra()

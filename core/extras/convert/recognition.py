@@ -6,6 +6,8 @@ import re
 from collections.abc import Sequence
 
 from core.extras.convert.source_options import SourceControl
+from core.language.omniturn import other_controls
+from core.message import Message
 
 _COMMENT = re.compile(r"\([^)]*\)?|;.*")
 _LINUXCNC = re.compile(
@@ -25,6 +27,14 @@ _HAAS = re.compile(
     re.IGNORECASE | re.MULTILINE,
 )
 
+_USUAL_CONTROLS = {
+    "LinuxCNC": SourceControl.LINUXCNC,
+    "Mach": SourceControl.MACH,
+    "Haas": SourceControl.HAAS,
+    "Fanuc": SourceControl.FANUC_A,
+}
+"""Control by the name in the warning that a program is not an OmniTurn program."""
+
 
 def recognize_control(lines: Sequence[str]) -> SourceControl | None:
     """Return the control for which a program was probably written, or None if this is unclear."""
@@ -36,3 +46,15 @@ def recognize_control(lines: Sequence[str]) -> SourceControl | None:
     if _HAAS.search("\n".join(lines)):
         return SourceControl.HAAS
     return SourceControl.FANUC_B if _SYSTEM_B.search(text) else SourceControl.FANUC_A
+
+
+def recognize_other_control(lines: Sequence[str]) -> SourceControl | None:
+    """Return the probable control of a program, or None if it is probably an OmniTurn program.
+
+    OmniTurn has words such as G33 with K that other controls have too. Therefore, the text must also contain
+    words that OmniTurn does not have.
+    """
+    warning = other_controls.recognize_control(lines)
+    if warning is None or not isinstance(warning.message, Message):
+        return None
+    return recognize_control(lines) or _USUAL_CONTROLS[str(warning.message.values["control"])]
