@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+
+from core.language.source import ProgramSource
 
 LATHES, MILLS = frozenset({"omniturn", "sinumerik"}), frozenset({"klartext"})
 ALL_LANGUAGES = LATHES | MILLS
@@ -45,3 +48,18 @@ class ProgramKey:
     label: str
     page_name: str
     use: Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramConversion:
+    """Conversion of programs of other controls, which an optional feature adds.
+
+    - ``page_name`` is the page that shows the conversion.
+    - ``recognize_control`` returns the name of the control for which lines were written, or an empty string
+      for a program of this machine. Workers call it.
+    - ``convert_text`` is called with an edited program and its path after the page has opened.
+    """
+
+    page_name: str
+    recognize_control: Callable[[Sequence[str]], str]
+    convert_text: Callable[[ProgramSource, Path], None]

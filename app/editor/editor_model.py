@@ -84,6 +84,7 @@ class EditorModel:
     source_drawing: Path | None = (
         None  # file from which an optional feature generates the text of this program
     )
+    closed_program: ClosedProgram | None = None  # the last program that was closed without discarding it
     is_replacement_undoable: bool = False  # the text replaces the typed text as one step that can be undone
     is_block_delete_on: bool = False
     default_extension: str = ".nc"  # extension of new programs, from the language of the machine
@@ -163,6 +164,7 @@ class EditorModel:
 
     def _opened(self, document: Document) -> None:
         self.document, self.stage, self._changed = document, EditorStage.OPEN, False
+        self.closed_program = None
         self.live_proof.clear_findings()
         self._put(document.text)
         self.draft_store.recover_draft(document, self._recovered)
@@ -326,7 +328,8 @@ class EditorModel:
     def _go(self, document: Document) -> None:
         self._shut()
         text = add_final_newline(document.text)
-        self.on_closed(ClosedProgram(document.path, self._changed, self._to_desk, text))
+        self.closed_program = ClosedProgram(document.path, self._changed, self._to_desk, text)
+        self.on_closed(self.closed_program)
 
     def _shut(self) -> None:
         if self.document is not None:

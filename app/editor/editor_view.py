@@ -23,6 +23,7 @@ from app.desk.status.machine_status import MachineStatus
 from app.desk.status.prompt_line import MOVING_STATES
 from app.editor import editor_messages as messages
 from app.editor.code_help_view import CodeList, CodeStrip
+from app.editor.conversion_notice import ConversionNotice
 from app.editor.editor_model import EditorModel, EditorStage, find_load_label, open_editor
 from app.editor.editor_modes import ENTRY_MODES, MODE_PROMPTS, EditorMode
 from app.editor.editor_parts_view import EditorHeadLine, EditorParts, EditorPathView, FindingList
@@ -72,6 +73,7 @@ class EditorPage(EditorParts):
         self.code_list = CodeList(look, self.text_field, editor_model.live_proof, self.return_to_text, self)
         self.version_history = VersionHistory(editor_model.version_archive, editor_model.worker)
         self.version_list = VersionList(look, self.version_history, self)
+        self.conversion_notice = ConversionNotice(host.desk, editor_model)
         self.question_line = QuestionLine(look, self, self)
         self.text_finder = TextFinder(self.text_field, self.question_line)
         self.text_synchronizer = TextSynchronizer(self.text_field, self.editor)
@@ -146,10 +148,11 @@ class EditorPage(EditorParts):
             self.editor.clear_message()
         elif self.desk.prompt_notice:
             return False
+        elif self.conversion_notice.dismiss():
+            pass
         elif self.editor.is_dirty(self.text_synchronizer.read_text()):
             self.editor.message = messages.UNSAVED_CHANGES
         else:
-            self._target = page_table.AUTOMATIC
             self.discard_and_leave()
         return True
 
@@ -175,9 +178,8 @@ class EditorPage(EditorParts):
             return own() if own is not None else MODE_PROMPTS[self.mode]
         line = self.text_field.cursor_line
         found = self.text_field.find_finding(line)
-        if found is not None:
-            return describe_finding(found, line)
-        return messages.SAVE_HINT
+        finding_text = describe_finding(found, line) if found is not None else messages.SAVE_HINT
+        return self.conversion_notice.text or finding_text
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
         """Process completed background work, submit typed text for proof, and update the page."""
@@ -188,6 +190,7 @@ class EditorPage(EditorParts):
             self._handle_closed()
             return
         self.text_synchronizer.synchronize()
+        self.conversion_notice.update()
         self._update_stage()
         if self.mode is EditorMode.PANEL:
             self.panel_text.synchronize()
@@ -262,7 +265,8 @@ class EditorPage(EditorParts):
             5: FunctionKey("GO TO", partial(self.enter_mode, EditorMode.LINE_NUMBER)),
             6: FunctionKey("YES", self.confirm_question)
             if self.editor.pending_action
-            else FunctionKey("NEXT ERROR", self.select_next_finding),
+            else self.conversion_notice.make_function_key(self.save_and_open_page)
+            or FunctionKey("NEXT ERROR", self.select_next_finding),
             7: FunctionKey("HISTORY", partial(self.enter_mode, EditorMode.HISTORY)),
         }
 
@@ -328,6 +332,7 @@ class EditorPage(EditorParts):
 
     def discard_and_leave(self) -> None:
         """Close the editor without saving."""
+        self._target = page_table.AUTOMATIC
         self.editor.discard_and_leave(self.text_synchronizer.read_text())
 
     def confirm_question(self) -> None:
@@ -490,4 +495,5 @@ class EditorPage(EditorParts):
         if self.editor.message:
             self.desk.say(self.editor.message)
             self.editor.clear_message()
-        self.host.open_page(self._target)
+        if self.host.open_page(self._target):
+            self.conversion_notice.start_conversion(self._target)

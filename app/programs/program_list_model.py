@@ -94,10 +94,13 @@ class ProgramListModel:
 
         The result is shown in a later frame.
         """
-        folders, own, persistence = (
+        conversion = self.desk.page_registry.program_conversion
+        work = partial(
+            list_programs,
             self.desk.program_choice.program_folders,
             self.operator_folder,
             self.persistence,
+            conversion.recognize_control if conversion is not None else None,
         )
         paths = self.desk.recent_programs.paths
 
@@ -319,8 +322,12 @@ LONG_DETAILS = frozenset({"LAST RUN", "LAST PROOF", "FOLDER"})
 
 
 def make_program_table(model: ProgramListModel) -> TableContent:
-    """Return the table of programs with name, date, last run, parts and best cycle."""
-    rows = tuple(_row(program) for program in model.listed_programs)
+    """Return the table of programs with name, date, last run, parts and best cycle.
+
+    If the list contains a program of another control, a column shows the control.
+    """
+    with_controls = any(program.control_name for program in model.listed_programs)
+    rows = tuple(_row(program, with_control=with_controls) for program in model.listed_programs)
     count = (
         Message(
             "{listed_count} OF {all_count} PROGRAMS",
@@ -339,24 +346,25 @@ def make_program_table(model: ProgramListModel) -> TableContent:
         else Message("PROGRAMS  ·  {count}  ·  SORTED BY {order}", count=count, order=model.sort_order)
     )
     return TableContent(
-        title,
-        ("NAME", "CHANGED", "LAST RUN", "PARTS", "BEST"),
-        (0.32, 0.25, 0.25, 0.09, 0.09),
+        Message("PROGRAMS  ·  {count}  ·  SORTED BY {order}", count=count, order=model.sort_order),
+        ("NAME", *(["CONTROL"] if with_controls else []), "CHANGED", "LAST RUN", "PARTS", "BEST"),
+        (0.26, 0.14, 0.22, 0.22, 0.08, 0.08) if with_controls else (0.32, 0.25, 0.25, 0.09, 0.09),
         rows,
         model.selected_row if rows else -1,
         entry_prompt=question,
         text=text,
-        untranslated_columns=frozenset({0, 1, 2}),
-        numeric_columns=frozenset({3, 4}),
+        untranslated_columns=frozenset({0, 1, 2, 3} if with_controls else {0, 1, 2}),
+        numeric_columns=frozenset({4, 5} if with_controls else {3, 4}),
     )
 
 
-def _row(program: ListedFile) -> TableRow:
+def _row(program: ListedFile, *, with_control: bool) -> TableRow:
     run = program.run_row
     best = formats.format_duration(run.best) if run.best is not None else formats.NO_VALUE
     cells = (
         program.name,
-        formats.NO_VALUE if program.missing_reason else format_file_time(program.modified_time_s),
+        *([program.control_name] if with_control else []),
+        format_file_time(program.modified_time_s),
         format_stored_time(run.started),
         str(run.parts),
         best,
@@ -376,7 +384,7 @@ def make_program_details(program: ListedFile) -> tuple[ProgramDetail, ...]:
     run = program.run_row
     return (
         ("SIZE", formats.format_file_size(program.size_bytes)),
-        ("TYPE", _find_type(program)),
+        ("TYPE", _describe_type(program)),
         ("PARTS", str(run.parts)),
         ("BEST CYCLE", _time(run.best)),
         ("LAST CYCLE", _time(run.latest)),
@@ -397,11 +405,9 @@ def make_program_details(program: ListedFile) -> tuple[ProgramDetail, ...]:
     )
 
 
-def _find_type(program: ListedFile) -> str:
-    if program.missing_reason:
-        return "NOT FOUND"
-    if program.is_outside:
-        return "OTHER FOLDER"
+def _describe_type(program: ListedFile) -> str:
+    if program.control_name:
+        return Message("{control} PROGRAM", control=program.control_name)
     return "DRAWING" if program.is_drawing else "SAMPLE" if program.is_sample else "USER PROGRAM"
 
 

@@ -18,12 +18,15 @@ from app.desk.programs.program_folder import MAX_PROGRAM_COUNT, ProgramFolders
 from app.desk.programs.program_loading import LoadingSteps
 from app.desk.status import formats
 from core.executor.job import Job
-from core.language.source import SourceError, load_source
+from core.language.source import Dialect, SourceError, decode_source, guess_dialect, load_source
 from core.store.program_records import make_text_record_key
 from core.store.store_rows import RunRow
 
 if TYPE_CHECKING:
     from app.path.path_picture import ProgramPicture
+
+RecognizeControl = Callable[[Sequence[str]], str]
+_RECOGNIZED_BYTES = 16 * 1024  # The beginning of a program shows its control.
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,8 +44,7 @@ class ListedFile:
     is_sample: bool
     run_row: RunRow
     is_drawing: bool = False  # a drawing from which a program can be made
-    is_outside: bool = False
-    missing_reason: str = ""
+    control_name: str = ""  # another control for which the program was written
 
     @property
     def content_key(self) -> tuple[str, float, int]:
@@ -54,12 +56,17 @@ class ListedFile:
 
 
 def list_programs(
-    program_folders: ProgramFolders, own_folder: Path, persistence: Persistence
+    program_folders: ProgramFolders,
+    own_folder: Path,
+    persistence: Persistence,
+    recognize_control: RecognizeControl | None = None,
 ) -> tuple[ListedFile, ...]:
     """Return all programs and drawings of the folders, each with its run record.
 
-    A run record belongs to a program text. Files whose text is not yet known are therefore read. Call this
-    function on a worker. Raise StoreError if the store cannot be read.
+    ``recognize_control`` finds programs of other controls, unless it is None.
+
+    The function reads files whose text is not yet known. Call it on a worker. Raise StoreError if the store
+    cannot be read.
     """
     runs = persistence.runs.read_records_by_text()
     found = []
@@ -69,7 +76,12 @@ def list_programs(
             key = "" if drawing else _find_run_row(path, status.st_mtime_ns, status.st_size)
             run = runs.get(key, RunRow(entry.name))
             sample = path.parent != own_folder
-            found.append(ListedFile(entry.name, path, status.st_size, status.st_mtime, sample, run, drawing))
+            control = ""
+            if recognize_control is not None and not drawing:
+                control = _find_control(path, status.st_mtime_ns, status.st_size, recognize_control)
+            found.append(
+                ListedFile(entry.name, path, status.st_size, status.st_mtime, sample, run, drawing, control)
+            )
     return tuple(found)
 
 
@@ -109,14 +121,20 @@ def _find_run_row(path: Path, _changed: int, _size: int) -> str:
         return ""
 
 
-def find_missing_reason(path: Path) -> str:
-    """Return why a program file cannot be read, or an empty string if it is a file."""
+@lru_cache(maxsize=2 * MAX_PROGRAM_COUNT)
+def _find_control(path: Path, _changed: int, size: int, recognize_control: RecognizeControl) -> str:
+    """Return the name of another control for which a file was written, or an empty string.
+
+    The function reads only the beginning of the file. SINUMERIK and Klartext files have their own extensions.
+    """
+    if guess_dialect(path.name) is not Dialect.OMNITURN:
+        return ""
     try:
-        return "" if stat.S_ISREG(path.stat().st_mode) else "IT IS NOT A FILE"
-    except FileNotFoundError:
-        return "THE FILE NO LONGER EXISTS"
-    except OSError as error:
-        return error.strerror or str(error)
+        with path.open("rb") as file:
+            lines = decode_source(path.name, file.read(_RECOGNIZED_BYTES)).lines
+    except (OSError, SourceError):
+        return ""
+    return recognize_control(lines[:-1] if size > _RECOGNIZED_BYTES else lines)
 
 
 def _status(path: Path) -> os.stat_result | None:

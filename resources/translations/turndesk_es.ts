@@ -7819,6 +7819,16 @@
       <translation>ESCRIBIR</translation>
     </message>
     <message>
+      <location filename="app/editor/conversion_notice.py" />
+      <source>CONVERT</source>
+      <translation>CONVERTIR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/conversion_notice.py" />
+      <source>PROGRAM FOR {control}. F6: SAVE AND CONVERT   ESC: EDIT</source>
+      <translation>PROGRAMA PARA {control}. F6: GUARDAR Y CONVERTIR   ESC: EDITAR</translation>
+    </message>
+    <message>
       <location filename="app/editor/edited_document.py" />
       <source>ENTER A PROGRAM NAME</source>
       <translation>ESCRIBA UN NOMBRE DE PROGRAMA</translation>
@@ -9167,11 +9177,6 @@
       <location filename="app/extras/convert/convert_function.py" />
       <source>CHOOSE THE PROGRAM OF THE OTHER CONTROL FIRST</source>
       <translation>ELIJA PRIMERO EL PROGRAMA DEL OTRO CONTROL</translation>
-    </message>
-    <message>
-      <location filename="app/extras/convert/convert_function.py" />
-      <source>CONTROL</source>
-      <translation>CONTROL</translation>
     </message>
     <message>
       <location filename="app/extras/convert/convert_function.py" />
@@ -13925,6 +13930,11 @@
     </message>
     <message>
       <location filename="app/programs/program_list_model.py" />
+      <source>CONTROL</source>
+      <translation>CONTROL</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list_model.py" />
       <source>COPY</source>
       <translation>COPIAR</translation>
     </message>
@@ -14052,6 +14062,11 @@
       <location filename="app/programs/program_list_model.py" />
       <source>USER PROGRAM</source>
       <translation>PROGRAMA DEL USUARIO</translation>
+    </message>
+    <message>
+      <location filename="app/programs/program_list_model.py" />
+      <source>{control} PROGRAM</source>
+      <translation>PROGRAMA {control}</translation>
     </message>
     <message>
       <location filename="app/programs/program_list_model.py" />

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from app.desk.page_description import ProgramKey
-from app.desk.pages.attached_parts import AttachedModel, FrameWatcher, GuidanceCard, StartHandler
+from app.desk.page_description import ProgramConversion, ProgramKey
+from app.desk.pages.attached_parts import AttachedModel, FrameWatcher, StartHandler
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.interrupted_notice import NoticeRow
 from core.closing_steps import ClosingStep
@@ -18,8 +18,12 @@ AttachedT = TypeVar("AttachedT", bound=AttachedModel)
 
 @dataclass(slots=True)
 class PageRegistry:
-    """Registry of page models by class, with start handlers, watchers, notices and program keys."""
+    """Page models by class, with start handlers, watchers, notices and program keys.
 
+    ``program_conversion`` is the conversion of programs of other controls, or None without such a feature.
+    """
+
+    program_conversion: ProgramConversion | None = None
     _attached: dict[type[AttachedModel], AttachedModel] = field(default_factory=dict)
     _made_later: dict[str, Callable[[], AttachedModel]] = field(default_factory=dict)  # By class name.
     _starts: list[StartHandler] = field(default_factory=list)

@@ -5,13 +5,14 @@ The function shows the findings and the converted program before it saves a new 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
+from app.desk.page_description import ProgramConversion
 from app.desk.pages.table_content import FunctionKey, TableContent, TableRow, following
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import StatusTone
@@ -26,17 +27,17 @@ from app.extras.convert.screen_conversion import (
     list_targets,
 )
 from app.programs.atomic_files import write_new_file
-from app.special.special_functions import SpecialFunction
+from app.special.special_functions import SpecialFunction, SpecialFunctionsModel
 from core.access.access_table import ProtectedChange
 from core.executor.snapshot import Snapshot
 from core.extras.convert.source_options import SourceControl, TargetControl
 from core.interpreter.shared.job_setup import ControlLimits
 from core.language.diagnostics import Diagnostic, Severity
+from core.language.omniturn.other_controls import OTHER_CONTROL_CODE
 from core.language.source import Dialect, ProgramSource
 from core.machine.machine_model import Machine
 from core.message import Message
 
-RECOGNIZED_CODE = "other-control-program"
 _MAX_PREVIEW_ROWS = 500
 _SETTING_COUNT = 7
 _FIRST_SOURCE_ROW, _LAST_SOURCE_ROW = 2, 4  # Settings that have no effect on an OmniTurn program.
@@ -80,28 +81,39 @@ class ConvertFunction(SpecialFunction):
         self._requested: ConversionRequest | None = None
         self._result: ConversionResult | None = None
         self._recognized: ProgramControl | None = None
+        self._edited: tuple[ProgramSource, Path] | None = None  # program that the editor passed
 
     # --- display
 
     @property
-    def loaded_source(self) -> ProgramSource | None:
-        """Return the text of the loaded program, or None if no OmniTurn program is loaded."""
-        source = self.desk.program_loader.loaded_program.source
-        return source if source is not None and source.dialect == Dialect.OMNITURN else None
+    def program(self) -> tuple[ProgramSource, Path] | None:
+        """Return the edited program, or else the loaded program, with its path.
+
+        The result is None for a program in another language, such as SINUMERIK.
+        """
+        loaded = self.desk.program_loader.loaded_program
+        found = self._edited or (loaded.source, loaded.path)
+        source, path = found
+        if source is None or path is None or source.dialect is not Dialect.OMNITURN:
+            return None
+        return source, path
+
+    def convert_text(self, source: ProgramSource, path: Path) -> None:
+        """Convert an edited program instead of the loaded program until the function closes."""
+        self._edited = source, path
 
     @property
     def row_count(self) -> int:
         """Return the number of rows that can be selected."""
-        return len(self._rows()) if self.loaded_source is not None else 0
+        return len(self._rows()) if self.program is not None else 0
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the table of settings, findings and converted lines."""
         self._convert_if_changed()
-        name = self.desk.program_loader.loaded_program.name
-        title = Message("CONVERT PROGRAM  ·  {name}", name=name) if name else "CONVERT PROGRAM"
-        if self.loaded_source is None:
+        if self.program is None:
             why = "CHOOSE THE PROGRAM OF THE OTHER CONTROL FIRST"
-            return TableContent(title, ("", ""), (0.3, 0.7), (), notes=(why,))
+            return TableContent("CONVERT PROGRAM", ("", ""), (0.3, 0.7), (), notes=(why,))
+        title = Message("CONVERT PROGRAM  ·  {name}", name=self.program[0].name)
         rows = self._rows()
         self.marked = max(0, min(self.marked, len(rows) - 1))
         return TableContent(
@@ -171,10 +183,10 @@ class ConvertFunction(SpecialFunction):
     # --- conversion
 
     def _convert_if_changed(self) -> None:
-        source = self.loaded_source
-        if source is None:
+        if self.program is None:
             self._requested = self._result = None
             return
+        source = self.program[0]
         wanted = ConversionRequest(source, self.control, self.target, self.settings)
         if wanted == self._requested:
             return
@@ -207,7 +219,7 @@ class ConvertFunction(SpecialFunction):
 
     def activate_selected_row(self) -> bool:
         """Change the selected setting, and return whether a setting was selected."""
-        if self.loaded_source is None or self.marked >= _SETTING_COUNT:
+        if self.program is None or self.marked >= _SETTING_COUNT:
             return False
         self.desk.clear_prompt_line()
         settings = self.settings
@@ -250,12 +262,12 @@ class ConvertFunction(SpecialFunction):
 
     def save_program(self) -> None:
         """Save the converted program as a new file. The file is not loaded."""
-        result, path = self._result, self.desk.program_loader.loaded_program.path
-        if result is None or result.conversion.errors or path is None:
+        result, program = self._result, self.program
+        if result is None or result.conversion.errors or program is None:
             self.desk.say("THE PROGRAM IS NOT CONVERTED")
         elif not self.desk.is_refused(ProtectedChange.PROGRAMS):
             folder = self.desk.program_choice.program_folders.folders[0]
-            target = folder / f"{path.stem}{FILE_ENDINGS[result.target]}"
+            target = folder / f"{program[1].stem}{FILE_ENDINGS[result.target]}"
             work = partial(_save, target, result.conversion.text)
             self.worker.enqueue_work(work, partial(self._saved, result.target), self.desk.show_refusal)
 
@@ -269,6 +281,10 @@ class ConvertFunction(SpecialFunction):
     def on_open(self) -> None:
         """Start with the first setting."""
         self.marked = 0
+
+    def on_close(self) -> None:
+        """Return to the loaded program."""
+        self._edited = None
 
     def prompt_text(self) -> str:
         """Return the prompt that explains the current keys."""
@@ -288,8 +304,31 @@ class RecognitionNotice:
         if loaded.source is None or loaded.source is self._announced or loaded.is_busy:
             return
         self._announced = loaded.source
-        if any(each.code == RECOGNIZED_CODE for each in loaded.diagnostics):
+        if any(each.code == OTHER_CONTROL_CODE for each in loaded.diagnostics):
             self._desk.say("PROGRAM OF ANOTHER CONTROL. F10, CONVERT PROGRAM CONVERTS IT")
+
+
+def make_program_conversion(desk: Desk) -> ProgramConversion:
+    """Return the conversion that the program list and the editor propose."""
+    return ProgramConversion("SPECIAL FUNCTIONS", recognize_control_name, partial(_open_conversion, desk))
+
+
+def recognize_control_name(lines: Sequence[str]) -> str:
+    """Return the name of the other control of a program, or an empty string for an OmniTurn program."""
+    from core.extras.convert.recognition import recognize_other_control
+
+    control = recognize_other_control(lines)
+    return str(control).upper() if control is not None else ""
+
+
+def _open_conversion(desk: Desk, source: ProgramSource, path: Path) -> None:
+    """Open CONVERT PROGRAM on the page of the special functions with an edited program."""
+    model = desk.page_registry.find_model(SpecialFunctionsModel)
+    functions = model.functions if model is not None else ()
+    for index, function in enumerate(functions):
+        if isinstance(function, ConvertFunction) and model is not None:
+            model.open_function(index)
+            function.convert_text(source, path)
 
 
 def _save(target: Path, text: str) -> Path:

@@ -29,11 +29,12 @@ class ConvertExtra(OptionalFeature):
     def attach_models(
         self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
     ) -> None:
-        """Attach the notice that suggests converting a loaded program that is for a different control."""
-        from app.extras.convert.convert_function import RecognitionNotice
+        """Attach the conversion of loaded, listed and edited programs of other controls."""
+        from app.extras.convert.convert_function import RecognitionNotice, make_program_conversion
 
         if _can_run_conversions(machine):
             desk.page_registry.add_frame_watcher(RecognitionNotice(desk).observe_frame)
+            desk.page_registry.program_conversion = make_program_conversion(desk)
 
     def list_special_functions(
         self, desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker

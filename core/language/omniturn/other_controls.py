@@ -181,6 +181,7 @@ def explain_foreign_tool(text: str) -> tuple[str, str] | None:
 
 
 _COMMENT = re.compile(r"\([^)]*\)?")
+OTHER_CONTROL_CODE = "other-control-program"  # Code of the warning that names the control.
 _MAX_LINES = 400  # The first lines of a program show its control.
 
 _CONTROL_MARKERS = (
@@ -219,4 +220,4 @@ def recognize_control(lines: Sequence[str]) -> Diagnostic | None:
         "This program was written for a {control} control. TurnDesk runs OmniTurn programs.", control=control
     )
     hint = "Rewrite the program with the codes of this control; each message below names the code to use."
-    return Diagnostic(1, 0, Severity.WARNING, "other-control-program", message, hint)
+    return Diagnostic(1, 0, Severity.WARNING, OTHER_CONTROL_CODE, message, hint)
