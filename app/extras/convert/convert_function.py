@@ -81,6 +81,7 @@ class ConvertFunction(SpecialFunction):
         self._requested: ConversionRequest | None = None
         self._result: ConversionResult | None = None
         self._recognized: ProgramControl | None = None
+        self._path: Path | None = None  # program to which the settings belong
         self._edited: tuple[ProgramSource, Path] | None = None  # program that the editor passed
 
     # --- display
@@ -186,7 +187,10 @@ class ConvertFunction(SpecialFunction):
         if self.program is None:
             self._requested = self._result = None
             return
-        source = self.program[0]
+        source, path = self.program
+        if path != self._path:
+            # The settings are facts of one program, which the text of another program may not have.
+            self._path, self.control, self.target, self.settings = path, None, None, ConversionSettings()
         wanted = ConversionRequest(source, self.control, self.target, self.settings)
         if wanted == self._requested:
             return

@@ -165,14 +165,41 @@ def test_an_omniturn_program_with_an_input_is_not_converted(hands: Hands, folder
 
 def test_a_target_that_the_control_does_not_have_is_not_used(hands: Hands, folder: Path) -> None:
     """FANUC is a target of OmniTurn programs only, so the default applies to the program of a Fanuc."""
-    (folder / "OLD.NC").write_text(CORRECT_PART)
     load(hands, folder / "own.nc")
     function = open_function(hands)
     hands.sees(lambda: shows(note(hands, function), "convert.proved"))
     set_row(hands, function, 1, "FANUC")
-    load(hands, folder / "OLD.NC")
-    hands.sees(lambda: shows(note(hands, function), "convert.proved"))
+    function.marked = 0
+    set_row(hands, function, 0, "FANUC-A")
+    hands.sees(lambda: shows(note(hands, function), "convert.not-converted"))
     assert rows(hands, function)[1] == ("TARGET", "OMNITURN")
+
+
+def test_settings_do_not_apply_to_another_program(hands: Hands, folder: Path) -> None:
+    load(hands, folder / "OLD.NC")
+    function = open_function(hands)
+    hands.sees(lambda: shows(note(hands, function), "convert.not-converted"))
+    set_row(hands, function, 0, "FANUC-B")
+    set_row(hands, function, 1, "SINUMERIK")
+    set_row(hands, function, 2, "INCH")
+    set_row(hands, function, 3, "1 mm OR .1 in")
+    (folder / "OLD.NC").write_text(PART.replace("M77", "M78"))
+    load(hands, folder / "OLD.NC")  # the same program after a correction
+    assert rows(hands, function)[:4] == [
+        ("CONTROL", "FANUC-B"),
+        ("TARGET", "SINUMERIK"),
+        ("UNIT WITHOUT G20 OR G21", "INCH"),
+        ("X1000 WITHOUT A POINT IS", "1 mm OR .1 in"),
+    ]
+    (folder / "OTHER.NC").write_text(PART)
+    load(hands, folder / "OTHER.NC")
+    hands.sees(lambda: shows(note(hands, function), "convert.not-converted"))
+    assert rows(hands, function)[1:4] == [
+        ("TARGET", "OMNITURN"),
+        ("UNIT WITHOUT G20 OR G21", "NOT SPECIFIED"),
+        ("X1000 WITHOUT A POINT IS", "NOT SPECIFIED"),
+    ]
+    assert function.control is None
 
 
 def test_a_level_that_may_not_save_programs_gets_no_file(
