@@ -32,7 +32,7 @@ class ConvertExtra(OptionalFeature):
         """Attach the conversion of loaded, listed and edited programs of other controls."""
         from app.extras.convert.convert_function import RecognitionNotice, make_program_conversion
 
-        if _can_run_conversions(machine):
+        if has_conversions(machine):
             desk.page_registry.add_frame_watcher(RecognitionNotice(desk).observe_frame)
             desk.page_registry.program_conversion = make_program_conversion(desk)
 
@@ -46,7 +46,7 @@ class ConvertExtra(OptionalFeature):
         from app.compose.machine.machine_setup import get_control_limits
         from app.extras.convert.convert_function import ConvertFunction
 
-        if not _can_run_conversions(machine):
+        if not has_conversions(machine):
             return ()
         return ((ConvertFunction(desk, machine, get_control_limits(machine), worker), "ACCESS LEVELS"),)
 
@@ -57,8 +57,8 @@ class ConvertExtra(OptionalFeature):
         return {"access table --json": OUTPUTS}
 
 
-def _can_run_conversions(machine: Machine) -> bool:
-    """Return whether the machine runs programs that a conversion writes."""
+def has_conversions(machine: Machine) -> bool:
+    """Return whether programs can be converted on the screen of this machine, which must be a lathe."""
     return machine.kind == "lathe" and machine.mdi_language in {Dialect.OMNITURN, Dialect.SINUMERIK}
 
 

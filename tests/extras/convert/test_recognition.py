@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from app.compose.machine.machine_setup import read_machine
+from app.extras.convert.extra import has_conversions
 from core.extras.convert.recognition import recognize_other_control
 from tests.extras.convert.sources import FANUC, LINUXCNC
 
@@ -34,3 +36,11 @@ def test_program_of_another_control_is_recognized(text: str, control: str) -> No
 )
 def test_omniturn_program_is_not_recognized_as_another_control(text: str) -> None:
     assert recognize_other_control(text.splitlines()) is None
+
+
+@pytest.mark.parametrize(
+    ("machine", "expected"),
+    [(None, True), ("sinumerik-modulo", True), ("head-table-mill", False), ("fork-head-mill", False)],
+)
+def test_only_lathes_have_conversions(machine: str | None, expected: bool) -> None:
+    assert has_conversions(read_machine(machine)) is expected
