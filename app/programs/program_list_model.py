@@ -94,19 +94,18 @@ class ProgramListModel:
 
         The result is shown in a later frame.
         """
-        conversion = self.desk.page_registry.program_conversion
-        work = partial(
-            list_programs,
+        folders, own, persistence = (
             self.desk.program_choice.program_folders,
             self.operator_folder,
             self.persistence,
-            conversion.recognize_control if conversion is not None else None,
         )
+        conversion = self.desk.page_registry.program_conversion
+        recognize = conversion.recognize_control if conversion is not None else None
         paths = self.desk.recent_programs.paths
 
         def read_lists() -> tuple[tuple[ListedFile, ...], tuple[ListedFile, ...]]:
             return (
-                list_programs(folders, own, persistence),
+                list_programs(folders, own, persistence, recognize),
                 list_recent_programs(paths, folders, own, persistence),
             )
 
@@ -346,7 +345,7 @@ def make_program_table(model: ProgramListModel) -> TableContent:
         else Message("PROGRAMS  ·  {count}  ·  SORTED BY {order}", count=count, order=model.sort_order)
     )
     return TableContent(
-        Message("PROGRAMS  ·  {count}  ·  SORTED BY {order}", count=count, order=model.sort_order),
+        title,
         ("NAME", *(["CONTROL"] if with_controls else []), "CHANGED", "LAST RUN", "PARTS", "BEST"),
         (0.26, 0.14, 0.22, 0.22, 0.08, 0.08) if with_controls else (0.32, 0.25, 0.25, 0.09, 0.09),
         rows,
@@ -364,7 +363,7 @@ def _row(program: ListedFile, *, with_control: bool) -> TableRow:
     cells = (
         program.name,
         *([program.control_name] if with_control else []),
-        format_file_time(program.modified_time_s),
+        formats.NO_VALUE if program.missing_reason else format_file_time(program.modified_time_s),
         format_stored_time(run.started),
         str(run.parts),
         best,
@@ -408,6 +407,10 @@ def make_program_details(program: ListedFile) -> tuple[ProgramDetail, ...]:
 def _describe_type(program: ListedFile) -> str:
     if program.control_name:
         return Message("{control} PROGRAM", control=program.control_name)
+    if program.missing_reason:
+        return "NOT FOUND"
+    if program.is_outside:
+        return "OTHER FOLDER"
     return "DRAWING" if program.is_drawing else "SAMPLE" if program.is_sample else "USER PROGRAM"
 
 

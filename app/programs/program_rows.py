@@ -45,6 +45,8 @@ class ListedFile:
     run_row: RunRow
     is_drawing: bool = False  # a drawing from which a program can be made
     control_name: str = ""  # another control for which the program was written
+    is_outside: bool = False
+    missing_reason: str = ""
 
     @property
     def content_key(self) -> tuple[str, float, int]:
@@ -63,10 +65,9 @@ def list_programs(
 ) -> tuple[ListedFile, ...]:
     """Return all programs and drawings of the folders, each with its run record.
 
-    ``recognize_control`` finds programs of other controls, unless it is None.
-
-    The function reads files whose text is not yet known. Call it on a worker. Raise StoreError if the store
-    cannot be read.
+    ``recognize_control`` finds programs of other controls, unless it is None. A run record belongs to a
+    program text. Files whose text is not yet known are therefore read. Call this function on a worker.
+    Raise StoreError if the store cannot be read.
     """
     runs = persistence.runs.read_records_by_text()
     found = []
@@ -119,6 +120,16 @@ def _find_run_row(path: Path, _changed: int, _size: int) -> str:
         return make_text_record_key(load_source(path).text)
     except SourceError:
         return ""
+
+
+def find_missing_reason(path: Path) -> str:
+    """Return why a program file cannot be read, or an empty string if it is a file."""
+    try:
+        return "" if stat.S_ISREG(path.stat().st_mode) else "IT IS NOT A FILE"
+    except FileNotFoundError:
+        return "THE FILE NO LONGER EXISTS"
+    except OSError as error:
+        return error.strerror or str(error)
 
 
 @lru_cache(maxsize=2 * MAX_PROGRAM_COUNT)

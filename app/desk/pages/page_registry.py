@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TypeVar
 
 from app.desk.page_description import ProgramConversion, ProgramKey
-from app.desk.pages.attached_parts import AttachedModel, FrameWatcher, StartHandler
+from app.desk.pages.attached_parts import AttachedModel, FrameWatcher, GuidanceCard, StartHandler
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.interrupted_notice import NoticeRow
 from core.closing_steps import ClosingStep
