@@ -292,7 +292,7 @@ class Circle:
         """The points as the part has them."""
         return points if self.seen else np.zeros_like(points)
 
-    def get_critical_fraction(self) -> float:
+    def get_fastest_rotation_fraction(self) -> float:
         """Where C turns fastest: nowhere, so in the middle."""
         return 0.5
 
