@@ -20305,6 +20305,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>G92 presets {axis} at a position that depends on the tool offset, because T{number} has not moved in {axis} since its tool change.</source>
+      <translation>G92 preajusta {axis} en una posición que depende del corrector de herramienta, porque T{number} no se ha movido en {axis} desde su cambio de herramienta.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>G93 (inverse time feed) is not supported.</source>
       <translation>G93 (avance en tiempo inverso) no se admite.</translation>
     </message>
@@ -20410,6 +20415,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Set the tool offset for part zero and remove this G92, or move to an absolute X and Z before it.</source>
+      <translation>Ajuste el corrector de herramienta para el cero de pieza y elimine este G92, o muévase antes a una X y una Z absolutas.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>Set the tool offsets for this part zero.</source>
       <translation>Introduzca los correctores para este cero de pieza.</translation>
     </message>
@@ -20497,6 +20507,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>The line uses the C axis, a live tool or a move that a lathe with only X and Z does not have.</source>
       <translation>La línea usa el eje C, una herramienta motorizada o un movimiento que no tiene un torno con solo X y Z.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The move depends on the tool offsets of this lathe, because no move after T has set X and Z.</source>
+      <translation>El movimiento depende de los correctores de herramienta de este torno, porque ningún movimiento después de T ha fijado X y Z.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
@@ -20657,6 +20672,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>Write an absolute X and Z before this line.</source>
       <translation>Escriba X y Z absolutas antes de esta línea.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write an absolute X and Z in the first move after T.</source>
+      <translation>Escriba una X y una Z absolutas en el primer movimiento después de T.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
@@ -20982,6 +21002,11 @@
       <location filename="core/extras/convert/conversion_proof.py" />
       <source>the nose compensation</source>
       <translation>la compensación de punta</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_proof.py" />
+      <source>the number of axes after a tool change</source>
+      <translation>el número de ejes después de un cambio de herramienta</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_proof.py" />

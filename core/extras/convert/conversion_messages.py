@@ -114,6 +114,10 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "{word} has no decimal point, and its value depends on a parameter of the other control.",
         "Use --no-point 1 if X1000 is 1000 units, or --no-point 0.001 if X1000 is 1 mm (.1 in).",
     ),
+    "offset-dependent": (
+        "The move depends on the tool offsets of this lathe, because no move after T has set X and Z.",
+        "Write an absolute X and Z in the first move after T.",
+    ),
     "parentheses": ("The comment has no closing parenthesis.", "Add the parenthesis."),
     "plane": (
         "{word} is not possible while the plane of {plane} is active.",
@@ -122,6 +126,11 @@ ERRORS: Mapping[str, tuple[str, str]] = {
     "position": (
         "The position in {axis} is unknown here, because no earlier line programs it.",
         "Write an absolute X and Z before this line.",
+    ),
+    "preset-before-move": (
+        "G92 presets {axis} at a position that depends on the tool offset, because T{number} has not moved "
+        "in {axis} since its tool change.",
+        "Set the tool offset for part zero and remove this G92, or move to an absolute X and Z before it.",
     ),
     "preset-target": (
         "A position preset at an unknown position, or before a tool change, cannot be converted.",

@@ -96,8 +96,8 @@ def _find_nose_difference(blocks: Sequence[Block], steps: Sequence[PathStep]) ->
             wanted.append((step.line, code))
     made = [
         each.modal.compensation_code
-        for each in blocks
-        if each.moves and each.modal.edge and not is_idle(each)
+        for each in drop_idle(blocks, has_home_moves=False)
+        if each.moves and each.modal.edge
     ]
     for (line, want), found in zip(wanted, made, strict=False):
         if want != found:
@@ -143,12 +143,13 @@ class PathComparison:
         has_source_blocks: bool = False,
         has_thread_cycles: bool = True,
     ) -> None:
-        self._blocks = [each for each in blocks if not is_idle(each)]
+        self._blocks = drop_idle(blocks, has_home_moves=not has_thread_cycles)
         self._has_source_blocks, self._has_thread_cycles = has_source_blocks, has_thread_cycles
         self._metric = metric
         self._steps = list(_known(steps, has_partial_moves=not has_thread_cycles))
         self._at = 0
         self._tool = 0
+        self._is_tool_new = False
         self._rounded = 0
         self._most = 0.0
         self._near = EQUAL_TOLERANCE_MM + resolution_mm / 2
@@ -168,7 +169,7 @@ class PathComparison:
         while at < len(steps):
             step = steps[at]
             if step.kind is StepKind.TOOL:
-                self._tool = round(step.number)
+                self._tool, self._is_tool_new = round(step.number), True
                 at += 1
                 continue
             count = self._thread_zone(at)
@@ -235,23 +236,24 @@ class PathComparison:
                 self._same(step, "machine Z", block.mz, 0.0, EQUAL_TOLERANCE_MM)
 
     def _compare_home(self, step: PathStep) -> None:
-        """Compare a move to machine home, unless the axes were at home before it."""
-        before = self._blocks[self._at - 1] if self._at else None
-        axes = [(0, "machine X", step.x), (1, "machine Z", step.z)]
-        moving = [(index, what) for index, what, wanted in axes if wanted is not None]
-        if before is None or all(abs(before.machine_end[index]) <= EQUAL_TOLERANCE_MM for index, _ in moving):
-            return
+        """Compare a move to machine home: the named axes move there, and the others stay."""
         block = self._next(step)
-        if block.kind is not BlockKind.RAPID:
-            self._differs(step.line, "proof-differs", block.kind, "rapid", "the kind of move")
-        for index, what in moving:
-            self._same(step, what, block.machine_end[index], 0.0, EQUAL_TOLERANCE_MM)
+        if block.kind is not BlockKind.RAPID or (block.modal.tool and block.modal.edge != 0):
+            self._differs(step.line, "proof-differs", block.kind, "home", "the kind of move")
+        axes = [("X", step.x, block.machine_end[0], block.x - block.x0)]
+        axes.append(("Z", step.z, block.machine_end[1], block.z - block.z0))
+        for axis, wanted, end, travel in axes:
+            if wanted is None:
+                self._same(step, f"the travel in {axis}", travel, 0.0, EQUAL_TOLERANCE_MM)
+            else:
+                self._same(step, f"machine {axis}", end, 0.0, EQUAL_TOLERANCE_MM)
 
     def _move(self, step: PathStep, block: Block) -> None:
         if block.kind is not _KINDS[step.kind]:
             self._differs(step.line, "proof-differs", block.kind, step.kind, "the kind of move")
         if block.modal.tool != self._tool:
             self._differs(step.line, "proof-differs", block.modal.tool, self._tool, "T")
+        self._check_first_move(step)
         for axis, made, wanted in (("X", block.x, step.x), ("Z", block.z, step.z)):
             if wanted is not None:
                 self._same(step, axis, made, wanted, self._near)
@@ -272,6 +274,12 @@ class PathComparison:
             self._differs(step.line, "proof-differs", block.per_rev, step.per_rev, "feed per revolution")
         made = block.feed * (1 if step.per_rev else 60)
         self._same(step, "the feed", made, step.feed, 1e-6 * step.feed + 1e-6)
+
+    def _check_first_move(self, step: PathStep) -> None:
+        """Check that the first move after a tool change in the written program has both axes."""
+        if self._is_tool_new and self._has_source_blocks and None in {step.x, step.z}:
+            self._differs(step.line, "proof-differs", "one", "two", "the number of axes after a tool change")
+        self._is_tool_new = False
 
     def _action(self, step: PathStep, block: Block, action: actions.Action) -> None:
         wanted = _action_of(step, metric=self._metric)
@@ -381,14 +389,29 @@ def drop_repeated_speeds(blocks: Sequence[Block]) -> Sequence[Block]:
     return found
 
 
-def is_idle(block: Block) -> bool:
-    """Return whether a block is excluded from the comparison.
+def drop_idle(blocks: Sequence[Block], *, has_home_moves: bool) -> list[Block]:
+    """Return the blocks that the comparison includes.
 
-    Tool changes, presets and moves of zero length are excluded.
+    Tool changes, presets and moves of zero length are excluded. The first move after a tool change is never
+    excluded, and with ``has_home_moves``, neither are moves without a tool offset.
     """
-    if block.action is not None:
-        return isinstance(block.action, actions.ToolChange | actions.Preset)
-    return block.kind is not BlockKind.ARC and block.x == block.x0 and block.z == block.z0
+    found = []
+    is_tool_new, tool = False, 0
+    for block in blocks:
+        action = block.action
+        if isinstance(action, actions.ToolChange):
+            is_tool_new = is_tool_new or action.tool not in {0, tool}
+            tool = action.tool or tool
+        if action is not None:
+            if not isinstance(action, actions.ToolChange | actions.Preset):
+                found.append(block)
+            continue
+        is_home = has_home_moves and (not block.modal.tool or block.modal.edge == 0)
+        is_still = block.kind is not BlockKind.ARC and block.x == block.x0 and block.z == block.z0
+        if not is_still or is_home or is_tool_new:
+            found.append(block)
+        is_tool_new = is_tool_new and is_home
+    return found
 
 
 def _known(steps: Sequence[PathStep], *, has_partial_moves: bool) -> Iterator[PathStep]:

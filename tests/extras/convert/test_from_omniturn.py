@@ -94,6 +94,33 @@ def test_line_is_converted(body: str, linuxcnc: list[str], fanuc: list[str]) -> 
     assert lines_of(body, "fanuc") == fanuc
 
 
+def test_first_move_of_a_tool_is_written_where_the_tool_before_stood() -> None:
+    """Both tools have their own tip, so T2 must move although its end point is that of T1."""
+    assert lines_of("X.375Z0\nT2\nG00X.375Z0\nG01Z-.4", "fanuc")[-4:] == [
+        "G01 X.375 Z0. F.01", "T0202", "G00 X.375 Z0.", "G01 Z-.4",
+    ]  # fmt: skip
+    assert lines_of("X.375Z0\nT2\nX.375Z0\nZ-.4", "fanuc")[-3:] == ["T0202", "X.375 Z0.", "Z-.4"]
+
+
+@pytest.mark.parametrize(
+    ("body", "homes"),
+    [
+        # the axes are those of the line, also if an axis is at home already
+        ("T0\nG00Z0\nX0", ["G53 G0 Z0", "G53 G0 X0"]),
+        ("T0\nG00X0\nX0Z0", ["G53 G0 X0", "G53 G0 X0 Z0"]),
+        # X-1. was machine home with an offset of .5 in
+        ("G00X-1.Z3.\nT0\nG00X0Z0", ["G53 G0 X0 Z0"]),
+    ],
+)
+def test_home_moves_the_axes_of_the_line(body: str, homes: list[str]) -> None:
+    assert [each for each in lines_of(body, "linuxcnc") if "G53" in each] == homes
+
+
+def test_home_before_the_first_tool_keeps_the_order_of_its_axes() -> None:
+    done = convert("G90G94F300G70G72\nT0\nG00Z0\nX0\nT1\nM03S1000\nX1.Z.1\nM30\n", "linuxcnc")
+    assert [each.text for each in done.lines if "G53" in each.text] == ["G53 G0 Z0", "G53 G0 X0"]
+
+
 def test_thread_pass_has_the_lead_as_each_control_measures_it() -> None:
     """The pass moves .3 in X per side and .4 in Z, so the path is .5 and K .05·.5/.4."""
     body = "X2.2\nG33X2.Z-.3I.0001A-.6K.05O"
@@ -161,6 +188,10 @@ def test_difference_is_reported(body: str, found: tuple[int, str]) -> None:
         ("T0\nG00X0Z0\nZ-.5", (3, "machine-point")),
         ("Z0\nX3.F9.", (2, "feed-range")),
         ("G01X2.Z", (1, "number-missing")),
+        ("T2\nG92X4.Z3.\nG00X1.Z.1", (2, "preset-before-move")),
+        ("T0\nG00X0Z0\nT1\nG92Z3.", (4, "preset-before-move")),
+        ("T2\nG91\nG00X.1Z-.1", (3, "offset-dependent")),
+        ("T0\nG92X4.\nG00X0", (2, "preset-before-move")),
     ],
 )
 def test_line_without_counterpart_is_rejected(body: str, found: tuple[int, str]) -> None:
@@ -194,6 +225,10 @@ def test_program_without_moves_is_rejected() -> None:
         ("G00 X1. Z.1", "G00 X1. Z.1 M08", "proof-differs"),
         ("M30", "Z.2\nM30", "proof-differs"),
         ("G41 G01 Z0.", "G42 G01 Z0.", "proof-differs"),
+        ("G00 X1. Z.1", "G00 X1.\nZ.1", "proof-differs"),
+        ("G28 U0 W0", "G28 U0", "proof-differs"),
+        ("G28 U0 W0", "G28 U0\nG28 W0", "proof-differs"),
+        ("G28 U0 W0", "", "proof-differs"),
         ("X1.9", "X1.9 C30.", "target"),
         ("X1.9", "X1.9 M77", "target"),
         ("G96 S300", "(NO END", "target"),
@@ -202,8 +237,8 @@ def test_program_without_moves_is_rejected() -> None:
 def test_proof_detects_a_changed_line(line: str, other: str, code: str) -> None:
     """The proof must not depend on the writer: any changed line is an error at its source line."""
     body = (
-        "Z-.5F.01\nX1.9\nG77S2000\nG96S300\nG97S500\nT2\nG00X1.Z.1\nG42\nG01Z0D1\nX1.5\nZ-.2\n"
-        "G00X2.\nG40\nM30\n"
+        "Z-.5F.01\nX1.9\nT0\nG00X0Z0\nT1\nX2.Z.1\nG01X1.95\nG77S2000\nG96S300\nG97S500\n"
+        "T2\nG00X1.Z.1\nG42\nG01Z0D1\nX1.5\nZ-.2\nG00X2.\nG40\nM30\n"
     )
     texts = f"{BEGIN}{body}".splitlines()
     options = ConversionOptions(SourceControl.LINUXCNC, writes_comments=False)

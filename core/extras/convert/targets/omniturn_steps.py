@@ -1,7 +1,8 @@
 """Steps of an OmniTurn program, made from its elementary blocks.
 
 Coordinates are relative to part zero of the tool, so that the work shift (G10) and the preset (G92) are
-contained in them. All offsets D and all nose radii are zero.
+contained in them. All offsets D and all nose radii are zero. A program is interpreted with two sets of
+invented tool offsets and start positions; a step that differs between them is rejected.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from itertools import zip_longest
 
 from core.extras.convert.conversion_messages import make_error, make_note, make_warning
 from core.extras.convert.path_steps import PathStep, SpindleState, StepKind
@@ -22,11 +24,11 @@ from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.source import Dialect, ProgramSource
 
 MAX_TOOL_NUMBER = 32
-_ANY_OFFSET = ToolOffset(12.7, -76.2)
 _NEAR = 1e-6  # mm
 _OTHER_SIDE_MM = 1.0  # minimum travel of a cut beyond the spindle axis
 _COMMENT = re.compile(r"\(([^()]*)\)?")
 _BLOCK_DELETE = re.compile(r"\s*/")
+_AXIS_WORD = re.compile(r"[XZ](?=\s*[-+.\d(#])", re.IGNORECASE)
 _MOVES = {
     BlockKind.RAPID: StepKind.RAPID,
     BlockKind.FEED: StepKind.FEED,
@@ -52,13 +54,21 @@ class InterpretedProgram:
     is_diameter: bool = True
 
 
-def make_any_setup(limits: ControlLimits) -> InterpreterSetup:
-    """Return a setup in which every tool has an offset, and every offset D is zero."""
+def make_invented_setup(limits: ControlLimits, variant: int) -> InterpreterSetup:
+    """Return a setup with invented tool offsets and start position, and with all offsets D zero.
+
+    The offsets of all tools differ, and so do the distances between two tools in two variants. Their odd
+    values keep a move after a tool change from ending where it starts.
+    """
     numbers = range(1, MAX_TOOL_NUMBER + 1)
+    distance_x, distance_z = 0.79193 + 0.13719 * variant, 1.11731 + 0.17093 * variant
     return InterpreterSetup(
-        tools=dict.fromkeys(numbers, _ANY_OFFSET),
+        tools={
+            number: ToolOffset(12.7 + distance_x * number, -76.2 - distance_z * number) for number in numbers
+        },
         secondary=dict.fromkeys(numbers, SecondaryOffset()),
         limits=limits,
+        start=(141.37139 + 7.10719 * variant, 263.91337 + 11.30191 * variant, 0.0),
     )
 
 
@@ -67,20 +77,33 @@ def interpret_source(
 ) -> InterpretedProgram:
     """Interpret an OmniTurn program and return its blocks and steps.
 
-    The last finding is an error if the program has errors or cannot be written for another control.
+    The last finding is an error if the program has errors, if it cannot be written for another control, or
+    if a step depends on the tool offsets of this lathe.
     """
+    first, second = (_interpret_variant(texts, options, limits, variant) for variant in (0, 1))
+    if any(each.severity is Severity.ERROR for each in first.findings):
+        return _find_dependent_preset(first, second) or first
+    if any(each.severity is Severity.ERROR for each in second.findings):
+        return _find_dependent_preset(first, second) or second
+    return _find_dependent_preset(first, second) or _find_dependent_step(first, second) or first
+
+
+def _interpret_variant(
+    texts: Sequence[str], options: ConversionOptions, limits: ControlLimits, variant: int
+) -> InterpretedProgram:
+    """Interpret a program with one variant of the invented setup."""
     source = ProgramSource("source", "".join(f"{each}\n" for each in texts), Dialect.OMNITURN)
-    done = interpret_program(source, make_any_setup(limits))
+    done = interpret_program(source, make_invented_setup(limits, variant))
     blocks = [_relative_to_part_zero(each) for each in done.generate_blocks()]
     errors = [each for each in done.diagnostics if each.severity is Severity.ERROR]
     if errors:
-        return InterpretedProgram((), (), errors)
+        return InterpretedProgram(blocks, (), errors)
     maker = StepMaker(texts, options, limits)
     try:
         for block in blocks:
             maker.append_block(block)
     except ProgramError as error:
-        return InterpretedProgram((), (), [*maker.findings, error.diagnostic])
+        return InterpretedProgram(blocks, (), [*maker.findings, error.diagnostic])
     maker.report_far_side_tools()
     first = next((each.modal for each in blocks if each.moves), None)
     if first is None:
@@ -92,6 +115,42 @@ def interpret_source(
         first.metric,
         first.diameter,
     )
+
+
+def _find_dependent_preset(
+    first: InterpretedProgram, second: InterpretedProgram
+) -> InterpretedProgram | None:
+    """Return the error of the first G92 whose shift depends on the tool offsets, or None."""
+    for one, other in zip(first.blocks, second.blocks, strict=False):
+        shift = one.modal.preset_x - other.modal.preset_x, one.modal.preset_z - other.modal.preset_z
+        if isinstance(one.action, actions.Preset) and max(map(abs, shift)) > _NEAR:
+            axis = "X" if abs(shift[0]) > _NEAR else "Z"
+            error = make_error(one.line, 0, "preset-before-move", number=one.modal.tool, axis=axis)
+            return InterpretedProgram((), (), [error.diagnostic])
+    return None
+
+
+def _find_dependent_step(first: InterpretedProgram, second: InterpretedProgram) -> InterpretedProgram | None:
+    """Return the error of the first step that depends on the tool offsets, or None."""
+    for one, other in zip_longest(first.steps, second.steps):
+        step = one or other
+        assert step is not None
+        if one is None or other is None or not _is_same_step(one, other):
+            error = make_error(step.line, 0, "offset-dependent")
+            return InterpretedProgram((), (), [*first.findings, error.diagnostic])
+    return None
+
+
+def _is_same_step(one: PathStep, other: PathStep) -> bool:
+    """Return whether two steps differ by no more than the precision of the calculation."""
+    for name in ("x", "z", "cx", "cz", "feed"):
+        values = getattr(one, name), getattr(other, name)
+        if (values[0] is None) != (values[1] is None):
+            return False
+        if values[0] is not None and abs(values[0] - values[1]) > _NEAR:
+            return False
+    same = replace(other, x=one.x, z=one.z, cx=one.cx, cz=one.cz, feed=one.feed)
+    return same == one
 
 
 def _relative_to_part_zero(block: Block) -> Block:
@@ -121,6 +180,7 @@ class StepMaker:
     tool_number: int = 0
     spindle: SpindleState = field(default_factory=SpindleState)
     nose_code: int = 40
+    _is_tool_new: bool = False  # since a tool change and until the next move
     _line: int = 0
     _comments: list[str] = field(default_factory=list)
     _reported: set[tuple[str, object]] = field(default_factory=set)
@@ -180,13 +240,15 @@ class StepMaker:
         self._select_nose_code(block)
         self._report_offset(block)
         self._follow_maximum_speed(block)
-        if block.kind is not BlockKind.ARC and block.x == block.x0 and block.z == block.z0:
+        is_first, self._is_tool_new = self._is_tool_new, False
+        if not is_first and block.kind is not BlockKind.ARC and block.x == block.x0 and block.z == block.z0:
             return
         if block.kind is BlockKind.RAPID:
             self._note_rapid_rate(block)
         else:
             line, low, high = self._cut_range.get(self.tool_number, (block.line, 0.0, -_OTHER_SIDE_MM))
-            self._cut_range[self.tool_number] = line, min(low, block.x), max(high, block.x0, block.x)
+            start_x = block.x if is_first else block.x0
+            self._cut_range[self.tool_number] = line, min(low, block.x), max(high, start_x, block.x)
         per_rev = block.per_rev or block.kind is BlockKind.THREAD
         self._append(
             PathStep(
@@ -203,12 +265,14 @@ class StepMaker:
             self.findings.append(make_note(block.line, 0, "rapid-rate", rate=rate))
 
     def _append_home(self, block: Block) -> None:
-        """Append a move to machine home. Raises ProgramError for another machine position."""
-        stays = block.x == block.x0 and block.z == block.z0
-        x = abs(block.mx) < _NEAR and (stays or block.x != block.x0)
-        z = abs(block.mz) < _NEAR and (stays or block.z != block.z0)
-        complete = (x or block.x == block.x0) and (z or block.z == block.z0)
-        if block.kind is not BlockKind.RAPID or not complete or not (x or z):
+        """Append a move to machine home of the axes that its line names.
+
+        Raises ProgramError for another machine position.
+        """
+        words = {each.upper() for each in _AXIS_WORD.findall(_COMMENT.sub("", self.texts[block.line - 1]))}
+        x, z = "X" in words, "Z" in words
+        is_home = (not x or abs(block.mx) < _NEAR) and (not z or abs(block.mz) < _NEAR)
+        if block.kind is not BlockKind.RAPID or not is_home or not words:
             raise make_error(block.line, 0, "machine-point")
         self._append(PathStep(StepKind.HOME, block.line, 0.0 if x else None, 0.0 if z else None))
 
@@ -278,7 +342,7 @@ class StepMaker:
             self.findings.append(
                 make_warning(block.line, 0, "tool-change-place", number=number, before=self.tool_number)
             )
-        self.tool_number = number
+        self.tool_number, self._is_tool_new = number, True
         self._append(PathStep(StepKind.TOOL, block.line, number=number))
 
     def _append_spindle(self, block: Block) -> None:

@@ -11,8 +11,8 @@ from core.extras.convert.conversion_messages import make_error
 from core.extras.convert.conversion_proof import (
     PathComparison,
     Proof,
+    drop_idle,
     drop_repeated_speeds,
-    is_idle,
     make_target_error,
 )
 from core.extras.convert.omniturn_writer import WrittenLine
@@ -76,7 +76,8 @@ def _find_nose_difference(blocks: Sequence[Block], steps: Sequence[PathStep]) ->
         elif step.kind in MOVE_KINDS:
             made.append((step.line, code))
     made.append((steps[-1].line, code))
-    moves = [each for each in blocks if each.moves and not is_idle(each) and each.modal.tool]
+    kept = drop_idle(blocks, has_home_moves=True)
+    moves = [each for each in kept if each.moves and each.modal.tool]
     wanted = [each.modal.compensation_code for each in [*moves, blocks[-1]]]
     for (line, code), want in zip(made, wanted, strict=False):
         if code != want:
