@@ -20325,6 +20325,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>LinuxCNC calculates G02, G03, G41 and G42 in Z and X, whatever side the tool post is on.</source>
+      <translation>LinuxCNC calcula G02, G03, G41 y G42 en Z y X, sea cual sea el lado del portaherramientas.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>M99 repeats the main program; the converted program ends with M30.</source>
       <translation>M99 repite el programa principal; el programa convertido termina con M30.</translation>
     </message>
@@ -20412,6 +20417,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>Select a tool before this move, or move to X0 and Z0.</source>
       <translation>Seleccione una herramienta antes de este movimiento, o muévase a X0 y Z0.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Select the rear tool post: leave out --tool-post front.</source>
+      <translation>Seleccione el portaherramientas trasero: omita --tool-post front.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />

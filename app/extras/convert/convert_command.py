@@ -184,6 +184,12 @@ def _reject_idle_options(args: argparse.Namespace) -> None:
         if value is not None:
             text = "{option} has no effect on an OmniTurn program; leave it out"
             raise CommandError(Message(text, option=option), "option-without-effect")
+    if args.tool_post == "front":
+        text = (
+            "{target} calculates G02, G03, G41 and G42 in Z and X, whatever side the tool post is on; "
+            "leave out --tool-post front"
+        )
+        raise CommandError(Message(text, target=args.to), "option-without-effect")
 
 
 def _options(args: argparse.Namespace, control: SourceControl, machine: Machine) -> ConversionOptions:

@@ -165,6 +165,10 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "Remove L and E, and start the thread in front of the part or in a groove.",
     ),
     "thread-lead": ("The thread has no lead.", "Write F with the lead of the thread."),
+    "tool-post": (
+        "LinuxCNC calculates G02, G03, G41 and G42 in Z and X, whatever side the tool post is on.",
+        "Select the rear tool post: leave out --tool-post front.",
+    ),
     "too-many-moves": (
         "The program makes more than {most} moves.",
         "Correct the loop or the cycle, or convert the program in parts.",

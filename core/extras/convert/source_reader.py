@@ -422,6 +422,8 @@ def read_source(texts: Sequence[str], options: ConversionOptions) -> tuple[Sourc
 
     If an error has ended the reading, it is the last finding.
     """
+    if options.front and options.control is SourceControl.LINUXCNC:
+        return SourceState(options), [make_error(0, 0, "tool-post").diagnostic]
     try:
         reader = SourceReader(texts, options)
     except ProgramError as error:

@@ -111,6 +111,8 @@ def test_program_is_written_for_sinumerik(
         ("part.nc", ("--to", "linuxcnc", "--unit", "mm"), "option-without-effect"),
         ("part.nc", ("--to", "linuxcnc", "--x", "radius"), "option-without-effect"),
         ("part.nc", ("--to", "linuxcnc", "--no-point", "1"), "option-without-effect"),
+        ("part.nc", ("--to", "linuxcnc", "--tool-post", "front"), "option-without-effect"),
+        ("part.nc", ("--to", "fanuc", "--tool-post", "front"), "option-without-effect"),
     ],
 )
 def test_option_that_contradicts_the_target_is_rejected(

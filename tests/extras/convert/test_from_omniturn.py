@@ -143,10 +143,6 @@ def test_nose_compensation_starts_and_ends_on_its_moves() -> None:
     assert "nose-table" in codes
 
 
-def test_front_tool_post_retains_the_direction_of_arcs() -> None:
-    assert lines_of("G02X2.5Z-.15I0K-.25", "fanuc", front=True) == ["G02 X2.5 Z-.15 I0. K-.25 F.01"]
-
-
 def test_rounding_to_the_resolution_of_fanuc_is_counted() -> None:
     done = convert(f"{BEGIN}Z-.00005\nX1.9\nM30\n", "fanuc")
     assert (done.errors, done.proof.rounded_move_count) == ([], 2)  # the second move has the same Z
@@ -251,7 +247,5 @@ def test_proof_detects_a_changed_line(line: str, other: str, code: str) -> None:
         for i, text in enumerate(other.split("\n"))
     ]
     for made, wanted in ((lines, ()), ([*lines[:index], *changed, *lines[index + 1 :]], (code,))):
-        proof = prove_by_reading(
-            made, SourceControl.FANUC_A, program, has_front_tool_post=False, resolution_mm=0.00254
-        )
+        proof = prove_by_reading(made, SourceControl.FANUC_A, program, resolution_mm=0.00254)
         assert tuple(each.code for each in proof.errors) == wanted

@@ -8,7 +8,7 @@ from core.extras.convert.conversion_proof import prove
 from core.extras.convert.path_steps import PathStep, StepKind
 from core.interpreter.shared.job_setup import ControlLimits
 from core.language.diagnostics import Severity
-from tests.extras.convert.sources import converted, lines_after, refused
+from tests.extras.convert.sources import LINUXCNC, converted, lines_after, refused
 
 
 def test_small_fanuc_program_is_converted_line_by_line() -> None:
@@ -61,6 +61,12 @@ def test_fanuc_line_is_converted(source: str, made: str) -> None:
 
 def test_arcs_of_a_front_tool_post_retain_their_direction() -> None:
     assert lines_after("G02X2.5Z-.15I0K-.25", front=True) == ["G95F.01G02X2.5Z-.15I0K-.25"]
+
+
+def test_linuxcnc_program_has_no_front_tool_post() -> None:
+    """LinuxCNC calculates arcs in Z and X, whatever side the tool post is on."""
+    done = converted(f"{LINUXCNC}G2X2.5Z-.15I0K-.25\nM2\n", "linuxcnc", front=True)
+    assert [each.code for each in done.errors] == ["tool-post"]
 
 
 def test_linuxcnc_radius_mode_is_doubled() -> None:

@@ -25,14 +25,12 @@ _SAME = 1e-9  # mm
 class ProgramForm:
     """Form of a written program.
 
-    ``has_front_tool_post`` means that arcs are seen with X+ toward the operator. ``has_line_comments`` means
-    that each line ends with a comment that contains its source line.
+    ``has_line_comments`` means that each line ends with a comment that contains its source line.
     """
 
     title: str
     is_metric: bool
     is_diameter: bool
-    has_front_tool_post: bool = False
     has_line_comments: bool = True
 
 
@@ -174,9 +172,8 @@ class ProgramWriter(ABC):
         """Select the G code of nose compensation for the next move; G40 is in the departure move."""
         if step.number == 40:
             return
-        # The steps see X+ toward the operator, so that left and right are exchanged for a rear tool post.
-        code = step.number if self.form.has_front_tool_post else 83 - step.number
-        self._nose_word = f"G{round(code)}"
+        # The steps see X+ toward the operator, but these controls calculate in Z and X on every lathe.
+        self._nose_word = f"G{round(83 - step.number)}"
 
     def _change_spindle(self, spindle: SpindleState) -> None:
         before, self.spindle = self.spindle, spindle
@@ -243,10 +240,7 @@ class ProgramWriter(ABC):
         return
 
     def _motion_word(self, step: PathStep) -> str:
-        if step.kind is StepKind.ARC:
-            word = self.arcs[step.clockwise != self.form.has_front_tool_post]
-        else:
-            word = self.motions[step.kind]
+        word = self.arcs[step.clockwise] if step.kind is StepKind.ARC else self.motions[step.kind]
         before, self.motion = self.motion, word
         return word if word != before or step.kind in {StepKind.ARC, StepKind.THREAD} else ""
 

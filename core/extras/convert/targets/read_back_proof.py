@@ -32,7 +32,6 @@ def prove_by_reading(
     control: SourceControl,
     program: InterpretedProgram,
     *,
-    has_front_tool_post: bool,
     resolution_mm: float,
 ) -> Proof:
     """Read a written program and compare its steps with the blocks of the source program.
@@ -40,7 +39,7 @@ def prove_by_reading(
     ``resolution_mm`` is the resolution of the written coordinates in mm. The maximum speeds, the nose
     compensation of each move, and all moves and actions must be equal.
     """
-    options = ConversionOptions(control, front=has_front_tool_post, max_rpm=inf, max_feed_mm_min=inf)
+    options = ConversionOptions(control, max_rpm=inf, max_feed_mm_min=inf)
     state, findings = read_source([each.text for each in lines], options)
     errors = [each for each in findings if _is_difference(each, lines)]
     if errors:

@@ -48,7 +48,6 @@ def convert_from_omniturn(
         title,
         program.is_metric,
         program.is_diameter or target is TargetControl.FANUC,
-        options.front,
         options.writes_comments,
     )
     writer = make_writer(form)
@@ -60,7 +59,6 @@ def convert_from_omniturn(
         writer.lines,
         reader,
         program,
-        has_front_tool_post=options.front,
         resolution_mm=writer.unit_mm / 10**writer.places,
     )
     findings = sorted((*program.findings, *writer.findings), key=lambda each: each.line)
@@ -82,9 +80,7 @@ def convert_to_sinumerik(
     program = _read_source(texts, options, limits, is_omniturn=is_omniturn)
     if any(each.severity is Severity.ERROR for each in program.findings):
         return Conversion((), tuple(program.findings), Proof())
-    form = ProgramForm(
-        title, program.is_metric, program.is_diameter, has_line_comments=options.writes_comments
-    )
+    form = ProgramForm(title, program.is_metric, program.is_diameter, options.writes_comments)
     writer = SinumerikWriter(form)
     try:
         writer.write_program(program.steps)
