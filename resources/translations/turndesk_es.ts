@@ -20070,6 +20070,16 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>A move to machine home becomes G30, which moves to a point that is stored in the other control.</source>
+      <translation>Un movimiento al origen de máquina se convierte en G30, que va a un punto guardado en el otro control.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>A move to machine home becomes G75, which moves to fixed point 1 of the other lathe.</source>
+      <translation>Un movimiento al origen de máquina se convierte en G75, que va al punto fijo 1 del otro torno.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>A position preset at an unknown position, or before a tool change, cannot be converted.</source>
       <translation>Un preajuste de posición en una posición desconocida, o antes de un cambio de herramienta, no se puede convertir.</translation>
     </message>
@@ -20122,6 +20132,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>Check that a G70 executes this line, or move it before the cycle.</source>
       <translation>Compruebe que un G70 ejecuta esta línea, o póngala antes del ciclo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check that its machine data (MD30600 of X and Z) contain a safe point for the tool change.</source>
+      <translation>Compruebe que sus datos de máquina (MD30600 de X y Z) contienen un punto seguro para el cambio de herramienta.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
@@ -20442,6 +20457,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>Start the cycle outside the contour.</source>
       <translation>Empiece el ciclo fuera del contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Store a safe point for the tool change there with G30.1.</source>
+      <translation>Guarde allí un punto seguro para el cambio de herramienta con G30.1.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />

@@ -225,6 +225,14 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
         "{word} is above the maximum feed of this machine; the maximum is used.",
         "Check the feed.",
     ),
+    "home-fixed-point": (
+        "A move to machine home becomes G75, which moves to fixed point 1 of the other lathe.",
+        "Check that its machine data (MD30600 of X and Z) contain a safe point for the tool change.",
+    ),
+    "home-stored-point": (
+        "A move to machine home becomes G30, which moves to a point that is stored in the other control.",
+        "Store a safe point for the tool change there with G30.1.",
+    ),
     "home-position": (
         "{word} moves to a position of the other machine; the converted program moves to machine home.",
         "Check that the path to home is clear.",

@@ -17,6 +17,7 @@ from core.language.source import Dialect, ProgramSource
 
 EQUAL_TOLERANCE_MM = 1e-6 * 25.4  # mm
 OMNITURN_RESOLUTION_MM = (0.00005 * 25.4, 0.0001)  # of OmniTurn in inches and in mm, of the radius and of Z
+_FIXED_POINT = (137.31719, 411.91337)  # mm; machine X as a radius, and machine Z
 _CLEARANCE = 0.0002 * 25.4  # mm; retract of a thread pass
 _KINDS = {
     StepKind.RAPID: BlockKind.RAPID,
@@ -55,6 +56,10 @@ def prove(
     ``source_line_numbers`` contains the source line of each line of ``text``. ``resolution_mm`` is the
     resolution of the coordinates; 0 means the resolution of OmniTurn.
     """
+    # Fixed point 1 stands for machine home; its odd values differ from any programmed position.
+    home = _FIXED_POINT if dialect is Dialect.SINUMERIK else (0.0, 0.0)
+    points = {axis: (value,) for axis, value in zip("XZ", home, strict=True)}
+    limits = replace(limits, fixed_points=points)
     # All offsets differ, so that a move after a tool change moves both axes.
     tools = {number: ToolOffset(12.7 + 0.1 * number, -76.2 - 0.1 * number) for number in range(1, 33)}
     nose = dict.fromkeys(range(1, 33), SecondaryOffset())
@@ -73,7 +78,7 @@ def prove(
     comparison = PathComparison(
         drop_repeated_speeds(blocks), steps, metric=is_metric,
         resolution_mm=resolution_mm or OMNITURN_RESOLUTION_MM[is_metric],
-        has_thread_cycles=dialect is Dialect.OMNITURN,
+        has_thread_cycles=dialect is Dialect.OMNITURN, home=home,
     )  # fmt: skip
     return comparison.compare_steps()
 
@@ -130,7 +135,8 @@ class PathComparison:
     Usually, the blocks belong to the converted program and the steps to the source. With
     ``has_source_blocks``, the blocks belong to the source. ``resolution_mm`` is the resolution to which the
     control rounds coordinates. ``has_thread_cycles`` means that the rapids around a thread pass are those
-    of a cycle, so that they are compared only within the retract of the cycle.
+    of a cycle, so that they are compared only within the retract of the cycle. ``home`` is the machine
+    position to which the blocks move for machine home.
     """
 
     def __init__(
@@ -142,10 +148,12 @@ class PathComparison:
         resolution_mm: float,
         has_source_blocks: bool = False,
         has_thread_cycles: bool = True,
+        home: tuple[float, float] = (0.0, 0.0),
     ) -> None:
         self._blocks = drop_idle(blocks, has_home_moves=not has_thread_cycles)
         self._has_source_blocks, self._has_thread_cycles = has_source_blocks, has_thread_cycles
         self._metric = metric
+        self._home_point = home
         self._steps = list(_known(steps, has_partial_moves=not has_thread_cycles))
         self._at = 0
         self._tool = 0
@@ -246,7 +254,8 @@ class PathComparison:
             if wanted is None:
                 self._same(step, f"the travel in {axis}", travel, 0.0, EQUAL_TOLERANCE_MM)
             else:
-                self._same(step, f"machine {axis}", end, 0.0, EQUAL_TOLERANCE_MM)
+                home = self._home_point[axis == "Z"]
+                self._same(step, f"machine {axis}", end, home, EQUAL_TOLERANCE_MM)
 
     def _move(self, step: PathStep, block: Block) -> None:
         if block.kind is not _KINDS[step.kind]:

@@ -51,14 +51,14 @@ def test_program_for_linuxcnc_states_its_modes_and_restarts_the_spindle() -> Non
         "linuxcnc",
     )
     assert [each.text for each in done.lines] == [
-        "(part.nc)", "G20 G18 G7 G90 G40 G97 G54", "G64 P0.0005", "G53 G0 X0 Z0",
+        "(part.nc)", "G20 G18 G7 G90 G40 G97 G54", "G64 P0.0005", "G30",
         "(ROUGHER)", "T1 M6 G43", "G96 D2500 S400 M3", "G0 X1.1 Z.1", "M8", "G1 G95 Z-.5 F.006",
-        "G53 G0 X0 Z0", "T2 M6 G43", "G96 D2500 S400 M3", "G0 X0 Z.1", "G1 G94 Z-.2 F2", "G4 P.5",
+        "G30", "T2 M6 G43", "G96 D2500 S400 M3", "G0 X0 Z.1", "G1 G94 Z-.2 F2", "G4 P.5",
         "(MSG, LOOK)", "M1", "M5", "M30",
     ]  # fmt: skip
     assert [each.source_line_number for each in done.lines][3:10] == [3, 4, 4, 6, 7, 8, 9]
     assert [(each.line, each.code) for each in done.findings] == [
-        (7, "rapid-rate"), (12, "spindle-restarted"),
+        (3, "home-stored-point"), (7, "rapid-rate"), (12, "spindle-restarted"),
     ]  # fmt: skip
 
 
@@ -106,19 +106,19 @@ def test_first_move_of_a_tool_is_written_where_the_tool_before_stood() -> None:
     ("body", "homes"),
     [
         # the axes are those of the line, also if an axis is at home already
-        ("T0\nG00Z0\nX0", ["G53 G0 Z0", "G53 G0 X0"]),
-        ("T0\nG00X0\nX0Z0", ["G53 G0 X0", "G53 G0 X0 Z0"]),
+        ("T0\nG00Z0\nX0", ["G91 G30 Z0", "G91 G30 X0"]),
+        ("T0\nG00X0\nX0Z0", ["G91 G30 X0", "G30"]),
         # was machine home with an offset of .5 in
-        ("G00X-1.Z3.\nT0\nG00X0Z0", ["G53 G0 X0 Z0"]),
+        ("G00X-1.Z3.\nT0\nG00X0Z0", ["G30"]),
     ],
 )
 def test_home_moves_the_axes_of_the_line(body: str, homes: list[str]) -> None:
-    assert [each for each in lines_of(body, "linuxcnc") if "G53" in each] == homes
+    assert [each for each in lines_of(body, "linuxcnc") if "G30" in each] == homes
 
 
 def test_home_before_the_first_tool_keeps_the_order_of_its_axes() -> None:
     done = convert("G90G94F300G70G72\nT0\nG00Z0\nX0\nT1\nM03S1000\nX1.Z.1\nM30\n", "linuxcnc")
-    assert [each.text for each in done.lines if "G53" in each.text] == ["G53 G0 Z0", "G53 G0 X0"]
+    assert [each.text for each in done.lines if "G30" in each.text] == ["G91 G30 Z0", "G91 G30 X0"]
 
 
 def test_thread_pass_has_the_lead_as_each_control_measures_it() -> None:

@@ -50,12 +50,13 @@ def test_fanuc_program_becomes_a_sinumerik_program() -> None:
     )
     assert not done.errors
     assert [each.text for each in done.lines] == [
-        "; part.nc", "G18 G700 G90 DIAMON G40 G54", "; PIN", "G0 SUPA X0 Z0 D0", "; ROUGH", "T1 D1",
+        "; part.nc", "G18 G700 G90 DIAMON G40 G54", "; PIN", "D0", "G75 X0 Z0", "; ROUGH", "T1 D1",
         "LIMS=2500", "G96 S400 M3", "M8", "G0 X2.1 Z0.1", "G1 Z0 F0.01", "G2 X2.6 Z-0.25 I0.25 K0",
-        "G97 S800", "G1 G94 X2.8 F5", "G4 F0.5", "G0 SUPA X0 Z0 D0", "T2 D1", "G0 X1 Z0.1",
+        "G97 S800", "G1 G94 X2.8 F5", "G4 F0.5", "D0", "G75 X0 Z0", "T2 D1", "G0 X1 Z0.1",
         'MSG("LOOK")', "M1", "MSG()", "M5", "M30",
     ]  # fmt: skip
     assert done.proof.compared_step_count == 14
+    assert [each.line for each in done.findings if each.code == "home-fixed-point"] == [4]
 
 
 @pytest.mark.parametrize(
@@ -63,7 +64,7 @@ def test_fanuc_program_becomes_a_sinumerik_program() -> None:
     [
         ("G01U-.5W-.1", ["G1 G95 X1.5 Z0 F0.01"]),
         ("G98G01Z0F10.", ["G1 G94 Z0 F10"]),
-        ("G28U0\nG00X2.2", ["G0 SUPA X0 D0", "D1 G0 X2.2"]),
+        ("G28U0\nG00X2.2", ["D0", "G75 X0", "D1 G0 X2.2"]),
         ("M98P7L2\nM30\nO7\nG01W-.1\nM99", ["G1 G95 Z0 F0.01", "Z-0.1"]),
         ("G01Z-1.,C.05\nX3.", ["G1 G95 Z-0.95 F0.01", "X2.1 Z-1", "X3"]),
         # the pass is .05 deep in X, from Z.1 to Z-1.
@@ -139,7 +140,7 @@ STEPS = [
 ]
 PROGRAM = (
     "T1 D1\nLIMS=2000 G710 DIAMON\nG96 S100 M3\nG0 X20 Z2\nG42 G1 Z0 F0.2\nX24\nZ-5\nG40 G0 X40\n"
-    "G0 SUPA X0 Z0 D0\nM30\n"
+    "D0\nG75 X0 Z0\nM30\n"
 )
 
 
@@ -155,7 +156,9 @@ PROGRAM = (
         ("F0.2", "F0.3"),
         ("G42", "G41"),
         ("G40 G0 X40", "G0 X40\nG40 X41"),
-        ("SUPA X0 Z0 D0", "SUPA X0 Z-1 D0"),
+        ("G75 X0 Z0", "G75 X0"),
+        ("G75 X0 Z0", "G0 SUPA X0 Z0"),
+        ("D0\n", ""),
         ("Z-5", "Z-5\nM8"),
         ("X24", "X24 Q1"),
     ],

@@ -42,8 +42,13 @@ class LinuxCncWriter(ProgramWriter):
             self.write_spindle(SpindleState())
 
     def write_home(self, step: PathStep) -> None:
-        """Write G53 with the axes that move."""
-        self.append_line("G53", "G0", "X0" if step.x is not None else "", "Z0" if step.z is not None else "")
+        """Write G30, which moves to a stored point; one axis needs G91, so that it moves there directly."""
+        self.warn_about_home("home-stored-point")
+        if step.x is not None and step.z is not None:
+            self.append_line("G30")
+            return
+        self.append_line("G91", "G30", "X0" if step.x is not None else "Z0")
+        self.append_line("G90")
 
     def write_dwell(self, seconds: float) -> None:
         """Write G4 with P in seconds."""

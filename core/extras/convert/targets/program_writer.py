@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from math import dist
 from typing import ClassVar
 
-from core.extras.convert.conversion_messages import make_error
+from core.extras.convert.conversion_messages import make_error, make_warning
 from core.extras.convert.omniturn_writer import WrittenLine, number
 from core.extras.convert.path_steps import MOVE_KINDS, PathStep, SpindleState, StepKind, has_same_speed
 from core.language.diagnostics import Diagnostic
@@ -100,6 +100,11 @@ class ProgramWriter(ABC):
     @abstractmethod
     def write_home(self, step: PathStep) -> None:
         """Write a rapid to machine home."""
+
+    def warn_about_home(self, code: str) -> None:
+        """Report once to which stored point of the control a move to machine home is converted."""
+        if not any(each.code == code for each in self.findings):
+            self.findings.append(make_warning(self.line_number, 0, code))
 
     @abstractmethod
     def write_dwell(self, seconds: float) -> None:

@@ -61,8 +61,10 @@ def _is_difference(found: Diagnostic, lines: Sequence[WrittenLine]) -> bool:
     """Return whether a finding of the reader means that the written program is not as intended."""
     if found.severity is Severity.NOTE or found.code in _HARMLESS:
         return False
-    is_path_tolerance = found.line > 0 and lines[found.line - 1].text.startswith("G64 ")
-    return not (found.code == "left-out" and is_path_tolerance)
+    text = lines[found.line - 1].text if found.line else ""
+    is_path_tolerance = found.code == "left-out" and text.startswith("G64 ")
+    is_stored_point = found.code == "home-position" and "G30" in text
+    return not is_path_tolerance and not is_stored_point
 
 
 def _find_nose_difference(blocks: Sequence[Block], steps: Sequence[PathStep]) -> Diagnostic | None:

@@ -36,9 +36,13 @@ class SinumerikWriter(ProgramWriter):
         self.pending_words = ()
 
     def write_home(self, step: PathStep) -> None:
-        """Write SUPA without the tool offset. The next move selects the cutting edge again."""
-        x, z = "X0" if step.x is not None else "", "Z0" if step.z is not None else ""
-        self.append_line("G0", "SUPA", x, z, "D0")
+        """Write G75, which moves to a fixed point, without the tool offset.
+
+        The next move selects the cutting edge again.
+        """
+        self.warn_about_home("home-fixed-point")
+        self.append_line("D0")
+        self.append_line("G75", "X0" if step.x is not None else "", "Z0" if step.z is not None else "")
         self.pending_words = ("D1",) if self.tool_number else ()
 
     def write_dwell(self, seconds: float) -> None:
