@@ -19,10 +19,10 @@ BEGIN = "G90G94F300G70G72\nT1\nM03S1000\nX2.Z.1\nG95F.01\n"
 LIMITS = ControlLimits(m_code_outputs={25: ("catcher", True), 26: ("catcher", False)})
 
 
-def convert(text: str, target: str, **options: Any) -> Conversion:
+def convert(text: str, target: str, title: str = "part.nc", **options: Any) -> Conversion:
     """Return the conversion of a complete OmniTurn program."""
     wanted = ConversionOptions(SourceControl.LINUXCNC, writes_comments=False, **options)
-    return convert_from_omniturn(text.splitlines(), TargetControl(target), wanted, LIMITS, "part.nc")
+    return convert_from_omniturn(text.splitlines(), TargetControl(target), wanted, LIMITS, title)
 
 
 def complete(body: str) -> str:
@@ -92,6 +92,30 @@ def test_program_for_fanuc_has_decimal_points_and_a_program_number() -> None:
 def test_line_is_converted(body: str, linuxcnc: list[str], fanuc: list[str]) -> None:
     assert lines_of(body, "linuxcnc") == linuxcnc
     assert lines_of(body, "fanuc") == fanuc
+
+
+def test_comment_has_only_the_characters_of_fanuc() -> None:
+    """% ends a Fanuc file, ; and : begin a block or a program, and # and @ are macro words."""
+    assert (
+        lines_of("(25% off; #1 @ 3:1 A-B_C=D/E.,+*)\nZ0", "fanuc")[0] == "(25  OFF   1   3 1 A-B C=D/E.,+*)"
+    )
+    done = convert(complete("Z0"), "fanuc", title="my_part%1.nc")
+    assert done.lines[1].text == "O0001 (MY PART 1.NC)"
+
+
+@pytest.mark.parametrize(
+    ("comment", "made"),
+    [
+        ("MSG, STOP", "(* MSG, STOP)"),
+        ("debug,#1", "(* debug,#1)"),
+        ("PROBEOPEN a.txt", "(* PROBEOPEN a.txt)"),
+        ("PY,x=1", "(* PY,x=1)"),
+        ("AXIS,hide", "(* AXIS,hide)"),
+        ("PRINTED PART", "(PRINTED PART)"),
+    ],
+)
+def test_comment_is_not_a_command_of_linuxcnc(comment: str, made: str) -> None:
+    assert lines_of(f"({comment})\nZ0", "linuxcnc")[0] == made
 
 
 def test_first_move_of_a_tool_is_written_where_the_tool_before_stood() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from math import hypot
 from typing import ClassVar
@@ -10,6 +11,12 @@ from core.extras.convert.conversion_messages import make_note, make_warning
 from core.extras.convert.omniturn_writer import number
 from core.extras.convert.path_steps import PathStep, SpindleState, StepKind
 from core.extras.convert.targets.program_writer import ProgramWriter
+
+_COMMENT_COMMAND = re.compile(
+    r"\s*(MSG|DEBUG|PRINT|LOG|LOGOPEN|LOGAPPEND|LOGCLOSE|PROBEOPEN|PROBECLOSE|PY|PYRUN|AXIS|ABORT)\b",
+    re.IGNORECASE,
+)
+"""Beginning of a comment that LinuxCNC executes."""
 
 
 class LinuxCncWriter(ProgramWriter):
@@ -66,8 +73,12 @@ class LinuxCncWriter(ProgramWriter):
     def write_stop(self, code: float, text: str) -> None:
         """Write M0 or M1 after a line with a message for the operator."""
         if text:
-            self.append_raw_line(self.make_comment(f"MSG, {text}"))
+            self.append_raw_line(super().make_comment(f"MSG, {text}"))
         super().write_stop(code, "")
+
+    def make_comment(self, text: str) -> str:
+        """Return a comment. An asterisk precedes a word that would make the comment a command."""
+        return super().make_comment(f"* {text}" if _COMMENT_COMMAND.match(text) else text)
 
 
 class FanucWriter(ProgramWriter):
@@ -81,6 +92,7 @@ class FanucWriter(ProgramWriter):
         StepKind.THREAD: "G32",
     }
     arcs: ClassVar[tuple[str, str]] = ("G02", "G03")
+    not_in_comments: ClassVar[re.Pattern[str]] = re.compile(r"[^A-Z0-9 .,+\-*/=]")
 
     def write_beginning(self) -> None:
         """Write the program number and the modes that the program needs."""
@@ -139,5 +151,5 @@ class FanucWriter(ProgramWriter):
         return f"M{round(code):02d}"
 
     def make_comment(self, text: str) -> str:
-        """Return a comment in capitals."""
+        """Return a comment in capitals, with the characters of the keyboard of the control."""
         return super().make_comment(text.upper())

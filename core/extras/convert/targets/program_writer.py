@@ -16,7 +16,6 @@ from core.language.diagnostics import Diagnostic
 
 MM_PER_INCH = 25.4
 LONGEST_COMMENT = 60
-_NOT_IN_COMMENTS = re.compile(r"[^ -'*-~]")
 _UNKNOWN = float("nan")
 _SAME = 1e-9  # mm
 
@@ -45,6 +44,7 @@ class ProgramWriter(ABC):
     feed_modes: ClassVar[tuple[str, str]]  # feed per minute and feed per revolution
     motions: ClassVar[Mapping[StepKind, str]]
     arcs: ClassVar[tuple[str, str]]  # clockwise and counterclockwise
+    not_in_comments: ClassVar[re.Pattern[str]] = re.compile(r"[^ -'*-~]")
 
     def __init__(self, form: ProgramForm) -> None:
         self.form = form
@@ -127,7 +127,7 @@ class ProgramWriter(ABC):
 
     def make_comment(self, text: str) -> str:
         """Return a comment with the characters that the control accepts."""
-        return f"({_NOT_IN_COMMENTS.sub(' ', text)[:LONGEST_COMMENT].strip()})"
+        return f"({self.not_in_comments.sub(' ', text)[:LONGEST_COMMENT].strip()})"
 
     def format_number(self, value: float, places: int) -> str:
         """Return a number in the form of the control."""
