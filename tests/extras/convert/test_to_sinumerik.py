@@ -51,7 +51,7 @@ def test_fanuc_program_becomes_a_sinumerik_program() -> None:
     assert not done.errors
     assert [each.text for each in done.lines] == [
         "; part.nc", "G18 G700 G90 DIAMON G40 G54", "; PIN", "D0", "G75 X0 Z0", "; ROUGH", "T1 D1",
-        "LIMS=2500", "G96 S400 M3", "M8", "G0 X2.1 Z0.1", "G1 Z0 F0.01", "G2 X2.6 Z-0.25 I0.25 K0",
+        "G96 S400 LIMS=2500 M3", "M8", "G0 X2.1 Z0.1", "G1 Z0 F0.01", "G2 X2.6 Z-0.25 I0.25 K0",
         "G97 S800", "G1 G94 X2.8 F5", "G4 F0.5", "D0", "G75 X0 Z0", "T2 D1", "G0 X1 Z0.1",
         'MSG("LOOK")', "M1", "MSG()", "M5", "M30",
     ]  # fmt: skip
@@ -75,6 +75,11 @@ def test_fanuc_program_becomes_a_sinumerik_program() -> None:
         ("G96S300\nG98G01Z0F9.\nG97S500\nZ-.1", ["G96 S300", "G1 G961 Z0 F9", "G97 S500", "G94 Z-0.1 F9"]),
         ("G96S300\nG01Z0\nG97\nM05", ["G96 S300", "G1 Z0 F0.01", "G97", "M5"]),
         ("M05\nM03S900", ["M5", "S900 M3"]),
+        # LIMS also limits G97, and each later G96 needs the old limit again
+        (
+            "G50S1000\nG96S300\nG01Z0\nG97S3000\nM03S900\nG96S300",
+            ["G96 S300 LIMS=1000", "G1 Z0 F0.01", "G97 S3000 LIMS=3000", "S900", "G96 S300 LIMS=1000"],
+        ),
     ],
 )
 def test_fanuc_line_is_converted(source: str, made: list[str]) -> None:

@@ -50,21 +50,29 @@ class SinumerikWriter(ProgramWriter):
         self.append_line("G4", f"F{self.format_number(seconds, 6)}")
 
     def write_surface_speed(self, spindle: SpindleState, start: str, *, is_new: bool) -> None:
-        """Write the maximum rpm in LIMS, and then G96."""
+        """Write G96 and LIMS with the maximum rpm in one line, because LIMS also limits G97 before it."""
+        limit = ""
         if spindle.max_rpm and spindle.max_rpm != self.limit_rpm:
-            self.append_line(f"LIMS={self.format_speed(spindle.max_rpm)}")
+            limit = f"LIMS={self.format_speed(spindle.max_rpm)}"
+        if limit and not is_new:
+            self.append_line(limit)
         if is_new:
-            self.append_line("G96", f"S{self.format_speed(spindle.speed)}", start)
+            self.append_line("G96", f"S{self.format_speed(spindle.speed)}", limit, start)
             self.is_surface_speed_active, self.feed = True, ("G96", "")
 
     def write_speed(self, spindle: SpindleState, start: str) -> None:
         """Write S, with G97 if a constant surface speed is active.
 
-        G97 selects the feed per revolution. Without a speed, G97 retains the present one.
+        G97 selects the feed per revolution. Without a speed, G97 retains the present one. LIMS also limits
+        this speed, so that a higher speed needs a higher LIMS.
         """
+        limit = ""
+        if 0 < self.limit_rpm < spindle.speed:
+            self.limit_rpm = spindle.speed
+            limit = f"LIMS={self.format_speed(spindle.speed)}"
         code = "G97" if self.is_surface_speed_active else ""
         speed = f"S{self.format_speed(spindle.speed)}" if spindle.speed else ""
-        self.append_line(code, speed, start)
+        self.append_line(code, speed, limit, start)
         if code:
             self.is_surface_speed_active, self.feed = False, ("G95", "")
 
