@@ -51,12 +51,12 @@ def test_program_for_linuxcnc_states_its_modes_and_restarts_the_spindle() -> Non
         "linuxcnc",
     )
     assert [each.text for each in done.lines] == [
-        "(part.nc)", "G20 G18 G7 G90 G40 G97 G54", "G64 P0.0005", "G30",
+        "(part.nc)", "G20 G18 G7 G90 G40 G97 G54", "G80 G91.1 G92.1", "G64 P0.0005", "G30",
         "(ROUGHER)", "T1 M6 G43", "G96 D2500 S400 M3", "G0 X1.1 Z.1", "M8", "G1 G95 Z-.5 F.006",
         "G30", "T2 M6 G43", "G96 D2500 S400 M3", "G0 X0 Z.1", "G1 G94 Z-.2 F2", "G4 P.5",
         "(MSG, LOOK)", "M1", "M5", "M30",
     ]  # fmt: skip
-    assert [each.source_line_number for each in done.lines][3:10] == [3, 4, 4, 6, 7, 8, 9]
+    assert [each.source_line_number for each in done.lines][4:11] == [3, 4, 4, 6, 7, 8, 9]
     assert [(each.line, each.code) for each in done.findings] == [
         (3, "home-stored-point"), (7, "rapid-rate"), (12, "spindle-restarted"),
     ]  # fmt: skip
@@ -66,8 +66,9 @@ def test_program_for_fanuc_has_decimal_points_and_a_program_number() -> None:
     done = convert("G90G94F300G71G73\nT1\nG96M03S120\nX10Z2(ROUGH)\nG95F.2Z-8\nT0\nG00X0Z0\nM02\n", "fanuc")
     # G73: X is a radius of 10 mm, so the diameter is 20 mm; without G77, the limit of the lathe is 3500 rpm
     assert [each.text for each in done.lines] == [
-        "%", "O0001 (PART.NC)", "G21 G18 G40 G97 G99", "T0101", "G50 S3500", "G96 S120 M03", "(ROUGH)",
-        "G00 X20. Z2.", "G01 Z-8. F.2", "G28 U0 W0", "M02", "%",
+        "%", "O0001 (PART.NC)", "G21 G18 G40 G80 G97 G99 G54", "T0101", "G50 S3500",
+        "G96 S120 M03", "(ROUGH)",
+        "G00 X20. Z2.", "G01 G99 Z-8. F.2", "G28 U0 W0", "M02", "%",
     ]  # fmt: skip
     assert [(each.line, each.code) for each in done.findings] == [
         (3, "maximum-speed-added"), (4, "rapid-rate"),
@@ -77,14 +78,14 @@ def test_program_for_fanuc_has_decimal_points_and_a_program_number() -> None:
 @pytest.mark.parametrize(
     ("body", "linuxcnc", "fanuc"),
     [
-        ("Z0\nX1.8\nG00Z.1", ["G1 G95 Z0 F.01", "X1.8", "G0 Z.1"], ["G01 Z0. F.01", "X1.8", "G00 Z.1"]),
+        ("Z0\nX1.8\nG00Z.1", ["G1 G95 Z0 F.01", "X1.8", "G0 Z.1"], ["G01 G99 Z0. F.01", "X1.8", "G00 Z.1"]),
         ("G94F10Z0", ["G1 G94 Z0 F10"], ["G01 G98 Z0. F10."]),
         # X+ points toward the operator in OmniTurn, so the direction of an arc is reversed
-        ("G02X2.5Z-.15I0K-.25", ["G3 G95 X2.5 Z-.15 I0 K-.25 F.01"], ["G03 X2.5 Z-.15 I0. K-.25 F.01"]),
-        ("P4\nM30\n}4\nZ0\nM99", ["G1 G95 Z0 F.01"], ["G01 Z0. F.01"]),
-        ("LS2\nG91\nZ-.1\nG90\nLF", ["G1 G95 Z0 F.01", "Z-.1"], ["G01 Z0. F.01", "Z-.1"]),
+        ("G02X2.5Z-.15I0K-.25", ["G3 G95 X2.5 Z-.15 I0 K-.25 F.01"], ["G03 G99 X2.5 Z-.15 I0. K-.25 F.01"]),
+        ("P4\nM30\n}4\nZ0\nM99", ["G1 G95 Z0 F.01"], ["G01 G99 Z0. F.01"]),
+        ("LS2\nG91\nZ-.1\nG90\nLF", ["G1 G95 Z0 F.01", "Z-.1"], ["G01 G99 Z0. F.01", "Z-.1"]),
         # G92 gives X2. Z.1 the name Z.3, so Z0 is .2 lower
-        ("G92Z.3\nZ0", ["G1 G95 Z-.2 F.01"], ["G01 Z-.2 F.01"]),
+        ("G92Z.3\nZ0", ["G1 G95 Z-.2 F.01"], ["G01 G99 Z-.2 F.01"]),
         ("M09\nM00(TURN IT)", ["M9", "(MSG, TURN IT)", "M0"], ["M09", "M00 (TURN IT)"]),
         ("(NOTE)\nM04S800", ["(NOTE)", "G97 S800 M4"], ["(NOTE)", "G97 S800 M04"]),
     ],
@@ -120,10 +121,28 @@ def test_comment_is_not_a_command_of_linuxcnc(comment: str, made: str) -> None:
 
 def test_first_move_of_a_tool_is_written_where_the_tool_before_stood() -> None:
     """Both tools have their own tip, so T2 must move although its end point is that of T1."""
-    assert lines_of("X.375Z0\nT2\nG00X.375Z0\nG01Z-.4", "fanuc")[-4:] == [
-        "G01 X.375 Z0. F.01", "T0202", "G00 X.375 Z0.", "G01 Z-.4",
+    assert lines_of("X.375Z0\nT2\nG00X.375Z0\nG01Z-.4", "fanuc") == [
+        "G01 G99 X.375 Z0. F.01", "T0202", "G97 S1000 M03", "G00 X.375 Z0.", "G01 G99 Z-.4 F.01",
     ]  # fmt: skip
-    assert lines_of("X.375Z0\nT2\nX.375Z0\nZ-.4", "fanuc")[-3:] == ["T0202", "X.375 Z0.", "Z-.4"]
+
+
+@pytest.mark.parametrize(
+    ("target", "made"),
+    [
+        ("linuxcnc", ["T2 M6 G43", "G96 D2000 S300 M4", "G0 X2 Z.2", "G1 G94 Z0 F9"]),
+        ("fanuc", ["T0202", "G50 S2000", "G96 S300 M04", "G00 X2. Z.2", "G01 G98 Z0. F9."]),
+    ],
+)
+def test_every_mode_is_repeated_after_a_tool_change(target: str, made: list[str]) -> None:
+    """A restart at the line of T does not run with another speed, move or feed mode."""
+    body = "G77S2000\nG96S300M04\nG94F9.Z0\nG00X2.Z.2\nT2\nG00X2.Z.2\nG01Z0"
+    assert lines_of(body, target)[-len(made) :] == made
+
+
+def test_new_spindle_words_after_a_tool_change_are_complete() -> None:
+    """Only the new speed is written, with the direction although it is the same as before."""
+    assert lines_of("T2\nM03S800\nG00X2.Z.2", "fanuc") == ["T0202", "G97 S800 M03", "G00 X2. Z.2"]
+    assert lines_of("M05\nT2\nG00X2.Z.2", "fanuc") == ["M05", "T0202", "G00 X2. Z.2"]
 
 
 @pytest.mark.parametrize(
@@ -237,14 +256,14 @@ def test_program_without_moves_is_rejected() -> None:
 @pytest.mark.parametrize(
     ("line", "other", "code"),
     [
-        ("G01 Z-.5", "G01 Z-.5002", "proof-differs"),
+        ("G01 G99 Z-.5", "G01 G99 Z-.5002", "proof-differs"),
         ("X1.9", "X1.9\nX1.8", "proof-differs"),
         ("G50 S2000", "G50 S2100", "proof-differs"),
         ("G96 S300", "G96 S310", "proof-differs"),
         ("T0202", "T0303", "proof-differs"),
         ("G00 X1. Z.1", "G00 X1. Z.1 M08", "proof-differs"),
         ("M30", "Z.2\nM30", "proof-differs"),
-        ("G41 G01 Z0.", "G42 G01 Z0.", "proof-differs"),
+        ("G41 G01 G99 Z0.", "G42 G01 G99 Z0.", "proof-differs"),
         ("G00 X1. Z.1", "G00 X1.\nZ.1", "proof-differs"),
         ("G28 U0 W0", "G28 U0", "proof-differs"),
         ("G28 U0 W0", "G28 U0\nG28 W0", "proof-differs"),

@@ -50,9 +50,10 @@ def test_fanuc_program_becomes_a_sinumerik_program() -> None:
     )
     assert not done.errors
     assert [each.text for each in done.lines] == [
-        "; part.nc", "G18 G700 G90 DIAMON G40 G54", "; PIN", "D0", "G75 X0 Z0", "; ROUGH", "T1 D1",
+        "; part.nc", "G18 G700 G90 DIAMON G40 G54", "TRANS", "G64 G95", "; PIN", "D0", "G75 X0 Z0",
+        "; ROUGH", "T1 D1",
         "G96 S400 LIMS=2500 M3", "M8", "G0 X2.1 Z0.1", "G1 Z0 F0.01", "G2 X2.6 Z-0.25 I0.25 K0",
-        "G97 S800", "G1 G94 X2.8 F5", "G4 F0.5", "D0", "G75 X0 Z0", "T2 D1", "G0 X1 Z0.1",
+        "G97 S800", "G1 G94 X2.8 F5", "G4 F0.5", "D0", "G75 X0 Z0", "T2 D1", "G97 S800 M3", "G0 X1 Z0.1",
         'MSG("LOOK")', "M1", "MSG()", "M5", "M30",
     ]  # fmt: skip
     assert done.proof.compared_step_count == 14
@@ -62,11 +63,11 @@ def test_fanuc_program_becomes_a_sinumerik_program() -> None:
 @pytest.mark.parametrize(
     ("source", "made"),
     [
-        ("G01U-.5W-.1", ["G1 G95 X1.5 Z0 F0.01"]),
+        ("G01U-.5W-.1", ["G1 X1.5 Z0 F0.01"]),
         ("G98G01Z0F10.", ["G1 G94 Z0 F10"]),
         ("G28U0\nG00X2.2", ["D0", "G75 X0", "D1 G0 X2.2"]),
-        ("M98P7L2\nM30\nO7\nG01W-.1\nM99", ["G1 G95 Z0 F0.01", "Z-0.1"]),
-        ("G01Z-1.,C.05\nX3.", ["G1 G95 Z-0.95 F0.01", "X2.1 Z-1", "X3"]),
+        ("M98P7L2\nM30\nO7\nG01W-.1\nM99", ["G1 Z0 F0.01", "Z-0.1"]),
+        ("G01Z-1.,C.05\nX3.", ["G1 Z-0.95 F0.01", "X2.1 Z-1", "X3"]),
         # the pass is .05 deep in X, from Z.1 to Z-1.
         ("G92X1.9Z-1.F.05", ["X1.9", "G33 Z-1 K0.05", "G0 X2", "Z0.1"]),
         # X moves .5 per side and Z .4: the lead .05 is along X
@@ -75,6 +76,11 @@ def test_fanuc_program_becomes_a_sinumerik_program() -> None:
         ("G96S300\nG98G01Z0F9.\nG97S500\nZ-.1", ["G96 S300", "G1 G961 Z0 F9", "G97 S500", "G94 Z-0.1 F9"]),
         ("G96S300\nG01Z0\nG97\nM05", ["G96 S300", "G1 Z0 F0.01", "G97", "M5"]),
         ("M05\nM03S900", ["M5", "S900 M3"]),
+        # a restart at the line of T has the speed, the direction, the move and the feed
+        (
+            "G50S1000\nG96S300M04\nG01Z0\nT0202\nG01X2.Z.1",
+            ["G96 S300 LIMS=1000 M4", "G1 Z0 F0.01", "T2 D1", "G96 S300 LIMS=1000 M4", "G1 X2 Z0.1 F0.01"],
+        ),
         # LIMS also limits G97, and each later G96 needs the old limit again
         (
             "G50S1000\nG96S300\nG01Z0\nG97S3000\nM03S900\nG96S300",
@@ -88,13 +94,13 @@ def test_fanuc_line_is_converted(source: str, made: list[str]) -> None:
 
 def test_linuxcnc_preset_is_contained_in_the_coordinates() -> None:
     """G92 gives Z.1 the name Z.3, so that Z0 is .2 lower; G92.1 cancels it."""
-    assert lines_of("G92Z.3\nG1Z0\nG92.1\nZ0", "linuxcnc") == ["G1 G95 Z-0.2 F0.01", "Z0"]
+    assert lines_of("G92Z.3\nG1Z0\nG92.1\nZ0", "linuxcnc") == ["G1 Z-0.2 F0.01", "Z0"]
 
 
 def test_nose_compensation_starts_and_ends_on_its_moves() -> None:
     body = "G00X1.2Z.2\nG42G01Z0\nX1.6\nZ-.5\nG40G00X2.\nZ.1"
     assert lines_of(body) == [
-        "X1.2 Z0.2", "G42 G1 G95 Z0 F0.01", "X1.6", "Z-0.5", "G40 G0 X2", "Z0.1",
+        "X1.2 Z0.2", "G42 G1 Z0 F0.01", "X1.6", "Z-0.5", "G40 G0 X2", "Z0.1",
     ]  # fmt: skip
 
 
@@ -102,8 +108,8 @@ def test_omniturn_program_becomes_a_sinumerik_program() -> None:
     done = convert("G90G94F300G71G73\nT1\nM03S500\nX10Z2\nG95F.2G02X12Z0I12K2\nM30\n", "omniturn")
     # OmniTurn sees the arc from the other side
     assert [each.text for each in done.lines] == [
-        "; part.nc", "G18 G710 G90 DIAMOF G40 G54", "T1 D1", "S500 M3", "G0 X10 Z2",
-        "G3 G95 X12 Z0 I2 K0 F0.2", "M30",
+        "; part.nc", "G18 G710 G90 DIAMOF G40 G54", "TRANS", "G64 G95", "T1 D1", "G97 S500 M3", "G0 X10 Z2",
+        "G3 X12 Z0 I2 K0 F0.2", "M30",
     ]  # fmt: skip
     assert not done.errors
 

@@ -39,14 +39,16 @@ class LinuxCncWriter(ProgramWriter):
         self.append_raw_line(self.make_comment(self.form.title))
         unit, tolerance = ("G21", "P0.01") if self.form.is_metric else ("G20", "P0.0005")
         self.append_line(unit, "G18", "G7" if self.form.is_diameter else "G8", "G90", "G40", "G97", "G54")
+        self.append_line("G80", "G91.1", "G92.1")
         self.append_line("G64", tolerance)
 
     def write_tool(self, _step: PathStep) -> None:
-        """Write T, M6 and G43, and start the spindle again if it was running."""
+        """Write T, M6 and G43."""
         self.append_line(f"T{self.tool_number}", "M6", "G43")
-        if self.spindle.direction:
-            self.findings.append(make_note(self.line_number, 0, "spindle-restarted", number=self.tool_number))
-            self.write_spindle(SpindleState())
+
+    def report_restart(self) -> None:
+        """Report that the spindle is started again."""
+        self.findings.append(make_note(self.line_number, 0, "spindle-restarted", number=self.tool_number))
 
     def write_home(self, step: PathStep) -> None:
         """Write G30, which moves to a stored point; one axis needs G91, so that it moves there directly."""
@@ -98,7 +100,7 @@ class FanucWriter(ProgramWriter):
         """Write the program number and the modes that the program needs."""
         self.append_raw_line("%")
         self.append_raw_line(f"O0001 {self.make_comment(self.form.title)}")
-        self.append_line("G21" if self.form.is_metric else "G20", "G18", "G40", "G97", "G99")
+        self.append_line("G21" if self.form.is_metric else "G20", "G18", "G40", "G80", "G97", "G99", "G54")
         self.feed = ("G99", "")
 
     def write_ending(self) -> None:

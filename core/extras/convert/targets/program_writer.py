@@ -60,6 +60,8 @@ class ProgramWriter(ABC):
         self.line_number = 0
         self.pending_words: Sequence[str] = ()  # words at the beginning of the next move
         self.limit_rpm = 0.0  # maximum rpm that was written last
+        self.is_spindle_mode_known = False  # whether G96 or G97 was written since the last tool change
+        self._is_spindle_due = False  # since a tool change, until the spindle words are written again
         self._nose_word = ""
         self._point = (_UNKNOWN, _UNKNOWN)  # of the last move, in mm, X as a radius
 
@@ -69,6 +71,7 @@ class ProgramWriter(ABC):
         self.write_beginning()
         departures = _find_departures(steps)
         for index, step in enumerate(steps):
+            self._repeat_spindle(step)
             self.line_number = step.line
             self._write_step(step, is_departure=index in departures)
         self.write_ending()
@@ -159,6 +162,8 @@ class ProgramWriter(ABC):
             self.tool_number = round(step.number)
             self.write_tool(step)
             self.x = self.z = _UNKNOWN
+            self.motion, self.feed = "", None
+            self.is_spindle_mode_known, self._is_spindle_due = False, True
         elif step.kind is StepKind.HOME:
             self.write_home(step)
             self.motion = ""
@@ -180,8 +185,28 @@ class ProgramWriter(ABC):
         # The steps see X+ toward the operator, but these controls calculate in Z and X on every lathe.
         self._nose_word = f"G{round(83 - step.number)}"
 
+    def _repeat_spindle(self, step: PathStep) -> None:
+        """Write the spindle words again after a tool change, unless this step writes new ones.
+
+        A restart at the line of T then does not run with the state that the control happens to have.
+        """
+        if not self._is_spindle_due or step.kind in {StepKind.TOOL, StepKind.SPINDLE, StepKind.END}:
+            return
+        self._is_spindle_due = False
+        if self.spindle.direction:
+            self.report_restart()
+            self.limit_rpm = 0.0 if self.spindle.is_css else self.limit_rpm
+            self.write_spindle(SpindleState())
+
+    def report_restart(self) -> None:
+        """Report that the spindle words are repeated, if the tool change of the control stops the spindle."""
+        return
+
     def _change_spindle(self, spindle: SpindleState) -> None:
         before, self.spindle = self.spindle, spindle
+        if self._is_spindle_due:
+            before, self._is_spindle_due = SpindleState(), False
+            self.limit_rpm = 0.0 if spindle.is_css else self.limit_rpm
         if not spindle.direction:
             self.append_line(self.format_m_code(5))
         elif spindle != before:
@@ -199,6 +224,7 @@ class ProgramWriter(ABC):
             self.limit_rpm = spindle.max_rpm
         elif is_new:
             self.write_speed(spindle, start)
+        self.is_spindle_mode_known = self.is_spindle_mode_known or is_new
 
     # --- moves
 

@@ -29,6 +29,9 @@ class SinumerikWriter(ProgramWriter):
         self.append_raw_line(self.make_comment(self.form.title))
         x_mode = "DIAMON" if self.form.is_diameter else "DIAMOF"
         self.append_line("G18", "G710" if self.form.is_metric else "G700", "G90", x_mode, "G40", "G54")
+        self.append_line("TRANS")
+        self.append_line("G64", "G95")
+        self.feed = ("G95", "")
 
     def write_tool(self, _step: PathStep) -> None:
         """Write T with the cutting edge D1."""
@@ -70,7 +73,7 @@ class SinumerikWriter(ProgramWriter):
         if 0 < self.limit_rpm < spindle.speed:
             self.limit_rpm = spindle.speed
             limit = f"LIMS={self.format_speed(spindle.speed)}"
-        code = "G97" if self.is_surface_speed_active else ""
+        code = "G97" if self.is_surface_speed_active or not self.is_spindle_mode_known else ""
         speed = f"S{self.format_speed(spindle.speed)}" if spindle.speed else ""
         self.append_line(code, speed, limit, start)
         if code:
