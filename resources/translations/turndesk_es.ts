@@ -20525,8 +20525,23 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The feed {feed} is rounded to {rounded}.</source>
+      <translation>El avance {feed} se redondea a {rounded}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The feed {feed} is too small for the decimal places of F on the other control.</source>
+      <translation>El avance {feed} es demasiado pequeño para los decimales de F en el otro control.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>The file contains no moves.</source>
       <translation>El archivo no contiene movimientos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The lead {lead} has more decimal places than F of the other control, so that the end of the thread would be displaced.</source>
+      <translation>El paso {lead} tiene más decimales que F del otro control, de modo que el final de la rosca quedaría desplazado.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
@@ -20700,6 +20715,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write a larger feed, or a feed with fewer decimal places.</source>
+      <translation>Escriba un avance mayor, o un avance con menos decimales.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>Write an absolute X and Z before this line.</source>
       <translation>Escriba X y Z absolutas antes de esta línea.</translation>
     </message>
@@ -20752,6 +20772,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>Write the positions that apply after this line, and remove the preset and this code.</source>
       <translation>Escriba las posiciones válidas después de esta línea, y elimine el preset y este código.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write the program in inches, or write a lead with fewer decimal places.</source>
+      <translation>Escriba el programa en pulgadas, o escriba un paso con menos decimales.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />

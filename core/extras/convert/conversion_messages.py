@@ -83,6 +83,10 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "{word}: the value of a feed per revolution without a decimal point depends on a parameter.",
         "Write F with a decimal point.",
     ),
+    "feed-resolution": (
+        "The feed {feed} is too small for the decimal places of F on the other control.",
+        "Write a larger feed, or a feed with fewer decimal places.",
+    ),
     "file-empty": ("The file contains no moves.", "Choose a file that contains a turning program."),
     "hole-plane": (
         "{word} drills along Y while G18 is active.",
@@ -94,6 +98,11 @@ ERRORS: Mapping[str, tuple[str, str]] = {
     ),
     "inverse-time": ("G93 (inverse time feed) is not supported.", "Write feeds with G94 or G95."),
     "label": ("The target {word} does not exist in this file.", "Add the line number, or correct the jump."),
+    "lead-resolution": (
+        "The lead {lead} has more decimal places than F of the other control, so that the end of the thread "
+        "would be displaced.",
+        "Write the program in inches, or write a lead with fewer decimal places.",
+    ),
     "m-code": (
         "{word} has no meaning on this machine.",
         "Define the M code under [m_codes] in the machine file, or leave it out with --skip-m {number}.",
@@ -224,6 +233,10 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
     "feed-limited": (
         "{word} is above the maximum feed of this machine; the maximum is used.",
         "Check the feed.",
+    ),
+    "feed-rounded": (
+        "The feed {feed} is rounded to {rounded}.",
+        "No action is needed.",
     ),
     "home-fixed-point": (
         "A move to machine home becomes G75, which moves to fixed point 1 of the other lathe.",

@@ -136,7 +136,8 @@ class PathComparison:
     ``has_source_blocks``, the blocks belong to the source. ``resolution_mm`` is the resolution to which the
     control rounds coordinates. ``has_thread_cycles`` means that the rapids around a thread pass are those
     of a cycle, so that they are compared only within the retract of the cycle. ``home`` is the machine
-    position to which the blocks move for machine home.
+    position to which the blocks move for machine home. ``feed_resolution_mm`` is the resolution to which
+    the control rounds feeds and leads.
     """
 
     def __init__(
@@ -149,11 +150,13 @@ class PathComparison:
         has_source_blocks: bool = False,
         has_thread_cycles: bool = True,
         home: tuple[float, float] = (0.0, 0.0),
+        feed_resolution_mm: float = 0.0,
     ) -> None:
         self._blocks = drop_idle(blocks, has_home_moves=not has_thread_cycles)
         self._has_source_blocks, self._has_thread_cycles = has_source_blocks, has_thread_cycles
         self._metric = metric
         self._home_point = home
+        self._resolution, self._near_feed = resolution_mm, feed_resolution_mm / 2
         self._steps = list(_known(steps, has_partial_moves=not has_thread_cycles))
         self._at = 0
         self._tool = 0
@@ -277,12 +280,21 @@ class PathComparison:
             # The lead of a taper depends on its rounded end points.
             rounding = 2 * self._near / max(abs(block.z - block.z0), self._near)
             near = 1e-6 + (block.feed * rounding if block.x != block.x0 else 0.0)
+            near += self._find_lead_tolerance(block)
             self._same(step, "the lead", block.feed, step.feed, near)
             return
         if block.per_rev != step.per_rev:
             self._differs(step.line, "proof-differs", block.per_rev, step.per_rev, "feed per revolution")
         made = block.feed * (1 if step.per_rev else 60)
-        self._same(step, "the feed", made, step.feed, 1e-6 * step.feed + 1e-6)
+        self._same(step, "the feed", made, step.feed, 1e-6 * step.feed + 1e-6 + self._near_feed)
+
+    def _find_lead_tolerance(self, block: Block) -> float:
+        """Return how far the rounding of F may change the lead of a thread.
+
+        The end of the thread must not move by more than the resolution of the coordinates.
+        """
+        length = max(abs(block.x - block.x0), abs(block.z - block.z0), self._near)
+        return min(self._near_feed, self._resolution * block.feed / length)
 
     def _check_first_move(self, step: PathStep) -> None:
         """Check that the first move after a tool change in the written program has both axes."""

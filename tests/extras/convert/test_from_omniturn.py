@@ -171,6 +171,33 @@ def test_thread_pass_has_the_lead_as_each_control_measures_it() -> None:
     assert [each for each in lines_of(body, "fanuc") if "G32" in each] == ["G32 X1.4 Z-.3 F.05"]
 
 
+def test_lead_of_fanuc_has_no_more_decimal_places_than_the_control() -> None:
+    """1/13 in is .0769231; with six places it is 1e-7 less, which is 4e-7 after the 4 turns of .3 in."""
+    made = lines_of("X2.2\nG33X1.95Z-.3I.05K.0769231O", "fanuc")
+    assert [each for each in made if "G32" in each] == ["G32 Z-.3 F.076923"]
+
+
+METRIC = "G90G94F300G71G72\nT1\nM03S1000\nX20Z2\nG95F.1\n"
+
+
+def test_displaced_end_of_a_fanuc_thread_is_rejected() -> None:
+    """1.95384 becomes 1.9538: .00004·(z/1.95384) is .0005 at 22 mm, and .0013 mm at 62 mm of travel."""
+    short = convert(f"{METRIC}G33X19.8Z-20I.2K1.95384O\nM30\n", "fanuc")
+    assert not short.errors, short.errors
+    assert any("F1.9538" in each.text for each in short.lines)
+    long = convert(f"{METRIC}G33X19.8Z-60I.2K1.95384O\nM30\n", "fanuc")
+    assert [(each.line, each.code) for each in long.errors] == [(6, "lead-resolution")]
+
+
+def test_rounded_feed_of_fanuc_is_reported_or_rejected() -> None:
+    done = convert(f"{METRIC}Z0F.12344\nM30\n", "fanuc")
+    assert "G01 G99 Z0. F.1234" in [each.text for each in done.lines]
+    assert (6, "feed-rounded") in [(each.line, each.code) for each in done.findings]
+    done = convert(f"{METRIC}Z0F.00134\nM30\n", "fanuc")  # .0013 is 3% less
+    assert [(each.line, each.code) for each in done.errors] == [(6, "feed-resolution")]
+    assert not convert(f"{METRIC}Z0F.00134\nM30\n", "linuxcnc").errors
+
+
 def test_feed_is_repeated_after_a_fanuc_thread() -> None:
     body = "Z.2\nG33X1.95Z-.3I.05K.05O\nX1.99"
     assert lines_of(body, "fanuc")[-1] == "G01 X1.99 F.01"

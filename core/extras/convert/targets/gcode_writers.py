@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from math import hypot
 from typing import ClassVar
 
-from core.extras.convert.conversion_messages import make_note, make_warning
+from core.extras.convert.conversion_messages import make_error, make_note, make_warning
 from core.extras.convert.omniturn_writer import number
 from core.extras.convert.path_steps import PathStep, SpindleState, StepKind
 from core.extras.convert.targets.program_writer import ProgramWriter
@@ -87,6 +87,7 @@ class FanucWriter(ProgramWriter):
     """Writer of a program for a Fanuc lathe in G-code system A."""
 
     coordinate_places: ClassVar[tuple[int, int]] = (4, 3)
+    feed_places: ClassVar[tuple[int, int]] = (6, 4)
     feed_modes: ClassVar[tuple[str, str]] = ("G98", "G99")
     motions: ClassVar[Mapping[StepKind, str]] = {
         StepKind.RAPID: "G00",
@@ -127,8 +128,16 @@ class FanucWriter(ProgramWriter):
             self.append_line("G96", f"S{self.format_speed(spindle.speed)}", start)
 
     def format_lead(self, lead_mm: float, dx: float, dz: float) -> Sequence[str]:
-        """Return F, which a Fanuc control measures along the axis with the longer travel."""
-        return (f"F{self.format_number(lead_mm / self.unit_mm * (max(dx, dz) / dz if dz else 1.0), 8)}",)
+        """Return F, which a Fanuc control measures along the axis with the longer travel.
+
+        Raises ProgramError if the rounded lead moves the end of the thread by more than the resolution.
+        """
+        length = max(dx, dz)
+        lead = lead_mm / self.unit_mm * (length / dz if dz else 1.0)
+        change = abs(round(lead, self.places_of_feed) - lead)
+        if change * length > lead * self.unit_mm / 10**self.places:
+            raise make_error(self.line_number, 0, "lead-resolution", lead=number(lead, 8))
+        return (f"F{self.format_number(lead, self.places_of_feed)}",)
 
     def after_thread(self) -> None:
         """Forget the feed, because the lead has replaced it."""

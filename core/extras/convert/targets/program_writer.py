@@ -18,6 +18,7 @@ MM_PER_INCH = 25.4
 LONGEST_COMMENT = 60
 _UNKNOWN = float("nan")
 _SAME = 1e-9  # mm
+_MAX_FEED_CHANGE = 0.01  # of the feed
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +42,7 @@ class ProgramWriter(ABC):
     """
 
     coordinate_places: ClassVar[tuple[int, int]]  # decimal places in inches and in mm
+    feed_places: ClassVar[tuple[int, int]] = (8, 8)  # decimal places of F in inches and in mm
     feed_modes: ClassVar[tuple[str, str]]  # feed per minute and feed per revolution
     motions: ClassVar[Mapping[StepKind, str]]
     arcs: ClassVar[tuple[str, str]]  # clockwise and counterclockwise
@@ -52,6 +54,7 @@ class ProgramWriter(ABC):
         self.findings: list[Diagnostic] = []
         self.unit_mm = 1.0 if form.is_metric else MM_PER_INCH
         self.places = self.coordinate_places[form.is_metric]
+        self.places_of_feed = self.feed_places[form.is_metric]
         self.x = self.z = _UNKNOWN
         self.motion = ""
         self.feed: tuple[str, str] | None = None
@@ -135,6 +138,22 @@ class ProgramWriter(ABC):
     def format_number(self, value: float, places: int) -> str:
         """Return a number in the form of the control."""
         return number(value, places)
+
+    def format_feed(self, feed: float) -> str:
+        """Return an F value in the unit of the program.
+
+        A warning reports a rounded feed. Raises ProgramError if rounding changes it by more than 1%.
+        """
+        rounded = round(feed, self.places_of_feed)
+        text = self.format_number(feed, self.places_of_feed)
+        change = abs(rounded - feed)
+        if change > _MAX_FEED_CHANGE * feed:
+            raise make_error(self.line_number, 0, "feed-resolution", feed=number(feed, 8))
+        if change > _SAME * max(feed, 1.0):
+            self.findings.append(
+                make_warning(self.line_number, 0, "feed-rounded", feed=number(feed, 8), rounded=text)
+            )
+        return text
 
     def format_speed(self, speed: float) -> str:
         """Return an S value."""
@@ -280,7 +299,7 @@ class ProgramWriter(ABC):
         if step.kind in {StepKind.RAPID, StepKind.THREAD}:
             return "", ""
         mode = self.get_feed_mode(is_per_rev=step.per_rev)
-        feed = f"F{self.format_number(step.feed / self.unit_mm, 8)}"
+        feed = f"F{self.format_feed(step.feed / self.unit_mm)}"
         before, self.feed = self.feed, (mode, feed)
         if before == self.feed:
             return "", ""

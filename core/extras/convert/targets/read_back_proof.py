@@ -33,10 +33,12 @@ def prove_by_reading(
     program: InterpretedProgram,
     *,
     resolution_mm: float,
+    feed_resolution_mm: float = 0.0,
 ) -> Proof:
     """Read a written program and compare its steps with the blocks of the source program.
 
-    ``resolution_mm`` is the resolution of the written coordinates in mm. The maximum speeds, the nose
+    ``resolution_mm`` and ``feed_resolution_mm`` are the resolutions of the written coordinates in mm and of
+    F in mm. The maximum speeds, the nose
     compensation of each move, and all moves and actions must be equal.
     """
     options = ConversionOptions(control, max_rpm=inf, max_feed_mm_min=inf)
@@ -52,7 +54,8 @@ def prove_by_reading(
         return Proof((different,))
     comparison = PathComparison(
         drop_repeated_speeds(program.blocks), steps, metric=program.is_metric,
-        resolution_mm=resolution_mm, has_source_blocks=True, has_thread_cycles=False,
+        resolution_mm=resolution_mm, feed_resolution_mm=feed_resolution_mm,
+        has_source_blocks=True, has_thread_cycles=False,
     )  # fmt: skip
     return comparison.compare_steps()
 

@@ -60,6 +60,7 @@ def convert_from_omniturn(
         reader,
         program,
         resolution_mm=writer.unit_mm / 10**writer.places,
+        feed_resolution_mm=writer.unit_mm / 10**writer.places_of_feed,
     )
     findings = sorted((*program.findings, *writer.findings), key=lambda each: each.line)
     return Conversion(tuple(writer.lines), (*findings, *proof.errors), proof)
