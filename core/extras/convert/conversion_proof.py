@@ -56,7 +56,7 @@ def prove(
     ``source_line_numbers`` contains the source line of each line of ``text``. ``resolution_mm`` is the
     resolution of the coordinates; 0 means the resolution of OmniTurn.
     """
-    # Fixed point 1 stands for machine home; its odd values differ from any programmed position.
+    # Fixed point 1 replaces machine home; its odd values differ from any programmed position.
     home = _FIXED_POINT if dialect is Dialect.SINUMERIK else (0.0, 0.0)
     points = {axis: (value,) for axis, value in zip("XZ", home, strict=True)}
     limits = replace(limits, fixed_points=points)
