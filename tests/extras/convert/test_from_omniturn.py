@@ -201,6 +201,10 @@ def test_rounded_feed_of_fanuc_is_reported_or_rejected() -> None:
 def test_feed_is_repeated_after_a_fanuc_thread() -> None:
     body = "Z.2\nG33X1.95Z-.3I.05K.05O\nX1.99"
     assert lines_of(body, "fanuc")[-1] == "G01 X1.99 F.01"
+    per_minute = lines_of(f"G94F9.Z.2\n{body}", "fanuc")
+    assert [each for each in per_minute if "F" in each] == [
+        "G01 G98 Z.2 F9.", "G32 G99 Z-.3 F.05", "G01 G98 X1.99 F9.",
+    ]  # fmt: skip
     assert lines_of(body, "linuxcnc")[-1] == "G1 X1.99"
 
 

@@ -139,9 +139,12 @@ class FanucWriter(ProgramWriter):
             raise make_error(self.line_number, 0, "lead-resolution", lead=number(lead, 8))
         return (f"F{self.format_number(lead, self.places_of_feed)}",)
 
-    def after_thread(self) -> None:
-        """Forget the feed, because the lead has replaced it."""
-        self.feed = None if self.feed is None else (self.feed[0], "")
+    def get_feed_words(self, step: PathStep) -> tuple[str, str]:
+        """Return the code of the feed mode and F; a thread needs G99, so that F is its lead."""
+        if step.kind is not StepKind.THREAD:
+            return super().get_feed_words(step)
+        before, self.feed = self.feed, ("G99", "")
+        return ("" if before is not None and before[0] == "G99" else "G99"), ""
 
     def format_number(self, value: float, places: int) -> str:
         """Return a number with a decimal point, as a Fanuc control needs it for lengths."""

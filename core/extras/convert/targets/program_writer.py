@@ -263,7 +263,7 @@ class ProgramWriter(ABC):
         x = self.x if step.x is None else self.round_x(step.x)
         z = self.z if step.z is None else self.round_length(step.z)
         is_arc = step.kind is StepKind.ARC
-        mode, feed = self._feed_words(step)
+        mode, feed = self.get_feed_words(step)
         words = [*self.pending_words, "G40" if is_departure else self._nose_word]
         words += [self._motion_word(step), mode]
         self.pending_words = ()
@@ -276,7 +276,6 @@ class ProgramWriter(ABC):
             words += self._center_words(step, end, (x, z))
         elif step.kind is StepKind.THREAD:
             words += self.format_lead(step.feed, abs(end[0] - self._point[0]), abs(end[1] - self._point[1]))
-            self.after_thread()
         self.append_line(*words, feed)
         self._nose_word = ""
         self.x, self.z, self._point = x, z, end
@@ -285,16 +284,12 @@ class ProgramWriter(ABC):
         """Return the G code of the feed mode that a move needs."""
         return self.feed_modes[is_per_rev]
 
-    def after_thread(self) -> None:
-        """Update the modal state after a thread pass."""
-        return
-
     def _motion_word(self, step: PathStep) -> str:
         word = self.arcs[step.clockwise] if step.kind is StepKind.ARC else self.motions[step.kind]
         before, self.motion = self.motion, word
         return word if word != before or step.kind in {StepKind.ARC, StepKind.THREAD} else ""
 
-    def _feed_words(self, step: PathStep) -> tuple[str, str]:
+    def get_feed_words(self, step: PathStep) -> tuple[str, str]:
         """Return the code of the feed mode and F; a word that is already active is empty."""
         if step.kind in {StepKind.RAPID, StepKind.THREAD}:
             return "", ""
