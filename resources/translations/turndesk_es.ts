@@ -20130,6 +20130,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check each rapid with both axes for collisions, or set the control to straight rapids.</source>
+      <translation>Compruebe si hay colisiones en cada rápido con los dos ejes, o ajuste el control a rápidos rectos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>Check that a G70 executes this line, or move it before the cycle.</source>
       <translation>Compruebe que un G70 ejecuta esta línea, o póngala antes del ciclo.</translation>
     </message>
@@ -20562,6 +20567,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>The move without a tool offset does not end at machine home.</source>
       <translation>El movimiento sin corrector de herramienta no termina en el origen de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The other control may move X and Z in G00 each at its own rate, so that the path is not straight.</source>
+      <translation>El otro control puede mover X y Z en G00 cada uno a su propia velocidad, de modo que la trayectoria no es recta.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />

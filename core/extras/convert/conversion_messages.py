@@ -287,6 +287,10 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
         "{word} has no effect on straight moves in X and Z and is left out.",
         "Check that the program is a turning program.",
     ),
+    "rapid-path": (
+        "The other control may move X and Z in G00 each at its own rate, so that the path is not straight.",
+        "Check each rapid with both axes for collisions, or set the control to straight rapids.",
+    ),
     "repeat": (
         "M99 repeats the main program; the converted program ends with M30.",
         "Turn on Cycle Repeat to make several parts.",

@@ -71,7 +71,7 @@ def test_program_for_fanuc_has_decimal_points_and_a_program_number() -> None:
         "G00 X20. Z2.", "G01 G99 Z-8. F.2", "G28 U0 W0", "M02", "%",
     ]  # fmt: skip
     assert [(each.line, each.code) for each in done.findings] == [
-        (3, "maximum-speed-added"), (4, "rapid-rate"),
+        (3, "maximum-speed-added"), (4, "rapid-rate"), (4, "rapid-path"),
     ]  # fmt: skip
 
 
@@ -272,7 +272,9 @@ def test_line_without_counterpart_is_rejected(body: str, found: tuple[int, str])
 def test_m_code_can_be_left_out_with_a_warning() -> None:
     done = convert(f"{BEGIN}M25\nZ0\nM30\n", "fanuc", skipped_m_codes=frozenset({25}))
     assert not done.errors
-    assert [(each.line, each.code) for each in done.findings] == [(4, "rapid-rate"), (6, "left-out")]
+    assert [(each.line, each.code) for each in done.findings] == [
+        (4, "rapid-rate"), (4, "rapid-path"), (6, "left-out"),
+    ]  # fmt: skip
 
 
 def test_arc_below_the_resolution_is_rejected_because_it_would_be_a_circle() -> None:

@@ -52,7 +52,7 @@ class LinuxCncWriter(ProgramWriter):
 
     def write_home(self, step: PathStep) -> None:
         """Write G30, which moves to a stored point; one axis needs G91, so that it moves there directly."""
-        self.warn_about_home("home-stored-point")
+        self.warn_once("home-stored-point")
         if step.x is not None and step.z is not None:
             self.append_line("G30")
             return
@@ -138,6 +138,10 @@ class FanucWriter(ProgramWriter):
         if change * length > lead * self.unit_mm / 10**self.places:
             raise make_error(self.line_number, 0, "lead-resolution", lead=number(lead, 8))
         return (f"F{self.format_number(lead, self.places_of_feed)}",)
+
+    def report_rapid_of_both_axes(self) -> None:
+        """Report that both axes may move at their own rates."""
+        self.warn_once("rapid-path")
 
     def get_feed_words(self, step: PathStep) -> tuple[str, str]:
         """Return the code of the feed mode and F; a thread needs G99, so that F is its lead."""

@@ -107,8 +107,8 @@ class ProgramWriter(ABC):
     def write_home(self, step: PathStep) -> None:
         """Write a rapid to machine home."""
 
-    def warn_about_home(self, code: str) -> None:
-        """Report once to which stored point of the control a move to machine home is converted."""
+    def warn_once(self, code: str) -> None:
+        """Report a difference of the control at its first line."""
         if not any(each.code == code for each in self.findings):
             self.findings.append(make_warning(self.line_number, 0, code))
 
@@ -262,6 +262,8 @@ class ProgramWriter(ABC):
     def _write_move(self, step: PathStep, *, is_departure: bool) -> None:
         x = self.x if step.x is None else self.round_x(step.x)
         z = self.z if step.z is None else self.round_length(step.z)
+        if step.kind is StepKind.RAPID and x != self.x and z != self.z:
+            self.report_rapid_of_both_axes()
         is_arc = step.kind is StepKind.ARC
         mode, feed = self.get_feed_words(step)
         words = [*self.pending_words, "G40" if is_departure else self._nose_word]
@@ -279,6 +281,10 @@ class ProgramWriter(ABC):
         self.append_line(*words, feed)
         self._nose_word = ""
         self.x, self.z, self._point = x, z, end
+
+    def report_rapid_of_both_axes(self) -> None:
+        """Report that the path of such a rapid may differ on the control."""
+        return
 
     def get_feed_mode(self, *, is_per_rev: bool) -> str:
         """Return the G code of the feed mode that a move needs."""

@@ -43,7 +43,7 @@ class SinumerikWriter(ProgramWriter):
 
         The next move selects the cutting edge again.
         """
-        self.warn_about_home("home-fixed-point")
+        self.warn_once("home-fixed-point")
         self.append_line("D0")
         self.append_line("G75", "X0" if step.x is not None else "", "Z0" if step.z is not None else "")
         self.pending_words = ("D1",) if self.tool_number else ()
