@@ -139,6 +139,12 @@ def test_every_mode_is_repeated_after_a_tool_change(target: str, made: list[str]
     assert lines_of(body, target)[-len(made) :] == made
 
 
+def test_speed_that_g97_retains_is_written() -> None:
+    """At X2., 300 ft/min are 300·12/(2·π) = 572.958 rpm, which G97 without S retains."""
+    body = "G77S2000\nG96S300\nG00X2.\nG97\nG00Z.3\nS800\nZ.2"
+    assert lines_of(body, "linuxcnc")[-4:] == ["G97 S572.958", "Z.3", "G97 S800", "Z.2"]
+
+
 def test_new_spindle_words_after_a_tool_change_are_complete() -> None:
     """Only the new speed is written, with the direction although it is the same as before."""
     assert lines_of("T2\nM03S800\nG00X2.Z.2", "fanuc") == ["T0202", "G97 S800 M03", "G00 X2. Z.2"]

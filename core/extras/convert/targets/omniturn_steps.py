@@ -109,7 +109,7 @@ def _interpret_variant(
     if first is None:
         return InterpretedProgram((), (), [*maker.findings, make_error(0, 0, "file-empty").diagnostic])
     return InterpretedProgram(
-        [each for each in blocks if not maker.is_left_out(each)],
+        [part for each in blocks if not maker.is_left_out(each) for part in maker.add_retained_speed(each)],
         maker.steps,
         maker.findings,
         first.metric,
@@ -182,6 +182,7 @@ class StepMaker:
     nose_code: int = 40
     _is_tool_new: bool = False  # since a tool change and until the next move
     _line: int = 0
+    _retained_speeds: set[int] = field(default_factory=set)  # numbers of blocks
     _comments: list[str] = field(default_factory=list)
     _reported: set[tuple[str, object]] = field(default_factory=set)
     _cut_range: dict[int, tuple[int, float, float]] = field(default_factory=dict)  # line, min X, max X
@@ -205,6 +206,13 @@ class StepMaker:
             return True
         number = self._find_m_code(action)
         return number is not None and number in self.options.skipped_m_codes
+
+    def add_retained_speed(self, block: Block) -> Sequence[Block]:
+        """Return the block, after a block with the speed if G97 without S has retained it before."""
+        if block.n not in self._retained_speeds:
+            return (block,)
+        action = actions.SpindleRun(block.modal.spindle * block.modal.rpm)
+        return replace(block, kind=BlockKind.ACTION, action=action), block
 
     def _append(self, step: PathStep) -> None:
         if self._comments:
@@ -357,9 +365,11 @@ class StepMaker:
             self._append(PathStep(StepKind.SPINDLE, block.line, spindle=spindle))
 
     def _follow_maximum_speed(self, block: Block) -> None:
-        """Append a spindle step if G77 has changed the maximum speed since the last spindle step."""
+        """Append a spindle step if G77 or G97 without S has changed the state since the last spindle step."""
         if self.spindle.is_css and self._read_spindle(block).max_rpm != self.spindle.max_rpm:
             self._append_spindle(block)
+            if not self.spindle.is_css and self.spindle.direction:
+                self._retained_speeds.add(block.n)
 
     def _read_spindle(self, block: Block) -> SpindleState:
         modal = block.modal
