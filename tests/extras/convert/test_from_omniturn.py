@@ -31,11 +31,13 @@ def complete(body: str) -> str:
 
 
 def lines_of(body: str, target: str, **options: Any) -> list[str]:
-    """Return the lines for ``body`` without those of the beginning and the end."""
+    """Return the lines for ``body`` without those of the beginning and of M30."""
     done = convert(complete(body), target, **options)
     assert not done.errors, [each.message for each in done.errors]
-    texts = [each.text for each in done.lines if each.source_line_number > 5]
-    return texts[: texts.index("M30")]
+    end = complete(body).splitlines().index("M30") + 1
+    return [
+        each.text for each in done.lines if each.source_line_number > 5 and each.source_line_number != end
+    ]
 
 
 def error_of(body: str, target: str = "linuxcnc", **options: Any) -> tuple[int, str]:
@@ -54,7 +56,7 @@ def test_program_for_linuxcnc_states_its_modes_and_restarts_the_spindle() -> Non
         "(part.nc)", "G20 G18 G7 G90 G40 G97 G54", "G80 G91.1 G92.1", "G64 P0.0005", "G30",
         "(ROUGHER)", "T1 M6 G43", "G96 D2500 S400 M3", "G0 X1.1 Z.1", "M8", "G1 G95 Z-.5 F.006",
         "G30", "T2 M6 G43", "G96 D2500 S400 M3", "G0 X0 Z.1", "G1 G94 Z-.2 F2", "G4 P.5",
-        "(MSG, LOOK)", "M1", "M5", "M30",
+        "(MSG, LOOK)", "M1", "M5", "M9", "M30",
     ]  # fmt: skip
     assert [each.source_line_number for each in done.lines][4:11] == [3, 4, 4, 6, 7, 8, 9]
     assert [(each.line, each.code) for each in done.findings] == [
@@ -143,6 +145,26 @@ def test_speed_that_g97_retains_is_written() -> None:
     """At X2., 300 ft/min are 300·12/(2·π) = 572.958 rpm, which G97 without S retains."""
     body = "G77S2000\nG96S300\nG00X2.\nG97\nG00Z.3\nS800\nZ.2"
     assert lines_of(body, "linuxcnc")[-4:] == ["G97 S572.958", "Z.3", "G97 S800", "Z.2"]
+
+
+@pytest.mark.parametrize(
+    ("body", "target", "made"),
+    [
+        ("M08\nZ0", "fanuc", ["M09", "M05", "M30", "%"]),
+        ("M08\nZ0", "linuxcnc", ["M9", "M5", "M30"]),
+        ("M08\nM09\nZ0", "fanuc", ["M05", "M30", "%"]),
+        ("Z0\nM05", "linuxcnc", ["M5", "M30"]),
+    ],
+)
+def test_coolant_and_spindle_stop_before_the_end(body: str, target: str, made: list[str]) -> None:
+    """M30 of another control may not stop them; a stop that the program contains is not repeated."""
+    done = convert(complete(body), target)
+    assert not done.errors
+    texts = [each.text for each in done.lines]
+    assert texts[-len(made) :] == made
+    assert [each for each in texts if each in {"M5", "M05"}] == made[
+        made.index("M30") - 1 : made.index("M30")
+    ]
 
 
 def test_new_spindle_words_after_a_tool_change_are_complete() -> None:

@@ -109,7 +109,7 @@ def test_omniturn_program_becomes_a_sinumerik_program() -> None:
     # OmniTurn sees the arc from the other side
     assert [each.text for each in done.lines] == [
         "; part.nc", "G18 G710 G90 DIAMOF G40 G54", "TRANS", "G64 G95", "T1 D1", "G97 S500 M3", "G0 X10 Z2",
-        "G3 X12 Z0 I2 K0 F0.2", "M30",
+        "G3 X12 Z0 I2 K0 F0.2", "M5", "M30",
     ]  # fmt: skip
     assert not done.errors
 

@@ -109,7 +109,7 @@ def _interpret_variant(
     if first is None:
         return InterpretedProgram((), (), [*maker.findings, make_error(0, 0, "file-empty").diagnostic])
     return InterpretedProgram(
-        [part for each in blocks if not maker.is_left_out(each) for part in maker.add_retained_speed(each)],
+        [part for each in blocks if not maker.is_left_out(each) for part in maker.add_implied_actions(each)],
         maker.steps,
         maker.findings,
         first.metric,
@@ -182,7 +182,7 @@ class StepMaker:
     nose_code: int = 40
     _is_tool_new: bool = False  # since a tool change and until the next move
     _line: int = 0
-    _retained_speeds: set[int] = field(default_factory=set)  # numbers of blocks
+    _implied_actions: dict[int, Sequence[actions.Action]] = field(default_factory=dict)  # by number of block
     _comments: list[str] = field(default_factory=list)
     _reported: set[tuple[str, object]] = field(default_factory=set)
     _cut_range: dict[int, tuple[int, float, float]] = field(default_factory=dict)  # line, min X, max X
@@ -207,12 +207,10 @@ class StepMaker:
         number = self._find_m_code(action)
         return number is not None and number in self.options.skipped_m_codes
 
-    def add_retained_speed(self, block: Block) -> Sequence[Block]:
-        """Return the block, after a block with the speed if G97 without S has retained it before."""
-        if block.n not in self._retained_speeds:
-            return (block,)
-        action = actions.SpindleRun(block.modal.spindle * block.modal.rpm)
-        return replace(block, kind=BlockKind.ACTION, action=action), block
+    def add_implied_actions(self, block: Block) -> Sequence[Block]:
+        """Return the block, after blocks for the actions that the program does not contain as words."""
+        implied = self._implied_actions.get(block.n, ())
+        return *(replace(block, kind=BlockKind.ACTION, action=each) for each in implied), block
 
     def _append(self, step: PathStep) -> None:
         if self._comments:
@@ -321,9 +319,23 @@ class StepMaker:
         elif isinstance(action, actions.CycleRepeatCancel):
             self.findings.append(make_warning(block.line, 0, "left-out", word="M31"))
         elif (step := _make_plain_step(block, action)) is not None:
+            if step.kind is StepKind.END and step.number == 30:
+                self._stop_before_end(block)
             self._append(step)
         else:
             self._leave_out_m_code(block, action)
+
+    def _stop_before_end(self, block: Block) -> None:
+        """Append the stops that M30 of this lathe contains, because another control may not have them."""
+        implied: list[actions.Action] = []
+        coolant = [each.number for each in self.steps if each.kind is StepKind.M and each.number in {8, 9}]
+        if coolant and coolant[-1] == 8:
+            implied.append(actions.CoolantSwitch(on=False))
+            self._append(PathStep(StepKind.M, block.line, number=9))
+        if self.spindle.direction:
+            implied.append(actions.SpindleStop())
+            self._append(PathStep(StepKind.SPINDLE, block.line))
+        self._implied_actions[block.n] = implied
 
     def _find_m_code(self, action: actions.Action | None) -> int | None:
         """Return the M code of an action that only this lathe has, or None."""
@@ -366,10 +378,12 @@ class StepMaker:
 
     def _follow_maximum_speed(self, block: Block) -> None:
         """Append a spindle step if G77 or G97 without S has changed the state since the last spindle step."""
-        if self.spindle.is_css and self._read_spindle(block).max_rpm != self.spindle.max_rpm:
+        spindle = self._read_spindle(block)
+        if self.spindle.is_css and spindle.max_rpm != self.spindle.max_rpm:
             self._append_spindle(block)
-            if not self.spindle.is_css and self.spindle.direction:
-                self._retained_speeds.add(block.n)
+            if spindle.direction and not spindle.is_css:
+                speed = block.modal.spindle * block.modal.rpm
+                self._implied_actions[block.n] = (actions.SpindleRun(speed),)
 
     def _read_spindle(self, block: Block) -> SpindleState:
         modal = block.modal
