@@ -413,7 +413,9 @@ def test_a_program_from_stdin_is_proved_as_from_a_file(
 
 
 def test_help_has_no_none_where_a_text_is_missing(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["help"]) == 0
+    with pytest.raises(SystemExit) as stopped:
+        main(["help"])
+    assert stopped.value.code == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[lines.index("commands:") + 1].split() == ["COMMAND"]
     assert [name for name, parser in parsers() if "None" in parser.format_help().split()] == []

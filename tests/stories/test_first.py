@@ -27,7 +27,7 @@ def test_mouse_presses_feed_hold_and_estop(story: Story) -> None:
     operator.drives_on()
     operator.starts()
     operator.until(lambda: operator.slides[0] > 0.5, "a cut")
-    operator.clicks("FEED HOLD")
+    operator.clicks("HOLD", on="StationDock")
     operator.reaches("FEED HOLD")
     operator.rests()
     operator.clicks("STOP", on="StationDock")

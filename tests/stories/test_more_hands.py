@@ -74,7 +74,7 @@ def test_right_mouse_button_does_not_jog_but_stops(story: Story) -> None:
     operator.key("F2")
     operator.opens("AUTOMATIC")
     operator.starts()
-    operator.points("FEED HOLD", on="StationDock")
+    operator.points("HOLD", on="StationDock")
     operator.server.button("right", down=True)
     operator.reaches("FEED HOLD")
 

@@ -155,7 +155,7 @@ def test_mouse_stop_acts_however_late(story: Story) -> None:
     operator = ready(story)
     operator.starts()
     operator.until(lambda: operator.slides[0] > 0.5, "a cut")
-    at = operator.find("FEED HOLD", on="StationDock")
+    at = operator.find("HOLD", on="StationDock")
     with frozen(operator):
         operator.server.point(*at)
         operator.server.button("left", down=True)

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from app.compose.optional_features import OptionalFeature, Subcommand
-from core.language.source import Dialect
 
 if TYPE_CHECKING:
     from app.compose.runs.journal import Journal
@@ -59,6 +58,8 @@ class ConvertExtra(OptionalFeature):
 
 def has_conversions(machine: Machine) -> bool:
     """Return whether programs can be converted on the screen of this machine, which must be a lathe."""
+    from core.language.source import Dialect
+
     return machine.kind == "lathe" and machine.mdi_language in {Dialect.OMNITURN, Dialect.SINUMERIK}
 
 
