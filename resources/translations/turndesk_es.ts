@@ -795,7 +795,7 @@
     </message>
     <message>
       <location filename="" />
-      <source>Drill three holes in the face, and turn the C axis by hand.</source>
+      <source>Drill three holes in the face, and turn the C axis from the MDI page.</source>
       <translation>Taladre tres agujeros en la cara y gire el eje C a mano.</translation>
     </message>
     <message>
@@ -1382,6 +1382,11 @@
       <location filename="" />
       <source>If the drives are off, press D.</source>
       <translation>Si los servos están apagados, pulse D.</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>If the drives are off, press D. Press F11 and F12 together. Wait until the program ends.</source>
+      <translation>Pulse D si los servos están apagados, luego F11 y F12. Espere a que termine el programa.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2120,13 +2125,8 @@
     </message>
     <message>
       <location filename="" />
-      <source>Press B. The page PART shows the findings of the proof.</source>
+      <source>Press B. The PART page shows the findings of the proof.</source>
       <translation>Pulse B. La página PIEZA muestra los hallazgos de la prueba.</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>Press D if the drives are off, then F11 and F12. Wait until the program ends.</source>
-      <translation>Pulse D si los servos están apagados, luego F11 y F12. Espere a que termine el programa.</translation>
     </message>
     <message>
       <location filename="" />
@@ -2145,7 +2145,7 @@
     </message>
     <message>
       <location filename="" />
-      <source>Press Enter, read the path of the tool, and press F10. Wait a second, then press F11 and F12.</source>
+      <source>Press Enter, look at the tool path, and press F10. Wait a second, then press F11 and F12 together.</source>
       <translation>Pulse Enter, lea el recorrido de la herramienta y pulse F10. Espere un segundo y pulse F11 y F12.</translation>
     </message>
     <message>
@@ -2230,7 +2230,7 @@
     </message>
     <message>
       <location filename="" />
-      <source>Press F3, Shift+F3, T (TURN). Type .5, Z-.8, X.65, Z-1.2, each with Enter. Select TOOL (up arrow), type 1, Enter, F2, F10, F3.</source>
+      <source>Press F3, Shift+F3, then T (TURN). Type .5, Z-.8, X.65 and Z-1.2, each with Enter. Select TOOL with the up arrow, type 1, press Enter and F2, then F10 and F3.</source>
       <translation>Pulse F3, Mayús+F3, T (CILINDRADO). Escriba .5, Z-.8, X.65, Z-1.2 con Enter. HERRAMIENTA (flecha arriba): 1, Enter, F2, F10, F3.</translation>
     </message>
     <message>
@@ -2255,7 +2255,7 @@
     </message>
     <message>
       <location filename="" />
-      <source>Press H during a pass. The axes stop after the end of this pass, so that the thread stays good.</source>
+      <source>Press H during a pass. The axes stop at the end of this pass, so that the thread is not damaged.</source>
       <translation>Pulse H durante una pasada. Los ejes paran al final de esta pasada, y la rosca no se daña.</translation>
     </message>
     <message>
@@ -2280,7 +2280,7 @@
     </message>
     <message>
       <location filename="" />
-      <source>Press Shift+F3, N (HEAD). Select BAR DIAMETER, type .75, Enter, F2. Press F10, F3 to save and load.</source>
+      <source>Press Shift+F3, then N (HEAD). Select BAR DIAMETER, type .75, press Enter and F2. Press F10 and F3 to save and load.</source>
       <translation>Pulse Mayús+F3, N (CABECERA). Elija DIÁMETRO DE LA BARRA, escriba .75, Enter, F2. F10, F3: guardar y cargar.</translation>
     </message>
     <message>
@@ -2375,7 +2375,7 @@
     </message>
     <message>
       <location filename="" />
-      <source>Read the row INTERRUPTED. Press U, wait a second, then press Y to release the E-stop.</source>
+      <source>Read the INTERRUPTED row. Press U, wait a second, then press Y to release the E-stop.</source>
       <translation>Lea la fila INTERRUMPIDO. Pulse U, espere un segundo y pulse Y para soltar el paro de emergencia.</translation>
     </message>
     <message>
@@ -3200,7 +3200,7 @@
     </message>
     <message>
       <location filename="" />
-      <source>T2 must cut .010 in less deep in Z. Select Z of T2 with the arrows, type .01, press F2 (ADD).</source>
+      <source>T2 must cut .010 in shallower in Z. Select Z of T2 with the arrow keys, type .01, and press F2 (ADD).</source>
       <translation>T2 debe cortar .010 in menos en Z. Elija Z de T2 con las flechas, escriba .01 y pulse F2 (SUMAR).</translation>
     </message>
     <message>
@@ -3210,7 +3210,7 @@
     </message>
     <message>
       <location filename="" />
-      <source>T5 is where T1 is. Select X of T5, type the X of T1, Enter, then the Z of T1, Enter.</source>
+      <source>T5 has the position of T1. Select X of T5, type the X of T1 and press Enter. Type the Z of T1 and press Enter.</source>
       <translation>T5 está donde T1. Elija X de T5, escriba la X de T1, Enter, luego la Z de T1, Enter.</translation>
     </message>
     <message>
@@ -3485,6 +3485,11 @@
     </message>
     <message>
       <location filename="" />
+      <source>To release the spindle, type M05, press Enter, then F11 and F12 together.</source>
+      <translation>Escriba M05, pulse Enter, luego F11 y F12, para soltar el husillo.</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>Tolerance: the permitted deviation from the path. This value has no effect because the control always follows the path exactly.</source>
       <translation>Tolerancia: la desviación permitida de la trayectoria. Este valor no tiene efecto porque el control sigue siempre la trayectoria exactamente.</translation>
     </message>
@@ -3650,22 +3655,17 @@
     </message>
     <message>
       <location filename="" />
-      <source>Type 1, Enter. At X DIAMETER CORRECTION? type -.002, Enter. Press Enter for Z and R.</source>
+      <source>Type 1 and press Enter. At X DIAMETER CORRECTION? type -.002 and press Enter. Press Enter for Z and for R.</source>
       <translation>Escriba 1, Enter. En ¿CORRECCIÓN EN DIÁMETRO X? escriba -.002, Enter. Pulse Enter para Z y R.</translation>
     </message>
     <message>
       <location filename="" />
-      <source>Type CA90S60, press Enter, then F11 and F12. C turns to 90 degrees.</source>
+      <source>Type CA90S60, press Enter, then F11 and F12 together. C turns to 90 degrees.</source>
       <translation>Escriba CA90S60, pulse Enter, luego F11 y F12. C gira a 90 grados.</translation>
     </message>
     <message>
       <location filename="" />
-      <source>Type M05, press Enter, then F11 and F12, to release the spindle.</source>
-      <translation>Escriba M05, pulse Enter, luego F11 y F12, para soltar el husillo.</translation>
-    </message>
-    <message>
-      <location filename="" />
-      <source>Type M19S60, press Enter, then F11 and F12. The spindle turns to 0 degrees.</source>
+      <source>Type M19S60, press Enter, then F11 and F12 together. The spindle turns to 0 degrees.</source>
       <translation>Escriba M19S60, pulse Enter, luego F11 y F12. El husillo gira a 0 grados.</translation>
     </message>
     <message>
@@ -9275,7 +9275,7 @@
     </message>
     <message>
       <location filename="app/extras/convert/convert_function.py" />
-      <source>loaded program from or to another control</source>
+      <source>convert the loaded program</source>
       <translation>programa cargado, de otro control o para otro control</translation>
     </message>
     <message>
@@ -9805,7 +9805,7 @@
     </message>
     <message>
       <location filename="app/extras/lessons/lessons_function.py" />
-      <source>NO LESSON IS STARTED</source>
+      <source>NO LESSON IS OPEN</source>
       <translation>NO HAY NINGUNA LECCIÓN EMPEZADA</translation>
     </message>
     <message>
@@ -20355,7 +20355,7 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
-      <source>Mount the tool on that side too, or mirror its moves and reverse the spindle by hand.</source>
+      <source>Mount the tool on that side too, or edit the program: mirror the moves of this tool and reverse the spindle.</source>
       <translation>Monte la herramienta también en ese lado, o refleje sus movimientos e invierta el husillo a mano.</translation>
     </message>
     <message>
@@ -20595,7 +20595,7 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
-      <source>The program has no maximum spindle speed (G77); {rpm} rpm of this lathe is used.</source>
+      <source>The program has no maximum spindle speed (G77); the maximum of this lathe, {rpm} rpm, is used.</source>
       <translation>El programa no tiene velocidad máxima del husillo (G77); se usan las {rpm} rpm de este torno.</translation>
     </message>
     <message>
@@ -20940,7 +20940,7 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
-      <source>{word} switches a function of this lathe.</source>
+      <source>{word} turns a function of this lathe on or off.</source>
       <translation>{word} conmuta una función de este torno.</translation>
     </message>
     <message>

@@ -46,7 +46,7 @@ def add_parser(subparsers: SubParsers) -> None:
         "--to",
         choices=[str(each) for each in TargetControl],
         default=_OMNITURN,
-        help="control of the result; linuxcnc and fanuc need an OmniTurn program",
+        help="control to convert to; linuxcnc and fanuc need an OmniTurn program",
     )
     parser.add_argument(
         "--no-point",
@@ -125,7 +125,10 @@ def _find_control(args: argparse.Namespace, source: ProgramSource) -> SourceCont
     from core.extras.convert.recognition import recognize_control
 
     if args.control is None and source.dialect is not Dialect.OMNITURN:
-        text = "{file} has the ending of a {language} program; name the control of the program with --from"
+        text = (
+            "{file} has the file name extension of a {language} program; "
+            "name the control of the program with --from"
+        )
         raise CommandError(Message(text, file=args.file, language=source.dialect), "unsupported-source")
     if args.control == _OMNITURN:
         raise CommandError(

@@ -1,4 +1,4 @@
-"""Special function CONVERT PROGRAM, which converts the loaded program from or to another control.
+"""Special function CONVERT PROGRAM, which converts the convert the loaded program.
 
 The function shows the findings and the converted program before it saves a new file.
 """
@@ -67,7 +67,7 @@ class ConvertFunction(SpecialFunction):
     """
 
     name = "CONVERT PROGRAM"
-    use = "loaded program from or to another control"
+    use = "convert the loaded program"
 
     def __init__(
         self, desk: Desk, machine: Machine, limits: ControlLimits, worker: LatestRequestWorker

@@ -102,7 +102,7 @@ class LessonsFunction(SpecialFunction):
     def end_lesson(self) -> None:
         """End the started lesson, and remove its card."""
         if not self._card.close_card():
-            self.desk.say("NO LESSON IS STARTED")
+            self.desk.say("NO LESSON IS OPEN")
 
     def prompt_text(self) -> str:
         """Return the prompt that explains the keys."""

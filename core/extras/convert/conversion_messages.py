@@ -108,7 +108,7 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "Define the M code under [m_codes] in the machine file, or leave it out with --skip-m {number}.",
     ),
     "m-code-target": (
-        "{word} switches a function of this lathe.",
+        "{word} turns a function of this lathe on or off.",
         "Write the code of the other lathe by hand, and leave this code out with --skip-m {number}.",
     ),
     "machine-point": (
@@ -228,7 +228,8 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
     ),
     "far-side-tool": (
         "T{number} cuts only at negative X, so it is on the other side of the part.",
-        "Mount the tool on that side too, or mirror its moves and reverse the spindle by hand.",
+        "Mount the tool on that side too, or edit the program: "
+        "mirror the moves of this tool and reverse the spindle.",
     ),
     "feed-limited": (
         "{word} is above the maximum feed of this machine; the maximum is used.",
@@ -256,7 +257,7 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
         "Check that this is the function of the code on the other control.",
     ),
     "maximum-speed-added": (
-        "The program has no maximum spindle speed (G77); {rpm} rpm of this lathe is used.",
+        "The program has no maximum spindle speed (G77); the maximum of this lathe, {rpm} rpm, is used.",
         "Check that this speed is permitted on the other lathe.",
     ),
     "minimum-speed": (
