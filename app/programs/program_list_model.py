@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 from app.desk.background_work import LatestRequestWorker
@@ -59,6 +60,8 @@ class ProgramListModel:
     recent_programs: tuple[ListedFile, ...] = ()
     listed_programs: tuple[ListedFile, ...] = ()
     program_commands: ProgramCommands = field(init=False)
+    # A network folder of a recently loaded program must not delay the list of the program folders.
+    recent_worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("recent-programs"))
     _after: str = ""  # name to select after the list was read again
 
     def __post_init__(self) -> None:
@@ -102,35 +105,48 @@ class ProgramListModel:
         conversion = self.desk.page_registry.program_conversion
         recognize = conversion.recognize_control if conversion is not None else None
         paths = self.desk.recent_programs.paths
-
-        def read_lists() -> tuple[tuple[ListedFile, ...], tuple[ListedFile, ...]]:
-            return (
-                list_programs(folders, own, persistence, recognize),
-                list_recent_programs(paths, folders, own, persistence),
-            )
-
-        self.worker.enqueue_work(read_lists, self._found, self.desk.show_refusal)
+        self.worker.enqueue_work(
+            partial(list_programs, folders, own, persistence, recognize),
+            self._receive_programs,
+            self.desk.show_refusal,
+        )
+        self.recent_worker.enqueue_work(
+            partial(list_recent_programs, paths, folders, own, persistence),
+            self._receive_recent_programs,
+            self.desk.show_refusal,
+        )
 
     def poll(self) -> None:
-        """Process the results of the worker.
+        """Process the results of the workers.
 
         This is called once a frame.
         """
         self.worker.deliver_results()
+        self.recent_worker.deliver_results()
 
-    def _found(self, found: tuple[tuple[ListedFile, ...], tuple[ListedFile, ...]]) -> None:
-        name = self._after or (self.selected_program.name if self.selected_program else "")
-        self._after = ""
-        self.all_programs, self.recent_programs = found
+    def _receive_programs(self, programs: tuple[ListedFile, ...]) -> None:
+        name, self._after = self._after, ""
+        self.all_programs = programs
         self._narrow(name)
 
-    def _narrow(self, mark: str = "") -> None:
+    def _receive_recent_programs(self, programs: tuple[ListedFile, ...]) -> None:
+        self.recent_programs = programs
+        if self.is_recent_view:
+            self._narrow()
+
+    def _narrow(self, name: str = "") -> None:
+        """List the programs that match the search, and select a program by its name.
+
+        Without ``name``, the selected file remains selected. Files of several folders can have one name.
+        """
+        selected = self.selected_program
         part = self.search_field.text.strip().lower()
         programs = self.recent_programs if self.is_recent_view else self.all_programs
         found = tuple(program for program in programs if part in program.name.lower())
         self.listed_programs = found if self.is_recent_view else sort_programs(self.sort_order, found)
-        names = [program.name for program in self.listed_programs]
-        self.selected_row = names.index(mark) if mark in names else 0
+        marks = [each.name if name else str(each.path) for each in self.listed_programs]
+        mark = name or (str(selected.path) if selected is not None else "")
+        self.selected_row = marks.index(mark) if mark in marks else 0
 
     @property
     def is_recent_view(self) -> bool:
@@ -195,7 +211,7 @@ class ProgramListModel:
         elif (self.name_field if self.name_question else self.search_field).handle_key(key):
             self.desk.clear_prompt_line()
             if not self.name_question:
-                self._narrow(self.selected_program.name if self.selected_program else "")
+                self._narrow()
         else:
             return False
         return True
@@ -219,7 +235,7 @@ class ProgramListModel:
             self.program_commands.question = ""
         elif self.search_field.text:
             self.search_field.text = ""
-            self._narrow(self.selected_program.name if self.selected_program else "")
+            self._narrow()
         else:
             return False
         return True
@@ -229,12 +245,12 @@ class ProgramListModel:
         self.program_commands.question = self.search_field.text = ""
         self.program_transfer.close_chooser()
         self.preview.find_picture(None)
-        self._narrow(self.selected_program.name if self.selected_program else "")
+        self._narrow()
 
     def select_next_sort_order(self) -> None:
         """Handle F2: sort the list by the next criterion, or show the recently loaded programs."""
         self.sort_order = following(LIST_VIEWS, self.sort_order)
-        self._narrow(self.selected_program.name if self.selected_program else "")
+        self._narrow()
 
     def remove_recent_program(self) -> None:
         """Remove the selected program from the recently loaded programs. Its file is not changed."""
@@ -260,7 +276,9 @@ class ProgramListModel:
             return False
         if not self.desk.program_choice.can_choose_program():
             return False
-        reason = find_missing_reason(self.selected_program.path)
+        program = self.selected_program
+        # Only a worker looks at files outside the program folders: a network folder may not respond.
+        reason = program.missing_reason if program.is_outside else find_missing_reason(program.path)
         if reason:
             words = MISSING_RECENT if self.is_recent_view else MISSING_FILE
             self.desk.say(tr(Message(words, name=self.selected_program.name, reason=tr(reason))))
@@ -272,11 +290,12 @@ class ProgramListModel:
         Return False if loading is not possible.
         """
         program = self.selected_program
-        return (
-            self.can_load()
-            and program is not None
-            and self.desk.program_choice.load_by_name(str(program.path))
-        )
+        if program is None or not self.can_load():
+            return False
+        if program.is_outside:
+            self.desk.program_choice.load_path(program.path)
+            return True
+        return self.desk.program_choice.load_by_name(str(program.path))
 
     def _changed(self, name: str) -> None:
         self._after = name
@@ -308,8 +327,9 @@ class ProgramListModel:
         return "TYPE PART OF A NAME OR USE ARROWS   ENTER: LOAD   ESC: BACK"
 
     def close(self) -> None:
-        """Stop the workers of the list and of the preview."""
+        """Stop the workers of the lists and of the preview."""
         self.worker.close()
+        self.recent_worker.close()
         self.preview.close()
 
 

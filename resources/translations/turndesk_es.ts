@@ -9779,6 +9779,11 @@
       <translation>PRÓXIMA LECCIÓN: F1, F10, LECCIONES</translation>
     </message>
     <message>
+      <location filename="app/extras/lessons/lesson_card.py" />
+      <source>{name} IS MISSING IN THE PROGRAM FOLDER</source>
+      <translation>FALTA {name} EN LA CARPETA DE PROGRAMAS</translation>
+    </message>
+    <message>
       <location filename="app/extras/lessons/lessons_function.py" />
       <source>BEGIN</source>
       <translation>EMPEZAR</translation>

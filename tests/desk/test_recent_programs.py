@@ -71,6 +71,22 @@ def test_invalid_stored_values_are_ignored(stored: object, paths: tuple[str, ...
     assert make_list(persistence).paths == tuple(map(Path, paths))
 
 
+def test_stored_programs_survive_a_store_that_cannot_be_read_for_a_time(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def fail(_self: Persistence, _key: str) -> object:
+        raise StoreError("busy")
+
+    persistence = Persistence(settings={RECENT_PROGRAMS_SETTING: ["/a.nc", "/b.nc"]})
+    recent = make_list(persistence)
+    with monkeypatch.context() as patched:
+        patched.setattr(Persistence, "read_setting", fail)
+        recent.add("/c.nc")
+        assert recent.paths == ()
+    recent.add("/d.nc")
+    assert recent.paths == (Path("/d.nc"), Path("/a.nc"), Path("/b.nc"))
+
+
 def test_a_store_that_cannot_be_read_gives_an_empty_list(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(_self: Persistence, _key: str) -> object:
         raise StoreError("damaged")

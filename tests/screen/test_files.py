@@ -164,7 +164,8 @@ def show_recent(shop: Shop, *paths: Path) -> None:
         shop.desk.recent_programs.add(str(path))
     shop.open_list()
     shop.key(Key.Key_F2)
-    shop.sees(lambda: shop.programs.model.is_recent_view)
+    model = shop.programs.model
+    shop.sees(lambda: model.is_recent_view and not model.recent_worker.is_busy)
 
 
 def test_recent_program_outside_the_folder_is_loaded_with_enter(shop: Shop, tmp_path: Path) -> None:
@@ -198,6 +199,26 @@ def test_missing_recent_program_is_named_with_the_reason_and_removed(shop: Shop,
     shop.key(Key.Key_F6)
     shop.sees(lambda: "gone.nc" not in shop.rows())
     assert gone not in shop.desk.recent_programs.paths
+
+
+def test_the_selected_file_of_two_with_one_name_remains_selected(shop: Shop, tmp_path: Path) -> None:
+    other = tmp_path / "stick" / "beta.nc"
+    other.parent.mkdir()
+    other.write_text((shop.own / "beta.nc").read_text())
+    show_recent(shop, shop.own / "beta.nc", other)
+    shop.sees(
+        lambda: (
+            [each.path for each in shop.programs.model.listed_programs][:2] == [other, shop.own / "beta.nc"]
+        )
+    )
+    shop.key(Key.Key_Down)
+    model = shop.programs.model
+    assert model.selected_program is not None
+    assert model.selected_program.path == shop.own / "beta.nc"
+    model.reload_list()
+    shop.sees(lambda: not model.worker.is_busy and not model.recent_worker.is_busy)
+    assert model.selected_program is not None
+    assert model.selected_program.path == shop.own / "beta.nc"
 
 
 def test_remove_leaves_the_file_of_a_recent_program(shop: Shop) -> None:

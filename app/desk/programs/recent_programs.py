@@ -24,25 +24,32 @@ class RecentPrograms:
 
     @property
     def paths(self) -> tuple[Path, ...]:
-        """Return the paths, newest first. Invalid stored values are ignored."""
+        """Return the paths, newest first. Invalid stored values are ignored.
+
+        The result is empty while the store cannot be read.
+        """
         if self._paths is None:
             self._paths = self._read()
-        return self._paths
+        return self._paths or ()
 
     def add(self, path_text: str) -> None:
-        """Put a program at the top of the list, and drop the oldest program of a list that is too long."""
-        path = Path(path_text).absolute()
-        self._save((path, *(each for each in self.paths if each != path))[:MAX_RECENT_PROGRAMS])
+        """Put a program at the top of the list, and drop the oldest program of a list that is too long.
+
+        A list that cannot be read is not changed, so that its stored programs are not lost.
+        """
+        path, paths = Path(path_text).absolute(), self.paths
+        if self._paths is not None:
+            self._save((path, *(each for each in paths if each != path))[:MAX_RECENT_PROGRAMS])
 
     def remove(self, path: Path) -> None:
         """Remove a program from the list. Its file is not changed."""
         self._save(tuple(each for each in self.paths if each != path))
 
-    def _read(self) -> tuple[Path, ...]:
+    def _read(self) -> tuple[Path, ...] | None:
         try:
             stored = self._persistence.read_setting(RECENT_PROGRAMS_SETTING)
         except StoreError:
-            return ()
+            return None
         texts = stored if isinstance(stored, list) else []
         found = (Path(text) for text in texts if isinstance(text, str) and "\0" not in text)
         return tuple(dict.fromkeys(path for path in found if path.is_absolute()))[:MAX_RECENT_PROGRAMS]

@@ -200,7 +200,7 @@ class ConvertFunction(SpecialFunction):
         self.worker.enqueue_work(
             partial(convert_request, wanted, self.machine, self.limits),
             partial(self._take, wanted),
-            self._fail,
+            partial(self._fail, wanted),
         )
 
     def _take(self, request: ConversionRequest, result: ConversionResult) -> None:
@@ -208,8 +208,9 @@ class ConvertFunction(SpecialFunction):
             self._result = result
             self._recognized = result.control if request.control is None else self._recognized
 
-    def _fail(self, why: str) -> None:
-        self.error_text = why
+    def _fail(self, request: ConversionRequest, why: str) -> None:
+        if request == self._requested:
+            self.error_text = why
 
     # --- keys
 

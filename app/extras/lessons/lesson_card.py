@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from app.desk.status.interrupted_notice import NoticeRow
 from app.desk.status.prompt_line import find_unmeasured_tools
 from app.desk.translation import tr
 from app.programs.atomic_files import write_new_file
+from core.access.access_table import ProtectedChange
 from core.executor.snapshot import CYCLE_STATES, Snapshot
 from core.extras.lessons.lesson import Lesson, OffsetField, RunCounters, ScreenState
 from core.extras.lessons.lesson_file import RUN_SWITCHES
@@ -35,7 +35,8 @@ class LessonCard:
         self._desk = desk
         self._progress: LessonProgress | None = None
         self._worker = LatestRequestWorker("lessons")
-        self._completed = self._read_completed()
+        self._completed: frozenset[int] = frozenset()
+        desk.try_save(self._load_completed)
 
     # --- lesson --------------------------------------------------------------------------------------
 
@@ -57,13 +58,18 @@ class LessonCard:
         desk = self._desk
         if not desk.program_choice.can_choose_program():
             return
+        if lesson.program_text and desk.is_refused(ProtectedChange.PROGRAMS):
+            return
         self._progress = LessonProgress(lesson, self._read_state(desk.read_snapshot(), lesson))
         if lesson.program_text:
             path = desk.program_choice.program_folders.folders[0] / lesson.program
             work = partial(_write_program, path, lesson.program_text)
             self._worker.enqueue_work(work, desk.program_choice.load_path, desk.show_refusal)
-        elif desk.program_loader.loaded_program.name != lesson.program:
+        elif desk.program_loader.loaded_program.name != lesson.program and not (
             desk.program_choice.load_by_name(lesson.program)
+        ):
+            self._progress = None
+            desk.say(Message("{name} IS MISSING IN THE PROGRAM FOLDER", name=lesson.program))
 
     def close_card(self) -> bool:
         """End the lesson, and return False if no lesson was started."""
@@ -127,24 +133,25 @@ class LessonCard:
     # --- completed lessons ---------------------------------------------------------------------------
 
     def _read_completed(self) -> frozenset[int]:
-        stored: object = None
-
-        def read() -> None:
-            nonlocal stored
-            stored = self._desk.settings_store.persistence.read_setting(COMPLETED_SETTING)
-
-        self._desk.try_save(read)
+        stored = self._desk.settings_store.persistence.read_setting(COMPLETED_SETTING)
         return (
             frozenset(each for each in stored if type(each) is int)
             if isinstance(stored, list)
             else frozenset()
         )
 
+    def _load_completed(self) -> None:
+        self._completed |= self._read_completed()
+
     def _save_completed(self, number: int) -> None:
+        """Save that a lesson is completed; the saved lessons are read again, so that none is lost."""
         self._completed |= {number}
-        save: Callable[[], None] = partial(
-            self._desk.settings_store.persistence.save_setting, COMPLETED_SETTING, sorted(self._completed)
-        )
+
+        def save() -> None:
+            self._load_completed()
+            persistence = self._desk.settings_store.persistence
+            persistence.save_setting(COMPLETED_SETTING, sorted(self._completed))
+
         self._desk.try_save(save)
 
 

@@ -96,7 +96,7 @@ class FileOpener(QObject):
         if editor is not None:
             editor.choose_drawing(drawing)
             if not frame.open_page(EDITOR):
-                editor.source_drawing = None
+                editor.source_drawing, editor.pending_name = None, ""
 
     def open_file(self, path: Path) -> None:
         """Open a program that a second instance of TurnDesk passes on, and raise the window to the front."""
