@@ -157,8 +157,8 @@ class EditorPage(EditorParts):
         return True
 
     def needs_height(self) -> bool:
-        """Return whether the letter keyboard is shown."""
-        return not self.letter_pad.isHidden()
+        """Return whether the letter keyboard or large keys of the panel are shown."""
+        return not self.letter_pad.isHidden() or self.editor_panel.needs_height()
 
     def find_pending_question(self) -> str:
         """Return the question that F6 confirms, or an empty string if no question is pending."""

@@ -118,7 +118,8 @@ class ProgramsPage(ListPage):
         """Return the keys that cannot be used now, such as F3 while the editor cannot be opened."""
         if self.model.program_transfer.is_open:
             return super().find_disabled_keys()
-        closed = find_editor_refusal(self.desk.read_snapshot())
+        is_empty = self.model.selected_program is None and not self.model.search_field.text
+        closed = is_empty or find_editor_refusal(self.desk.read_snapshot())
         without_program = self.desk.page_registry.program_keys if self.model.selected_program is None else ()
         return super().find_disabled_keys() | ({"F3"} if closed else set()) | set(without_program)
 

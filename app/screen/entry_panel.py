@@ -77,7 +77,7 @@ class LetterPad(Panel):
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the keys of the touch keyboard, which fill the width of each row."""
-        gap = 0.6 * self.theme.unit_px
+        gap = 0.5 * self.theme.unit_px
         high = (self.height() + gap) / len(self._rows)
         for row, keys in enumerate(self._rows):
             wide = (self.width() + gap) / len(keys)

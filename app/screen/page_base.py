@@ -328,6 +328,10 @@ class EditorPanel(QWidget):
         """
         return ""
 
+    def needs_height(self) -> bool:
+        """Return whether the panel shows large touch targets, which a low window must have room for."""
+        return False
+
     def refresh(self) -> None:
         """Update the panel from the model.
 

@@ -269,6 +269,10 @@ class ShapesView(EditorPanel):
             program_name, text, line_number, lists_helpers=key_name == "Calculators"
         )
 
+    def needs_height(self) -> bool:
+        """Return whether the number pad is shown."""
+        return self.isVisible() and self.model.is_number_pad_visible
+
     def refresh(self) -> None:
         """Update the panel if the model has changed.
 

@@ -251,14 +251,15 @@ class PathComparison:
         block = self._next(step)
         if block.kind is not BlockKind.RAPID or (block.modal.tool and block.modal.edge != 0):
             self._differs(step.line, "proof-differs", block.kind, "home", "the kind of move")
-        axes = [("X", step.x, block.machine_end[0], block.x - block.x0)]
-        axes.append(("Z", step.z, block.machine_end[1], block.z - block.z0))
-        for axis, wanted, end, travel in axes:
+        axes = (
+            ("machine X", step.x, block.machine_end[0], self._home_point[0], block.x - block.x0),
+            ("machine Z", step.z, block.machine_end[1], self._home_point[1], block.z - block.z0),
+        )
+        for name, wanted, end, home, travel in axes:
             if wanted is None:
-                self._same(step, f"the travel in {axis}", travel, 0.0, EQUAL_TOLERANCE_MM)
+                self._same(step, name, travel, 0.0, EQUAL_TOLERANCE_MM)
             else:
-                home = self._home_point[axis == "Z"]
-                self._same(step, f"machine {axis}", end, home, EQUAL_TOLERANCE_MM)
+                self._same(step, name, end, home, EQUAL_TOLERANCE_MM)
 
     def _move(self, step: PathStep, block: Block) -> None:
         if block.kind is not _KINDS[step.kind]:

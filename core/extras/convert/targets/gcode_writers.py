@@ -17,6 +17,7 @@ _COMMENT_COMMAND = re.compile(
     re.IGNORECASE,
 )
 """Beginning of a comment that LinuxCNC executes."""
+_MESSAGE_PREFIX = "MSG, "  # LinuxCNC shows the comment to the operator
 
 
 class LinuxCncWriter(ProgramWriter):
@@ -75,7 +76,7 @@ class LinuxCncWriter(ProgramWriter):
     def write_stop(self, code: float, text: str) -> None:
         """Write M0 or M1 after a line with a message for the operator."""
         if text:
-            self.append_raw_line(super().make_comment(f"MSG, {text}"))
+            self.append_raw_line(super().make_comment(_MESSAGE_PREFIX + text))
         super().write_stop(code, "")
 
     def make_comment(self, text: str) -> str:
