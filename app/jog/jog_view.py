@@ -302,6 +302,10 @@ class JogPage(HeldKeysPage):
         touch = {"F5": lambda: model.ask_tool_value(TOUCH_X), "F6": lambda: model.ask_tool_value(TOUCH_Z)}
         return {**common, **touch, "F4": model.tool_setting.ask_to_undo_change}
 
+    def make_stop_key_actions(self) -> KeyActions:
+        """Return the action of 0, which stops the spindle unless it is a digit of an entry."""
+        return {} if self.model.is_entry_open else {"0": partial(self.model.select_manual_function, STOP)}
+
     def find_disabled_keys(self) -> frozenset[str]:
         """Return the function keys of this page that are currently disabled.
 

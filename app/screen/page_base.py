@@ -15,6 +15,8 @@ first opened. A page may override the following members:
 - ``make_key_actions()``: its key actions, by the key names of ``app.screen.window.key_table``. They
   have priority over the actions of the frame. H, E, D, R and the pots work on every page without
   a caret, and F1 works on all pages.
+- ``make_stop_key_actions()``: the actions of its characters that stop something. They also act while
+  the alarm log or the help covers the page.
 - ``handle_key_press``: receives every key press first, including repeats. True means that the page
   has handled the key.
 - ``stop_held_key_actions()``: called before any other key or touch acts. Actions that need a key held down
@@ -118,6 +120,13 @@ class Page(QWidget):
         This is called once a frame.
         """
         return tuple(find_key_label(self.desk.machine.program_language, label) for label in self.LABELS)
+
+    def make_stop_key_actions(self) -> KeyActions:
+        """Return the actions of the characters that stop something, by character.
+
+        They also act while the alarm log or the help covers the page.
+        """
+        return {}
 
     def find_disabled_keys(self) -> frozenset[str]:
         """Return the function keys that are currently disabled.

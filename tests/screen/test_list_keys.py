@@ -6,6 +6,7 @@ import pytest
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
+from app.jog.manual_functions import ManualFunctions
 from app.offsets.tool_offsets_view import ToolOffsetsPage
 from app.offsets.tool_shapes import ToolShapeTable
 from app.programs.program_list_model import ProgramListModel
@@ -162,6 +163,29 @@ def test_no_key_reaches_the_line_that_the_alarm_log_covers(ready: Operator) -> N
     ready.key(Key.Key_F7)
     ready.type("8")
     assert ready.mdi.mdi_input.text == "M08"
+
+
+@pytest.mark.parametrize("cover", [Key.Key_F7, Key.Key_Question])
+def test_the_stop_key_in_the_prompt_stops_the_spindle_of_a_covered_jog_page(
+    ready: Operator, cover: Key
+) -> None:
+    assert ready.frame.open_page(page_table.MDI)
+    ready.run("G97M03S500")
+    assert ready.frame.open_page(page_table.JOG)
+    ready.until(lambda: ManualFunctions.is_spindle_turning(ready.shot))
+    ready.key(cover)
+    assert ready.frame.alarm_list.isVisible() or ready.frame.help_panel.isVisible()
+    assert "0: STOP" in ready.prompt()
+    ready.key(Key.Key_0)
+    ready.until(lambda: not ManualFunctions.is_spindle_turning(ready.shot))
+    assert ready.frame.help_panel.isHidden()
+
+
+def test_zero_is_no_stop_key_while_it_is_a_digit_of_the_speed(ready: Operator) -> None:
+    assert ready.frame.open_page(page_table.JOG)
+    ready.key(Key.Key_B, Key.Key_9)
+    assert ready.frame.current_page.has_text_field()
+    assert not ready.frame.current_page.make_stop_key_actions()
 
 
 def test_home_does_not_select_a_program_while_its_new_name_is_typed(qtbot: QtBot, ready: Operator) -> None:

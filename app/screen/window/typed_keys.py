@@ -66,6 +66,18 @@ class TypedKeyHandler:
             self._press_key(YES_KEY)
         return True
 
+    def handle_stop_key(self, frame: WindowFrame, event: QKeyEvent) -> bool:
+        """Return whether the key stopped something on a page that the alarm log or the help covers."""
+        if event.isAutoRepeat() or not (frame.is_page_covered or frame.help_panel.isVisible()):
+            return False
+        stop = frame.current_page.make_stop_key_actions().get(find_typed_text(event))
+        if stop is None:
+            return False
+        frame.help_panel.close_help()
+        stop()
+        self._refresh()
+        return True
+
     def is_character_rejected(self, frame: WindowFrame, event: QKeyEvent) -> bool:
         """Return whether an input field rejects a character.
 
@@ -87,7 +99,8 @@ class TypedKeyHandler:
     def handle_typed_key(self, frame: WindowFrame, event: QKeyEvent) -> bool:
         """Return whether the alarm log or the page has handled the key as text input.
 
-        A page that the alarm log covers handles no keys, so that no axis moves and no line runs unseen.
+        A page that the alarm log covers handles no keys except its stop keys, so that no axis moves and no
+        line runs unseen.
         """
         key = find_typed_text(event)
         if frame.is_page_covered:
