@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import pytest
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication, QLineEdit
 from pytestqt.qtbot import QtBot
 
+from app.editor.editor_model import EditorStage
+from app.editor.editor_view import EditorPage
 from app.jog.manual_functions import ManualFunctions
 from app.offsets.tool_offsets_view import ToolOffsetsPage
 from app.offsets.tool_shapes import ToolShapeTable
@@ -15,6 +18,7 @@ from app.searchto.searchto_model import RestartModel
 from app.special.special_functions import SpecialFunctionsModel
 from core.executor.snapshot import Alarm, LogEvent, MachineState
 from tests.attached import attached
+from tests.screen.hands import Hands
 from tests.screen.lathe import Key, Operator
 
 LOGGED = 30
@@ -31,6 +35,19 @@ def fill_log(operator: Operator) -> None:
         alarm = Alarm(102, "following", "FOLLOWING ERROR", "cause", "free the slide", line=line + 1)
         operator.stage.desk.hear(LogEvent(float(line), "alarm", alarm.text, alarm.line, alarm))
     operator.window.refresh()
+
+
+def wait_for_text(qtbot: QtBot, operator: Operator, page: EditorPage) -> None:
+    def look() -> bool:
+        operator.window.refresh()
+        return page.editor.stage is EditorStage.OPEN and page.text_field.isVisible()
+
+    qtbot.waitUntil(look, timeout=60_000)
+
+
+def press_focused(key: Key) -> None:
+    """Press a key where the keyboard focus is, which can be a text field."""
+    QTest.keyClick(QApplication.focusWidget(), key)
 
 
 def wait_for_programs(qtbot: QtBot, operator: Operator, programs: ProgramListModel) -> None:
@@ -186,6 +203,43 @@ def test_zero_is_no_stop_key_while_it_is_a_digit_of_the_speed(ready: Operator) -
     ready.key(Key.Key_B, Key.Key_9)
     assert ready.frame.current_page.has_text_field()
     assert not ready.frame.current_page.make_stop_key_actions()
+
+
+def test_the_alarm_log_closes_the_file_prompt_so_that_enter_loads_no_program(hands: Hands) -> None:
+    hands.key(Key.Key_F2)
+    hands.sees(hands.page.file_prompt.isVisible)
+    before = hands.desk.program_loader.loaded_program
+    hands.key(Key.Key_F7)
+    assert hands.frame.alarm_list.isVisible()
+    assert not hands.page.file_prompt.isVisible()
+    assert not hands.frame.has_text_field()
+    hands.key(Key.Key_Return)
+    assert hands.desk.program_loader.loaded_program is before
+
+
+def test_the_alarm_log_takes_the_keys_from_a_field_of_the_editor_and_returns_them(
+    qtbot: QtBot, ready: Operator
+) -> None:
+    assert ready.frame.open_page(page_table.EDITOR)
+    page = ready.frame.current_page
+    assert isinstance(page, EditorPage)
+    wait_for_text(qtbot, ready, page)
+    press_focused(Key.Key_F5)  # GO TO
+    field = QApplication.focusWidget()
+    assert isinstance(field, QLineEdit)
+    press_focused(Key.Key_1)
+    typed = field.text()
+    press_focused(Key.Key_F7)
+    assert ready.frame.alarm_list.isVisible()
+    assert not ready.frame.has_text_field()
+    press_focused(Key.Key_2)
+    press_focused(Key.Key_Return)
+    assert field.text() == typed
+    assert ready.frame.alarm_list.isVisible()
+    press_focused(Key.Key_F7)
+    assert QApplication.focusWidget() is field
+    press_focused(Key.Key_3)
+    assert field.text() == typed + "3"
 
 
 def test_home_does_not_select_a_program_while_its_new_name_is_typed(qtbot: QtBot, ready: Operator) -> None:

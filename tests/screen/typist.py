@@ -155,7 +155,7 @@ class Typist:
                 if not frame.current_page.handle_escape():
                     break
             frame.open_page(page_table.AUTOMATIC)
-        frame.alarm_list.hide()
+        frame.alarm_list.close_list()
         frame.automatic_page.file_prompt.close_prompt()
         frame.automatic_page.path_view.switch_measuring(is_on=False)
         opened = frame.current_page.NAME == page_table.AUTOMATIC and frame.open_page(name)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtWidgets import QWidget
+from PySide6.QtWidgets import QApplication, QWidget
 
 from app.desk.pages.table_content import ROW_STEPS
 from app.desk.status.alarm_log import LoggedStop
@@ -140,7 +140,24 @@ class AlarmList(RowPanel):
         super().__init__(theme, parent)
         self._open = open_recording
         self.logged_stops: tuple[LoggedStop, ...] = ()
+        self._previous_focus: QWidget | None = None
         self.hide()
+
+    def open_list(self) -> None:
+        """Show the list over the page, and take the keyboard focus from an input field."""
+        self._previous_focus = QApplication.focusWidget()
+        self.window().setFocus()
+        self.show()
+        self.raise_()
+
+    def close_list(self) -> None:
+        """Hide the list, and return the keyboard focus to the input field that had it."""
+        if self.isHidden():
+            return
+        self.hide()
+        field, self._previous_focus = self._previous_focus, None
+        if field is not None and field.isVisible():
+            field.setFocus()
 
     def show_entries(self, logged_stops: Sequence[LoggedStop]) -> None:
         """Show the given log entries, and select the newest entry if the list has changed."""

@@ -17,6 +17,8 @@ from app.screen.table_panel import RowPanel
 from app.screen.text_sizes import TextRole
 from app.screen.window.documentation_browser import DOCUMENTS_FOLDER_NAME, DocumentationBrowser
 from app.screen.window.key_table import HELP_KEY, MODIFIER_KEYS
+from app.screen.window.part_placement import GAP_PX
+from app.screen.window_layout import Rect
 from core.message import Message
 
 TEXT_SIZE, MAX_TEXT_SIZE = 2.1, 3.0  # Units.
@@ -92,6 +94,12 @@ class HelpPanel(RowPanel):
         field, self._previous_focus = self._previous_focus, None
         if field is not None and field.isVisible():
             field.setFocus()
+
+    def place_beside(self, area: Rect, notice: QWidget) -> None:
+        """Place the help over the page, or next to the visible notice of an alarm or stop."""
+        if not notice.isHidden():
+            area = area._replace(w=max(0, notice.x() - GAP_PX - area.x))
+        self.setGeometry(*area)
 
     def show_next_screenful(self) -> None:
         """Scroll down by one screenful, or close the panel if its last row is already visible."""

@@ -27,7 +27,6 @@ from app.screen.window.help_panel import HelpPanel
 from app.screen.window.key_table import AUTOMATIC_KEYS, HELP_KEY
 from app.screen.window.notices import make_notices
 from app.screen.window.part_placement import (
-    GAP_PX,
     find_area_below,
     find_needed_readouts,
     make_lamp_row,
@@ -99,7 +98,7 @@ class WindowFrame(QWidget):
         self._help_area = Rect(0, 0, 0, 0)
         self._docked = True
         self._readouts = (False, True)  # Large position and run line of the last layout.
-        host = PageHost(theme, desk, press, self.open_page, self.alarm_list.hide)
+        host = PageHost(theme, desk, press, self.open_page, self.alarm_list.close_list)
         self._host = host
         self._before_scope = page_table.AUTOMATIC
         self._moved_at: float | None = None  # Time of the last manual move.
@@ -143,7 +142,7 @@ class WindowFrame(QWidget):
         before = self.current_page.NAME
         if before == page_table.SCOPE or self.open_page(page_table.SCOPE):
             self._before_scope = self._before_scope if before == page_table.SCOPE else before
-            self.alarm_list.hide()
+            self.alarm_list.close_list()
             self.desk.page_registry.open_recording(recording_name)
 
     def toggle_scope(self) -> None:
@@ -166,7 +165,7 @@ class WindowFrame(QWidget):
             page.find_disabled_keys(),
         )
         self.arrange_parts()
-        self.alarm_list.hide()
+        self.alarm_list.close_list()
         self.alarm_notice.stackUnder(self.alarm_list)
         page.stackUnder(self.alarm_notice)
         page.show()
@@ -216,9 +215,12 @@ class WindowFrame(QWidget):
         return self.alarm_list.isVisible()
 
     def toggle_alarm_log(self) -> None:
-        """Show or hide the alarm log over the page."""
-        self.alarm_list.setVisible(not self.alarm_list.isVisible())
-        self.alarm_list.raise_()
+        """Show or hide the alarm log over the page. The file prompt closes, because the log covers it."""
+        if self.alarm_list.isVisible():
+            self.alarm_list.close_list()
+        else:
+            self.automatic_page.file_prompt.close_prompt()
+            self.alarm_list.open_list()
 
     def show_help(self) -> None:
         """Show the help about the page or the alarm log, or the next screenful if the help is open."""
@@ -235,21 +237,14 @@ class WindowFrame(QWidget):
         if blocks:
             page.stop_held_key_actions()
             self.help_panel.open_help(blocks)
-            self._place_help()
+            self.help_panel.place_beside(self._help_area, self.alarm_notice)
         else:
             self.desk.say(tr("THE GUIDE IS NOT INSTALLED"))
-
-    def _place_help(self) -> None:
-        """Place the help over the page, or next to the notice of an alarm or stop."""
-        area, notice = self._help_area, self.alarm_notice
-        if not notice.isHidden():
-            area = area._replace(w=max(0, notice.x() - GAP_PX - area.x))
-        self.help_panel.setGeometry(*area)
 
     def handle_escape(self) -> bool:
         """Close the alarm log or an open part of the page, and return whether one was open."""
         if self.alarm_list.isVisible():
-            self.alarm_list.hide()
+            self.alarm_list.close_list()
             return True
         return self.current_page.handle_escape()
 
@@ -333,7 +328,7 @@ class WindowFrame(QWidget):
         place_widget(self.alarm_notice, over)
         place_widget(self.alarm_list, over)
         self._help_area = work
-        self._place_help()
+        self.help_panel.place_beside(self._help_area, self.alarm_notice)
         return work
 
     @property
@@ -414,7 +409,7 @@ class WindowFrame(QWidget):
             self.run_line.show_status(view, self._make_times(snapshot, view, loaded))
             # The prompt line shows the alarm, so that no notice covers an input field.
             self.alarm_notice.show_notice("", "")
-        self._place_help()
+        self.help_panel.place_beside(self._help_area, self.alarm_notice)
         self.alarm_list.show_entries(self.desk.alarm_log.entries)
         if self.station_dock is not None:
             self.station_dock.show_state(snapshot)
@@ -446,15 +441,14 @@ class WindowFrame(QWidget):
 
     def accepts_text(self, key: str) -> bool:
         """Return whether a character goes to an input field of the page or to a standard text field."""
-        return self.help_panel.isHidden() and (
-            (not self.is_page_covered and self.current_page.accepts_key(key)) or self._stock_field()
-        )
+        return self._is_field_reachable() and (self.current_page.accepts_key(key) or self._stock_field())
 
     def has_text_field(self) -> bool:
         """Return whether an input field has the keyboard focus, so that characters are text."""
-        return self.help_panel.isHidden() and (
-            (not self.is_page_covered and self.current_page.has_text_field()) or self._stock_field()
-        )
+        return self._is_field_reachable() and (self.current_page.has_text_field() or self._stock_field())
+
+    def _is_field_reachable(self) -> bool:
+        return self.help_panel.isHidden() and not self.is_page_covered
 
     def _stock_field(self) -> bool:
         at = QApplication.focusWidget()
