@@ -15160,6 +15160,21 @@
     </message>
     <message>
       <location filename="app/screen/window/run_row.py" />
+      <source>CYCLE</source>
+      <translation>CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/run_row.py" />
+      <source>LAST</source>
+      <translation>ÚLTIMO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/run_row.py" />
+      <source>LEFT</source>
+      <translation>FALTA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/run_row.py" />
       <source>STOP {number}: {first}</source>
       <translation>PARO {number}: {first}</translation>
     </message>
@@ -15220,6 +15235,11 @@
     </message>
     <message>
       <location filename="app/screen/window/typed_keys.py" />
+      <source>THE LIST OF ALARMS COVERS THE ENTRY. F7: CLOSE THE LIST</source>
+      <translation>LA LISTA DE ALARMAS TAPA EL CAMPO. F7: CERRAR LA LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/typed_keys.py" />
       <source>{key} CANNOT BE ENTERED IN THIS FIELD</source>
       <translation>{key} NO SE PUEDE ESCRIBIR EN ESTE CAMPO</translation>
     </message>
@@ -15242,21 +15262,6 @@
       <location filename="app/screen/window/window_bars.py" />
       <source>STARTING</source>
       <translation>ARRANCANDO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/window_frame.py" />
-      <source>CYCLE</source>
-      <translation>CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/window_frame.py" />
-      <source>LAST</source>
-      <translation>ÚLTIMO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/window_frame.py" />
-      <source>LEFT</source>
-      <translation>FALTA</translation>
     </message>
     <message>
       <location filename="app/screen/window/window_frame.py" />

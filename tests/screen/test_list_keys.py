@@ -7,6 +7,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLineEdit
 from pytestqt.qtbot import QtBot
 
+from app.desk.status.prompt_line import READING_TIME_S
 from app.editor.editor_model import EditorStage
 from app.editor.editor_view import EditorPage
 from app.jog.manual_functions import ManualFunctions
@@ -47,7 +48,9 @@ def wait_for_text(qtbot: QtBot, operator: Operator, page: EditorPage) -> None:
 
 def press_focused(key: Key) -> None:
     """Press a key where the keyboard focus is, which can be a text field."""
-    QTest.keyClick(QApplication.focusWidget(), key)
+    focused = QApplication.focusWidget()
+    assert focused is not None
+    QTest.keyClick(focused, key)
 
 
 def wait_for_programs(qtbot: QtBot, operator: Operator, programs: ProgramListModel) -> None:
@@ -240,6 +243,62 @@ def test_the_alarm_log_takes_the_keys_from_a_field_of_the_editor_and_returns_the
     assert QApplication.focusWidget() is field
     press_focused(Key.Key_3)
     assert field.text() == typed + "3"
+
+
+@pytest.mark.parametrize("text", ["x-1.5", "x+", "g,", "r", "d", "u", "t", "a", "y", "n"])
+def test_text_for_a_covered_entry_is_no_command(ready: Operator, text: str) -> None:
+    assert ready.frame.open_page(page_table.MDI)
+    ready.type("G0")
+    ready.key(Key.Key_F7)
+    before = ready.shot.feed_override, ready.shot.spindle_override, ready.window.theme.palette
+    ready.type(text)
+    assert "F7" in ready.prompt()
+    ready.pause(0.1)
+    shot = ready.shot
+    assert (shot.feed_override, shot.spindle_override, ready.window.theme.palette) == before
+    assert (shot.state, ready.mdi.mdi_input.text) == (MachineState.IDLE, "G0")
+    assert not ready.stage.desk.confirmation_key
+    assert ready.frame.alarm_list.isVisible()
+
+
+def test_drives_stay_off_when_d_is_typed_for_a_covered_entry(operator: Operator) -> None:
+    operator.until(lambda: operator.shot.state is MachineState.DISABLED)
+    assert operator.frame.open_page(page_table.MDI)
+    operator.key(Key.Key_F7, Key.Key_D)
+    operator.pause(0.5)
+    assert operator.shot.state is MachineState.DISABLED
+
+
+@pytest.mark.parametrize("key", [Key.Key_H, Key.Key_Space])
+def test_stop_letters_are_no_text_for_a_covered_entry(ready: Operator, key: Key) -> None:
+    assert ready.frame.open_page(page_table.MDI)
+    ready.key(Key.Key_F7)
+    ready.key(key)
+    assert "F7" not in ready.prompt()
+
+
+def test_e_presses_the_estop_while_the_alarm_log_covers_an_entry(ready: Operator) -> None:
+    assert ready.frame.open_page(page_table.MDI)
+    ready.key(Key.Key_F7, Key.Key_E)
+    ready.reaches(MachineState.ESTOP)
+
+
+def test_a_question_is_answered_while_the_alarm_log_covers_an_entry(ready: Operator) -> None:
+    assert ready.frame.open_page(page_table.MDI)
+    ready.key(Key.Key_F7)
+    answers: list[str] = []
+    ready.stage.desk.ask_operator("SURE?", lambda: answers.append("yes"))
+    ready.pause(READING_TIME_S + 0.1)
+    ready.key(Key.Key_Y)
+    assert answers == ["yes"]
+
+
+@pytest.mark.parametrize("key", [Key.Key_F2, Key.Key_F5])
+def test_a_function_key_of_the_page_closes_the_alarm_log_first(ready: Operator, key: Key) -> None:
+    assert ready.frame.open_page(page_table.JOG)
+    ready.key(Key.Key_F7)
+    ready.key(key)
+    assert not ready.frame.alarm_list.isVisible()
 
 
 def test_home_does_not_select_a_program_while_its_new_name_is_typed(qtbot: QtBot, ready: Operator) -> None:

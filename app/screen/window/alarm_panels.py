@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtWidgets import QApplication, QWidget
+from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
 
 from app.desk.pages.table_content import ROW_STEPS
 from app.desk.status.alarm_log import LoggedStop
@@ -149,6 +149,11 @@ class AlarmList(RowPanel):
         self.window().setFocus()
         self.show()
         self.raise_()
+
+    @property
+    def covers_focus_field(self) -> bool:
+        """Return whether a standard text field had the keyboard focus when the list opened."""
+        return self.isVisible() and isinstance(self._previous_focus, QLineEdit | QPlainTextEdit)
 
     def close_list(self) -> None:
         """Hide the list, and return the keyboard focus to the input field that had it."""

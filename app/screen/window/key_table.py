@@ -67,6 +67,10 @@ KEY_NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_Q, NO_MODIFIER): "Q",
     (Key.Key_X, NO_MODIFIER): "X",
 }
+PAGE_FUNCTION_KEYS = frozenset(
+    {"F2", "F3", "F4", "F5", "F6", "F8", "F9", "F10", "Codes", "Shapes", "Calculators"}
+)
+"""Function keys of the pages. They close the list of alarms first, so that they do not act unseen."""
 MENU_KEYS = {"J": "Step back"}
 """Letters of the main menu whose key is named after its function in the part playback, by letter."""
 REPEATING_KEYS = frozenset(

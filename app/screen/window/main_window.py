@@ -33,7 +33,13 @@ from app.screen.text_sizes import make_screen_resolution
 from app.screen.window.documentation_browser import DocumentationBrowser
 from app.screen.window.input_times import InputTimes
 from app.screen.window.key_actions import make_key_actions
-from app.screen.window.key_table import HELP_KEY, PALM_BUTTON_KEYS, REPEATING_KEYS, find_key_name
+from app.screen.window.key_table import (
+    HELP_KEY,
+    PAGE_FUNCTION_KEYS,
+    PALM_BUTTON_KEYS,
+    REPEATING_KEYS,
+    find_key_name,
+)
 from app.screen.window.keyboard import KeyboardFilter, find_key_code
 from app.screen.window.typed_keys import TypedKeyHandler
 from app.screen.window.window_frame import ScreenContext, WindowFrame
@@ -190,6 +196,8 @@ class MainWindow(QWidget):
                 frame.current_page.stop_held_key_actions()
                 if key_name != HELP_KEY:
                     frame.help_panel.close_help()
+                if key_name in PAGE_FUNCTION_KEYS:
+                    frame.alarm_list.close_list()
                 if key_name != "Esc":  # Esc removes the message itself.
                     frame.desk.prompt_line.clear_message()
             action()

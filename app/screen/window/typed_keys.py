@@ -96,6 +96,20 @@ class TypedKeyHandler:
             self._refresh()
         return True
 
+    def _discard_text(self, frame: WindowFrame, event: QKeyEvent) -> bool:
+        """Return whether the key is text for an input field that the alarm log covers.
+
+        Such text must not act as commands. Only the stop letters still act.
+        """
+        text = event.text()
+        is_stop = find_key_name(find_key_code(event), event.modifiers()) in STOP_LETTERS
+        if is_stop or not text or not text.isprintable() or not frame.covers_text_field:
+            return False
+        if not event.isAutoRepeat():
+            frame.desk.say(tr("THE LIST OF ALARMS COVERS THE ENTRY. F7: CLOSE THE LIST"))
+            self._refresh()
+        return True
+
     def handle_typed_key(self, frame: WindowFrame, event: QKeyEvent) -> bool:
         """Return whether the alarm log or the page has handled the key as text input.
 
@@ -107,7 +121,7 @@ class TypedKeyHandler:
             if frame.alarm_list.handle_key(key):
                 self._refresh()
                 return True
-            return key in COVERED_KEYS
+            return key in COVERED_KEYS or self._discard_text(frame, event)
         if (
             not key
             or (event.isAutoRepeat() and key not in REPEATED_WHEN_TYPED)

@@ -12,9 +12,9 @@ from app.automatic.automatic_view import AutomaticPage
 from app.desk.desk import Desk
 from app.desk.pages.first_job import CLOSE_KEY
 from app.desk.programs.program_loading import LoadedProgram
-from app.desk.status import formats, prompt_line
+from app.desk.status import prompt_line
 from app.desk.status.machine_status import MachineStatus
-from app.desk.status.state_prompt import find_remaining_time_s, make_page_prompt
+from app.desk.status.state_prompt import make_page_prompt
 from app.desk.translation import tr
 from app.screen import page_table
 from app.screen.page_base import KeyActions, Page, PageHost
@@ -40,7 +40,7 @@ from app.screen.window.readout_panels import (
     TimesPanel,
     ToolPanel,
 )
-from app.screen.window.run_row import RunStatusRow
+from app.screen.window.run_row import RunStatusRow, make_times
 from app.screen.window.station_dock import StationDock
 from app.screen.window.window_bars import FunctionKeyBar, LampStrip, NoticeRows, PromptLine, TitleLine
 from app.screen.window_layout import (
@@ -158,7 +158,7 @@ class WindowFrame(QWidget):
         page = self.current_page
         self.help_panel.close_help()
         self.desk.window_state.set_page_properties(
-            can_start=page.CAN_START_CYCLES, has_field=self.has_text_field, page_name=page.NAME
+            can_start=page.CAN_START_CYCLES, has_field=self._blocks_letters, page_name=page.NAME
         )
         self.key_bar.key_labels, self.key_bar.disabled_keys = (
             page.make_key_labels(),
@@ -213,6 +213,13 @@ class WindowFrame(QWidget):
     def is_page_covered(self) -> bool:
         """Return whether the alarm log covers the page, which then receives no keys."""
         return self.alarm_list.isVisible()
+
+    @property
+    def covers_text_field(self) -> bool:
+        """Return whether the alarm log covers an open input field, so that characters have no function."""
+        return self.is_page_covered and (
+            self.current_page.has_text_field() or self.alarm_list.covers_focus_field
+        )
 
     def toggle_alarm_log(self) -> None:
         """Show or hide the alarm log over the page. The file prompt closes, because the log covers it."""
@@ -406,7 +413,7 @@ class WindowFrame(QWidget):
             self.alarm_notice.show_notice(view.message, go_on, view.alarms)
         else:
             self.readout_line.show_status(view)
-            self.run_line.show_status(view, self._make_times(snapshot, view, loaded))
+            self.run_line.show_status(view, make_times(self.desk, snapshot, view, loaded))
             # The prompt line shows the alarm, so that no notice covers an input field.
             self.alarm_notice.show_notice("", "")
         self.help_panel.place_beside(self._help_area, self.alarm_notice)
@@ -437,7 +444,7 @@ class WindowFrame(QWidget):
         if key == HELP_KEY:
             return self.accepts_text(key)
         elsewhere = key in AUTOMATIC_KEYS and self.current_page is not self.automatic_page
-        return elsewhere or self.has_text_field() or self.accepts_text(key)
+        return elsewhere or self._blocks_letters() or self.accepts_text(key)
 
     def accepts_text(self, key: str) -> bool:
         """Return whether a character goes to an input field of the page or to a standard text field."""
@@ -446,6 +453,10 @@ class WindowFrame(QWidget):
     def has_text_field(self) -> bool:
         """Return whether an input field has the keyboard focus, so that characters are text."""
         return self._is_field_reachable() and (self.current_page.has_text_field() or self._stock_field())
+
+    def _blocks_letters(self) -> bool:
+        """Return whether letters are no commands now, because an input field is open."""
+        return self.has_text_field() or self.covers_text_field
 
     def _is_field_reachable(self) -> bool:
         return self.help_panel.isHidden() and not self.is_page_covered
@@ -477,16 +488,4 @@ class WindowFrame(QWidget):
             view.spindle,
         )
         self.tool_panel.value = (view.tool_text, view.secondary_offset_text)
-        self.times_panel.value = self._make_times(snapshot, view, loaded)
-
-    def _make_times(
-        self, snapshot: Snapshot, view: MachineStatus, loaded: LoadedProgram
-    ) -> tuple[tuple[str, str], ...]:
-        """Return the part count and times for the times panel and the run status row."""
-        left = formats.format_duration(find_remaining_time_s(snapshot, loaded))
-        return (
-            ("PARTS", self.desk.program_runs.part_counter.part_count_text),
-            ("CYCLE", view.cycle_time_text),
-            ("LEFT", left),
-            ("LAST", view.last_cycle_time_text),
-        )
+        self.times_panel.value = make_times(self.desk, snapshot, view, loaded)
