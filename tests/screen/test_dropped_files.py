@@ -20,6 +20,7 @@ from app.editor.editor_model import EditorModel, EditorStage
 from app.editor.editor_view import EditorPage
 from app.screen import page_table
 from app.screen.window.file_opening import FileOpener
+from app.screen.window.key_table import HELP_KEY
 from core.executor.snapshot import MachineState
 from tests.attached import attached
 from tests.screen.desks import SAMPLES, desk_on
@@ -159,6 +160,27 @@ def test_a_drop_over_the_file_prompt_opens_the_file(desk_hands: Hands, visitor: 
     desk_hands.key(Key.Key_F2)
     desk_hands.sees(desk_hands.page.file_prompt.isVisible)
     check_drop_over_fields(desk_hands, visitor)
+    assert not desk_hands.page.file_prompt.isVisible()
+    assert not desk_hands.frame.has_text_field()
+
+
+@pytest.mark.parametrize("key", ["F7", HELP_KEY])
+def test_a_drop_over_the_alarm_log_or_the_help_shows_the_new_program(
+    desk_hands: Hands, visitor: Path, key: str
+) -> None:
+    desk_hands.window.press_key(key)
+    covers = desk_hands.frame.alarm_list, desk_hands.frame.help_panel
+    assert any(cover.isVisible() for cover in covers)
+    drop_at(desk_hands, middle_of(desk_hands, desk_hands.window), visitor)
+    assert not any(cover.isVisible() for cover in covers)
+    desk_hands.sees(lambda: desk_hands.desk.program_loader.loaded_program.path == visitor)
+
+
+def test_a_rejected_drop_leaves_the_file_prompt_open(desk_hands: Hands, tmp_path: Path) -> None:
+    desk_hands.key(Key.Key_F2)
+    desk_hands.sees(desk_hands.page.file_prompt.isVisible)
+    drop_at(desk_hands, middle_of(desk_hands, desk_hands.window), tmp_path)
+    assert desk_hands.page.file_prompt.isVisible()
 
 
 def test_a_drop_over_the_text_of_the_editor_opens_the_file(desk_hands: Hands, visitor: Path) -> None:

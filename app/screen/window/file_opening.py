@@ -81,8 +81,12 @@ class FileOpener(QObject):
 
     @staticmethod
     def _leave_page(frame: WindowFrame, file: Path) -> bool:
-        """Open the Automatic page, and return False after a message if the current page cannot close yet."""
+        """Open the Automatic page without anything that covers it.
+
+        Return False after a message if the current page cannot close yet.
+        """
         if frame.open_page(AUTOMATIC):
+            frame.uncover_page()
             return True
         if not frame.desk.prompt_notice:
             words = "{name} NOT OPENED. DROP IT AGAIN WHEN THIS PAGE IS CLOSED"

@@ -221,6 +221,12 @@ class WindowFrame(QWidget):
             self.current_page.has_text_field() or self.alarm_list.covers_focus_field
         )
 
+    def uncover_page(self) -> None:
+        """Close the help, the alarm log and the file prompt."""
+        self.help_panel.close_help()
+        self.alarm_list.close_list()
+        self.automatic_page.file_prompt.close_prompt()
+
     def toggle_alarm_log(self) -> None:
         """Show or hide the alarm log over the page. The file prompt closes, because the log covers it."""
         if self.alarm_list.isVisible():
