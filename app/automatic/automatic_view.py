@@ -15,6 +15,7 @@ from app.desk.pages.table_content import WHOLE_LIST
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
 from app.desk.status.prompt_line import ACTIVE_STATES, MOVING_STATES, NO_NAME_TYPED
+from app.desk.translation import tr
 from app.path.measuring import make_measuring_prompt
 from app.path.part_player import make_part_player
 from app.path.path_aspects import find_tip_position
@@ -23,6 +24,7 @@ from app.programs.file_prompt_view import FilePrompt
 from app.screen import page_table
 from app.screen.page_base import KeyActions, Page, PageHost
 from app.screen.program_listing import ProgramListing
+from app.screen.window.key_table import RELOAD_KEY
 from app.screen.window.window_bars import CommentLine
 from app.screen.window_layout import Rect, divide_work_area
 from app.working_plane.plane_instant import describe_plane, make_instant_from_snapshot
@@ -191,6 +193,7 @@ class AutomaticPage(Page):
         looked_at = self._visible_view
         return {
             "F2": self.show_file_prompt,
+            RELOAD_KEY: self._reload_program,
             "F3": self._open_editor,
             "F4": self.desk.select_next_readout,
             "F5": looked_at.fit_all_panes,
@@ -243,6 +246,15 @@ class AutomaticPage(Page):
         elif (editor := self.desk.page_registry.find_model(EditorModel)) is not None:
             editor.pending_name = wanted
             self.host.open_page(page_table.EDITOR)
+
+    def _reload_program(self) -> None:
+        """Load the changed file of the loaded program again, or show why this is impossible."""
+        path, state = self.desk.program_loader.loaded_program.path, self.desk.storage_state
+        if path is None or not state.can_reload_file():
+            self.desk.say(state.describe_file_difference() or tr("THE PROGRAM FILE HAS NOT CHANGED"))
+        elif self.desk.program_choice.can_choose_program():
+            self.file_prompt.close_prompt()
+            self.desk.program_choice.load_path(path)
 
     def show_file_prompt(self) -> None:
         """Show the prompt ``FILE TO BE PROCESSED``, or open the program list.

@@ -5770,6 +5770,11 @@
     </message>
     <message>
       <location filename="app/automatic/automatic_view.py" />
+      <source>THE PROGRAM FILE HAS NOT CHANGED</source>
+      <translation>EL ARCHIVO DEL PROGRAMA NO HA CAMBIADO</translation>
+    </message>
+    <message>
+      <location filename="app/automatic/automatic_view.py" />
       <source>TOOLS</source>
       <translation>HERRAM</translation>
     </message>
@@ -7945,8 +7950,8 @@
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />
-      <source>SAVED. OLD VERSION STILL RUNNING. F2: RELOAD AFTER THE RUN</source>
-      <translation>GUARDADO. AÚN SE EJECUTA LA VERSIÓN ANTERIOR. F2: RECARGAR AL TERMINAR</translation>
+      <source>SAVED. OLD VERSION STILL RUNNING. SHIFT+F2: RELOAD AFTER THE RUN</source>
+      <translation>GUARDADO. AÚN SE EJECUTA LA VERSIÓN ANTERIOR. SHIFT+F2: RECARGAR AL TERMINAR</translation>
     </message>
     <message>
       <location filename="app/editor/editor_messages.py" />

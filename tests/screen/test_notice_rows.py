@@ -2,23 +2,33 @@
 
 from __future__ import annotations
 
+import shutil
+from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QPainter
 from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
 
+from app.compose.runs.journal import Journal
+from app.desk.programs.program_loading import LoadingPhase
 from app.desk.status.interrupted_notice import NoticeRow, _describe_uncertainty
 from app.desk.translation import tr
 from app.screen import page_table
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme, load_fonts, set_language
+from app.screen.window.key_table import RELOAD_KEY
 from app.screen.window.window_bars import NoticeRows
 from app.screen.window_layout import FINGERTIP_PX
 from core.executor.snapshot import POWER_LOST_REASON, MachineState
 from core.ports import ALL_UNKNOWN_PARTS, UnknownPart
 from tests.interrupted import broken_off
-from tests.screen.hands import Hands, Key
+from tests.screen.desks import SAMPLES, desk_on
+from tests.screen.fake import FakeMachine
+from tests.screen.hands import Hands, Key, window_on
 from tests.texts import Pattern, begins, text
 
 
@@ -178,11 +188,11 @@ def test_uncertain_state_after_power_cut_is_shown_in_full_next_to_keys(
     ("page", "state", "can_reload"),
     [
         (page_table.AUTOMATIC, MachineState.IDLE, True),
-        (page_table.AUTOMATIC, MachineState.RUN, False),  # F2 is disabled during a run.
-        (page_table.JOG, MachineState.IDLE, False),  # F2 has another function on this page.
+        (page_table.AUTOMATIC, MachineState.RUN, False),  # No program can be loaded during a run.
+        (page_table.JOG, MachineState.IDLE, False),  # The key has no function on this page.
     ],
 )
-def test_changed_program_offers_reload_only_where_f2_reloads_it(
+def test_changed_program_offers_reload_only_where_its_key_reloads_it(
     hands: Hands, page: str, state: MachineState, can_reload: bool
 ) -> None:
     hands.machine.now = replace(hands.machine.now, state=state)
@@ -190,7 +200,7 @@ def test_changed_program_offers_reload_only_where_f2_reloads_it(
     hands.frame.open_page(page)
     hands.window.refresh()
     row = next(row for row in hands.frame.notice_rows.notice_rows if row.text == "DIFFERENT")
-    assert row.keys == ((("F2", "RELOAD"),) if can_reload else ())
+    assert row.keys == (((RELOAD_KEY, "RELOAD"),) if can_reload else ())
 
 
 def test_missing_program_file_offers_no_reload(hands: Hands) -> None:
@@ -198,3 +208,74 @@ def test_missing_program_file_offers_no_reload(hands: Hands) -> None:
     hands.window.refresh()
     row = next(row for row in hands.frame.notice_rows.notice_rows if row.text == "MISSING")
     assert row.keys == ()
+
+
+def load_last_program(hands: Hands) -> Path:
+    """Load the last program of the list from a folder of its own, and return its path."""
+    assert hands.desk.program_choice.load_by_name("zulu.nc")
+    loader = hands.desk.program_loader
+    hands.sees(lambda: loader.loaded_program.phase is LoadingPhase.READY)
+    path = loader.loaded_program.path
+    assert path is not None
+    assert path.name == "zulu.nc"
+    return path
+
+
+def change_file(hands: Hands, path: Path) -> None:
+    path.write_text(path.read_text(encoding="utf-8") + "(CHANGED)\n", encoding="utf-8")
+    hands.desk.storage_state.set_file_readers(lambda: "DIFFERENT", lambda: None, lambda: True)
+    hands.window.refresh()
+
+
+@pytest.fixture
+def folder_hands(qtbot: QtBot, machine: FakeMachine, journal: Journal, tmp_path: Path) -> Iterator[Hands]:
+    own = tmp_path / "programs"
+    own.mkdir()
+    for name in ("alpha.nc", "zulu.nc"):
+        shutil.copy(SAMPLES / "pin.nc", own / name)
+    desk = desk_on(machine, own, SAMPLES, keep=journal)
+    with window_on(qtbot, desk, machine) as window:
+        yield Hands(qtbot, window, desk, machine)
+
+
+@pytest.mark.parametrize("is_touched", [True, False])
+def test_reload_loads_the_changed_file_of_the_loaded_program(folder_hands: Hands, is_touched: bool) -> None:
+    hands = folder_hands
+    path = load_last_program(hands)
+    change_file(hands, path)
+    row = next(row for row in hands.frame.notice_rows.notice_rows if row.text == "DIFFERENT")
+    if is_touched:
+        hands.window.press_key(row.keys[0][0])
+    else:
+        hands.key(Key.Key_F2, Qt.KeyboardModifier.ShiftModifier)
+    loader = hands.desk.program_loader
+
+    def is_new() -> bool:
+        source = loader.loaded_program.source
+        return source is not None and "(CHANGED)" in source.lines
+
+    hands.sees(is_new)
+    assert loader.loaded_program.path == path
+    assert not hands.page.file_prompt.isVisible()
+
+
+@pytest.mark.parametrize("difference", ["", "MISSING"])
+def test_reload_key_keeps_a_program_whose_file_cannot_be_reloaded(
+    folder_hands: Hands, difference: str
+) -> None:
+    hands = folder_hands
+    load_last_program(hands)
+    loaded = hands.desk.program_loader.loaded_program
+    hands.desk.storage_state.set_file_readers(lambda: difference, lambda: None, lambda: False)
+    hands.key(Key.Key_F2, Qt.KeyboardModifier.ShiftModifier)
+    assert hands.desk.program_loader.loaded_program is loaded
+    assert hands.desk.prompt_notice == (difference or "THE PROGRAM FILE HAS NOT CHANGED")
+
+
+def test_reload_key_does_not_load_during_a_run(folder_hands: Hands) -> None:
+    hands = folder_hands
+    change_file(hands, load_last_program(hands))
+    loaded = hands.desk.program_loader.loaded_program
+    hands.machine.now = replace(hands.machine.now, state=MachineState.RUN)
+    hands.key(Key.Key_F2, Qt.KeyboardModifier.ShiftModifier)
+    assert hands.desk.program_loader.loaded_program is loaded

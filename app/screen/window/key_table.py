@@ -14,6 +14,7 @@ SHIFT_MODIFIER = Qt.KeyboardModifier.ShiftModifier
 NO_MODIFIER = Qt.KeyboardModifier.NoModifier
 
 HELP_KEY = "?"  # The key that shows the help, by its character, because its place depends on the layout.
+RELOAD_KEY = "Shift+F2"  # Loads the changed file of the loaded program again on the Automatic page.
 MODIFIER_KEYS = frozenset(
     {Key.Key_Shift, Key.Key_Control, Key.Key_Alt, Key.Key_AltGr, Key.Key_Meta, Key.Key_Super_L}
     | {Key.Key_Super_R, Key.Key_CapsLock, Key.Key_NumLock, Key.Key_Mode_switch, Key.Key_Hyper_L}
@@ -61,6 +62,7 @@ KEY_NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_End, NO_MODIFIER): "End",
     (Key.Key_F10, SHIFT_MODIFIER): "Scope",
     (Key.Key_F1, SHIFT_MODIFIER): "Codes",
+    (Key.Key_F2, SHIFT_MODIFIER): RELOAD_KEY,
     (Key.Key_F3, SHIFT_MODIFIER): "Shapes",
     (Key.Key_F4, SHIFT_MODIFIER): "Calculators",
     (Key.Key_F6, SHIFT_MODIFIER): "Shift+F6",
@@ -68,7 +70,7 @@ KEY_NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_X, NO_MODIFIER): "X",
 }
 PAGE_FUNCTION_KEYS = frozenset(
-    {"F2", "F3", "F4", "F5", "F6", "F8", "F9", "F10", "Codes", "Shapes", "Calculators"}
+    {"F2", "F3", "F4", "F5", "F6", "F8", "F9", "F10", "Codes", RELOAD_KEY, "Shapes", "Calculators"}
 )
 """Function keys of the pages. They close the list of alarms first, so that they do not act unseen."""
 MENU_KEYS = {"J": "Step back"}

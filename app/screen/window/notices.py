@@ -14,10 +14,11 @@ from app.desk.status.interrupted_notice import (
     make_unknown_values_notice,
 )
 from app.desk.translation import tr
+from app.screen.window.key_table import RELOAD_KEY
 from core.executor.snapshot import MachineState, Snapshot
 from core.message import Message
 
-_SEARCHTO, _FROM_LINE_1, _RELOAD = ("F6", "SEARCHTO"), ("Y", "FROM LINE 1"), ("F2", "RELOAD")
+_SEARCHTO, _FROM_LINE_1, _RELOAD = ("F6", "SEARCHTO"), ("Y", "FROM LINE 1"), (RELOAD_KEY, "RELOAD")
 
 
 def make_notices(
