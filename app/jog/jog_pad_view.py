@@ -24,8 +24,8 @@ from app.jog.jog_homing import HomingState
 from app.jog.jog_model import JogModel
 from app.offsets.offset_values import UnitMode
 from app.screen.panel import RedrawingAttribute, TouchControl, make_press_control
-from app.screen.screen_theme import ALIGN_CENTER, MIN_STRETCH, ScreenTheme, ThemedPainter, measure_text
-from app.screen.text_sizes import TextRole
+from app.screen.screen_theme import ALIGN_CENTER, ScreenTheme, ThemedPainter, measure_text
+from app.screen.text_sizes import MIN_STRETCH, TextRole
 from app.screen.window_layout import FINGERTIP_PX
 from core.executor.snapshot import Snapshot
 from core.message import Message

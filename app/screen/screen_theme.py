@@ -27,8 +27,14 @@ from app.desk.screen_settings import SYSTEM_THEME
 from app.desk.status.machine_status import StatusTone
 from app.desk.translation import ENGLISH_CODE, Translate, set_translator, tr
 from app.screen.color_palettes import DARK_PALETTE, LIGHT_PALETTE, PALETTES, ColorPalette
-from app.screen.text_sizes import ScreenResolution, TextRole
-from app.screen.window_layout import FINGERTIP_PX, TABLE_ROW, find_title_height_px
+from app.screen.text_sizes import ScreenResolution, TextRole, find_narrow_size
+from app.screen.window_layout import (
+    FINGERTIP_PX,
+    TABLE_ROW,
+    find_title_height_px,
+    find_unit_px,
+    limit_resolution,
+)
 from core.message import Message
 
 # B612 has digits of equal width, and an O that differs from a 0. In B612 Mono both look alike, and a gap
@@ -41,7 +47,6 @@ MIN_ROW_PX = 20.0  # Pixels: a line of text.
 # Largest em height as a ratio to the height of the row. Capitals and digits have no descenders.
 _ROW_SHARE, _CAPITALS_ROW_SHARE = 1.0, 1.15
 MIN_TEXT_SCALE = 0.6  # A translation may be drawn at this fraction of its text size.
-MIN_STRETCH = 65  # Percent: a text that is too wide is drawn with letters of this width at the least.
 ALIGN_CENTER = Qt.AlignmentFlag.AlignCenter
 
 
@@ -62,7 +67,8 @@ def load_fonts() -> tuple[str, ...]:
 class ScreenTheme:
     """Colors, fonts and sizes that all widgets of a window share.
 
-    ``unit_px`` is the size unit in pixels, which changes with the size of the window.
+    ``unit_px`` is the size unit in pixels, and ``text_resolution`` is the resolution that determines the text
+    heights. Both follow the size of the window.
     """
 
     def __init__(self, palette: ColorPalette, unit_px: float = 12.0) -> None:
@@ -71,13 +77,29 @@ class ScreenTheme:
         self.is_caret_shown = (
             False  # An input field of the current page has the keyboard, so its caret is drawn.
         )
+        self._window_size = (0, 0)
         self.screen = ScreenResolution()
         self._colours: dict[str, QColor] = {}
         self._fonts: dict[tuple[float, bool], QFont] = {}
         self._narrow_fonts: dict[tuple[int, bool, int], QFont] = {}  # By pixel size, weight and stretch.
 
-    def set_unit_px(self, unit_px: float) -> None:
-        """Set the size unit of the theme in pixels."""
+    @property
+    def screen(self) -> ScreenResolution:
+        """The resolution of the screen."""
+        return self._screen
+
+    @screen.setter
+    def screen(self, screen: ScreenResolution) -> None:
+        self._screen = screen
+        self.text_resolution = (
+            limit_resolution(*self._window_size, screen) if any(self._window_size) else screen
+        )
+
+    def set_window_size(self, width_px: int, height_px: int) -> None:
+        """Adapt the size unit and the text heights to the size of the window."""
+        self._window_size = (width_px, height_px)
+        self.screen = self._screen
+        unit_px = find_unit_px(width_px, height_px)
         if unit_px != self.unit_px:
             self.unit_px = unit_px
             self._fonts.clear()
@@ -92,7 +114,7 @@ class ScreenTheme:
         shows more rows. If ``is_touchable`` is True, the row is at least as high as a fingertip on the
         smallest screen.
         """
-        high = min(height_units * self.unit_px, max_height_mm * self.screen.pixels_per_mm)
+        high = min(height_units * self.unit_px, max_height_mm * self.text_resolution.pixels_per_mm)
         return (
             max(high, float(FINGERTIP_PX))
             if is_touchable
@@ -114,25 +136,27 @@ class ScreenTheme:
         The height is at least ``size``. It is larger if the role of the text requires this on a screen of
         this size and the row is high enough. Letters with descenders need a higher row.
         """
-        least = self.screen.find_min_em_px(role) / self.unit_px
+        least = self.text_resolution.find_min_em_px(role) / self.unit_px
         share = _ROW_SHARE if has_descenders else _CAPITALS_ROW_SHARE
         return max(size, min(least, row_height_px / self.unit_px * share))
 
     def find_table_size(self, size: float) -> float:
         """Return the em height, in units, of a value or label that is at least ``size`` units high."""
-        return max(size, self.screen.find_min_em_px(TextRole.TABLE) / self.unit_px)
+        return max(size, self.text_resolution.find_min_em_px(TextRole.TABLE) / self.unit_px)
 
     def find_line_height(self, height_units: float) -> float:
         """Return the height of a line of a table in pixels.
 
         The height is ``height_units``, or what the smallest permitted text needs on this screen.
         """
-        return max(height_units * self.unit_px, TABLE_ROW * self.screen.find_min_em_px(TextRole.TABLE))
+        return max(
+            height_units * self.unit_px, TABLE_ROW * self.text_resolution.find_min_em_px(TextRole.TABLE)
+        )
 
     @property
     def title_height(self) -> float:
         """Return the height of the title of a frame in units."""
-        return find_title_height_px(self.unit_px, self.screen) / self.unit_px
+        return find_title_height_px(self.unit_px, self.text_resolution) / self.unit_px
 
     def set_palette(self, palette: ColorPalette) -> None:
         """Use the colors of another palette from now on."""
@@ -189,15 +213,6 @@ class ScreenTheme:
             font.setStretch(stretch)
             self._narrow_fonts[key] = font
         return self._narrow_fonts[key]
-
-
-def find_narrow_size(pixels: int, width_ratio: float) -> tuple[int, int]:
-    """Return the pixel size and stretch in percent of a font that is narrower by ``width_ratio``.
-
-    The letters become narrower first, and lower only beyond ``MIN_STRETCH``.
-    """
-    stretch = max(MIN_STRETCH, min(100, int(100 * width_ratio)))
-    return max(1, int(pixels * min(1.0, 100 * width_ratio / stretch))), stretch
 
 
 def draw_text(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> None:

@@ -10,8 +10,11 @@ DEFAULT_DPI = 96.0  # Dots per inch of a monitor that does not report its size.
 _LEAST_DPI, _MOST_DPI = 75.0, 350.0
 _ALIKE = 0.1  # Largest difference of the horizontal and vertical resolution, as a ratio.
 _INCH = 25.4
+# mm: sizes that screens report instead of their real size. They contain only the aspect ratio.
+_ASPECT_RATIO_SIZES = frozenset({(160, 90), (160, 100), (16, 9), (16, 10)})
 _SMALL = 10.0  # Inches: smaller panels are read from nearer.
 CAPITAL_HEIGHT_RATIO = 0.73  # Height of a capital or a digit of B612, as a ratio to its em height.
+MIN_STRETCH = 65  # Percent: a text that is too wide is drawn with letters of this width at the least.
 
 
 class TextRole(Enum):
@@ -70,8 +73,20 @@ def make_screen_resolution(
     """
     across = width_px / width_mm if width_mm > 0.0 else 0.0
     down = height_px / height_mm if height_mm > 0.0 else 0.0
-    plausible = min(across, down) >= _LEAST_DPI / _INCH and max(across, down) <= _MOST_DPI / _INCH
+    is_ratio = (max(width_mm, height_mm), min(width_mm, height_mm)) in _ASPECT_RATIO_SIZES
+    plausible = (
+        not is_ratio and min(across, down) >= _LEAST_DPI / _INCH and max(across, down) <= _MOST_DPI / _INCH
+    )
     if not plausible or abs(across / down - 1.0) > _ALIKE:
         across = down = DEFAULT_DPI / _INCH
     diagonal = math.hypot(width_px / across, height_px / down)
     return ScreenResolution((across + down) / 2.0, diagonal < _SMALL * _INCH)
+
+
+def find_narrow_size(pixels: int, width_ratio: float) -> tuple[int, int]:
+    """Return the pixel size and stretch in percent of a font that is narrower by ``width_ratio``.
+
+    The letters become narrower first, and lower only beyond ``MIN_STRETCH``.
+    """
+    stretch = max(MIN_STRETCH, min(100, int(100 * width_ratio)))
+    return max(1, int(pixels * min(1.0, 100 * width_ratio / stretch))), stretch

@@ -6,6 +6,8 @@ The program window and the path view use the remaining area.
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import lru_cache
 from typing import NamedTuple
 
 from app.screen.text_sizes import ScreenResolution, TextRole
@@ -83,6 +85,8 @@ _TITLE_HEIGHT = 2.0  # Units: height of the title of a frame.
 # Height of a row of capitals and of a row of a table, as ratios to the em height of the text.
 _CAPITALS_ROW, TABLE_ROW = 0.82, 0.92
 _LATHE_AXIS_COUNT = 3
+MIN_WORK_AREA_RATIO = 0.22  # Height of the work area of the Automatic page, as a ratio to the window height.
+_RESOLUTION_STEP = 0.01  # Pixels per mm: precision of a limited resolution.
 
 
 def find_title_height_px(unit_px: float, screen: ScreenResolution) -> float:
@@ -90,13 +94,43 @@ def find_title_height_px(unit_px: float, screen: ScreenResolution) -> float:
     return max(_TITLE_HEIGHT * unit_px, TABLE_ROW * screen.find_min_em_px(TextRole.TABLE))
 
 
+@lru_cache(maxsize=64)
+def limit_resolution(width_px: int, height_px: int, screen: ScreenResolution) -> ScreenResolution:
+    """Return the resolution of the screen, or a lower one with which all rows fit in the window.
+
+    A window that covers a part of a screen with small pixels has no room for the required text heights. With
+    the lower resolution, the heights of all rows shrink by the same ratio.
+    """
+    if _has_work_area(width_px, height_px, screen):
+        return screen
+    fits, exceeds = 0.0, screen.pixels_per_mm
+    while exceeds - fits > _RESOLUTION_STEP:
+        middle = (fits + exceeds) / 2.0
+        if _has_work_area(width_px, height_px, replace(screen, pixels_per_mm=middle)):
+            fits = middle
+        else:
+            exceeds = middle
+    return replace(screen, pixels_per_mm=fits)
+
+
+def _has_work_area(width: int, height: int, screen: ScreenResolution) -> bool:
+    """Return whether the rows of the Automatic page leave a large enough work area."""
+    return _divide_window(width, height, False, screen).path.h >= MIN_WORK_AREA_RATIO * height
+
+
 def make_automatic_layout(
     width: int, height: int, has_dock: bool, screen: ScreenResolution = _UNKNOWN_SCREEN
 ) -> AutomaticLayout:
     """Return the layout of the Automatic page for a window of this size in pixels.
 
-    The rows are high enough for the texts that the operator must be able to read on this screen.
+    The rows are high enough for the texts that the operator must be able to read on this screen. In a window
+    that is too low for this, all rows are less high.
     """
+    return _divide_window(width, height, has_dock, limit_resolution(width, height, screen))
+
+
+def _divide_window(width: int, height: int, has_dock: bool, screen: ScreenResolution) -> AutomaticLayout:
+    """Return the layout of the Automatic page, without a check that the rows fit in the window."""
     u = find_unit_px(width, height)
     gap = _gap(u)
     low = height < LOW_WINDOW_HEIGHT_PX
@@ -163,6 +197,7 @@ def make_compact_layout(
     readouts. Without a run line, its rectangle is empty. Title, dock, prompt and function keys have the same
     positions as on the Automatic page.
     """
+    screen = limit_resolution(width, height, screen)
     at, u = make_automatic_layout(width, height, has_dock, screen), find_unit_px(width, height)
     gap, wide = _gap(u), at.strip.w
     head = Rect(at.strip.x, at.position.y, wide, _find_head_height(width, height, screen, has_axis_motion))

@@ -10,10 +10,16 @@ import pytest
 from PySide6.QtCore import QRect
 from PySide6.QtGui import QScreen
 
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme
+from app.screen.text_sizes import ScreenResolution
+from app.screen.window.station_dock import StationDock
 from app.screen.window_layout import (
+    FINGERTIP_PX,
     MIN_WINDOW_PX,
     Rect,
     find_unit_px,
+    limit_resolution,
     make_automatic_layout,
     make_compact_layout,
 )
@@ -68,6 +74,61 @@ def test_targets_are_touch_sized_on_smallest_screen() -> None:
     assert at.keys.h >= least
     assert at.strip.h >= least
     assert (at.keys.w / 10) >= 80
+
+
+WINDOWS = [MIN_WINDOW_PX, (1024, 768), (1280, 720), (1920, 1080), (1080, 1920)]
+
+
+@pytest.mark.parametrize("resolution", [3.0, 4.71, 6.43, 7.24, 9.0, 11.9, 13.8])
+@pytest.mark.parametrize("size", WINDOWS)
+def test_rows_fit_in_window_on_screen_with_small_pixels(size: tuple[int, int], resolution: float) -> None:
+    """A quarter of a 27-inch screen with 3840 x 2160 pixels has 6.43 pixels per mm."""
+    for small in (False, True):
+        screen = ScreenResolution(resolution, small)
+        at = make_automatic_layout(*size, True, screen)
+        assert all(rect.h > 0 and rect.w > 0 for rect in at)
+        assert at.path.h >= size[1] // 5
+        for moves in (False, True):
+            low = make_compact_layout(*size, True, screen, has_axis_motion=moves)
+            assert all(rect.h > 0 for rect in low)
+            assert low.work_area.h >= size[1] // 5
+
+
+def test_all_rows_shrink_by_the_same_ratio() -> None:
+    """The rows of 84, 282, 59 and 111 pixels have a text height of 6.43 pixels per mm."""
+    at = make_automatic_layout(*MIN_WINDOW_PX, True, ScreenResolution(6.43))
+    limited = limit_resolution(*MIN_WINDOW_PX, ScreenResolution(6.43)).pixels_per_mm
+    assert 4.6 < limited < 4.8  # At 4.71 the work area is 22.5 % of the height.
+    assert at.title.h == pytest.approx(84 * limited / 6.43, abs=1)
+    assert at.prompt.h == pytest.approx(111 * limited / 6.43, abs=1)
+
+
+@pytest.mark.parametrize("resolution", [3.0, 3.78, 4.71, 6.43, 9.0, 13.8])
+@pytest.mark.parametrize("size", WINDOWS)
+def test_estop_and_palm_buttons_are_as_large_as_a_fingertip(
+    hands: Hands, size: tuple[int, int], resolution: float
+) -> None:
+    dock = hands.frame.station_dock
+    assert dock is not None
+    hands.window.resize(*size)
+    hands.window.theme.screen = ScreenResolution(resolution)
+    hands.frame.arrange_parts()
+    dock.grab()
+    estop, *_, left, right = dock.controls
+    for button in (estop, left, right):
+        assert min(button.box.width(), button.box.height()) >= FINGERTIP_PX
+        assert button.box.bottom() <= dock.height()
+
+
+def test_dock_with_high_labels_keeps_estop_as_large_as_a_fingertip(hands: Hands) -> None:
+    """Four labels of 52 pixels and four controls of 43 pixels leave 10 of 390 pixels."""
+    theme = ScreenTheme(DARK_PALETTE, find_unit_px(*MIN_WINDOW_PX))
+    theme.screen = ScreenResolution(13.0)
+    dock = StationDock(theme, hands.desk)
+    dock.resize(154, 390)
+    dock.grab()
+    assert min(dock.controls[0].box.width(), dock.controls[0].box.height()) >= FINGERTIP_PX
+    dock.deleteLater()
 
 
 def test_path_view_is_larger_without_dock() -> None:

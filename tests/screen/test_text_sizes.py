@@ -10,8 +10,14 @@ import pytest
 from app.screen import page_table
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.entry_panel import LetterPad
-from app.screen.screen_theme import ScreenTheme, find_narrow_size
-from app.screen.text_sizes import CAPITAL_HEIGHT_RATIO, ScreenResolution, TextRole, make_screen_resolution
+from app.screen.screen_theme import ScreenTheme
+from app.screen.text_sizes import (
+    CAPITAL_HEIGHT_RATIO,
+    ScreenResolution,
+    TextRole,
+    find_narrow_size,
+    make_screen_resolution,
+)
 from app.screen.window_layout import (
     find_position_row_count,
     make_automatic_layout,
@@ -90,6 +96,17 @@ def test_implausible_panel_size_is_treated_as_96_dpi_monitor(reported: tuple[int
     size = make_screen_resolution(1024, 600, *reported)
     assert size.pixels_per_mm == pytest.approx(96 / 25.4)
     assert not size.is_small_screen
+
+
+@pytest.mark.parametrize("reported", [(160, 90), (90, 160), (160, 100), (16, 9), (16, 10)])
+def test_aspect_ratio_reported_as_size_is_treated_as_96_dpi_monitor(reported: tuple[int, int]) -> None:
+    wide, high = reported
+    size = make_screen_resolution(12 * wide, 12 * high, *reported)  # 1920 x 1080 pixels for 160 x 90
+    assert size.pixels_per_mm == pytest.approx(96 / 25.4)
+
+
+def test_panel_of_nearly_the_size_of_an_aspect_ratio_is_accepted() -> None:
+    assert make_screen_resolution(1920, 1080, 161, 91).pixels_per_mm == pytest.approx(11.9, abs=0.1)
 
 
 def test_a_text_grows_to_the_height_of_its_role_or_of_its_row() -> None:

@@ -152,7 +152,7 @@ class HelpPanel(RowPanel):
     @property
     def _text_size(self) -> float:
         """Return the em height in units. On a small screen, the reading distance determines it."""
-        needed = self.theme.screen.find_min_em_px(TextRole.TABLE) / self.theme.unit_px
+        needed = self.theme.text_resolution.find_min_em_px(TextRole.TABLE) / self.theme.unit_px
         return max(TEXT_SIZE, min(needed, MAX_TEXT_SIZE))
 
     @property

@@ -25,10 +25,9 @@ from app.screen.screen_theme import (
     ScreenTheme,
     ThemedPainter,
     draw_text,
-    find_narrow_size,
     measure_text,
 )
-from app.screen.text_sizes import TextRole
+from app.screen.text_sizes import TextRole, find_narrow_size
 from core.message import Message, join_messages
 
 LATHE_ROW_COUNT = 3
@@ -391,7 +390,7 @@ class ReadoutRow(Panel):
         look, rows = self.theme, self.position_row_count
         feed = min(
             0.45 * room.height(),
-            max(2.9 * look.unit_px, 0.84 * look.screen.find_min_em_px(TextRole.FEED)),
+            max(2.9 * look.unit_px, 0.84 * look.text_resolution.find_min_em_px(TextRole.FEED)),
         )
         high, columns = (room.height() - feed) / rows, math.ceil(len(position.axes) / rows)
         for row in range(rows):

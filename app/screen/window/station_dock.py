@@ -20,6 +20,7 @@ from app.screen.screen_theme import ALIGN_CENTER, ALIGN_RIGHT, ScreenTheme, Them
 from app.screen.window_layout import FINGERTIP_PX
 from core.executor.snapshot import Snapshot
 
+_ROUND_BUTTON_MARGIN = 0.8  # Units: height of a row above and below its round button together.
 DESIGN_HEIGHT = 71.6  # Height in units for which the rows are designed. A taller dock scales them.
 
 
@@ -81,12 +82,15 @@ class StationDock(TouchPanel):
         """Return the rectangles of the controls and of their labels from top to bottom.
 
         The labels are as high as their texts require. The other controls are as high as a fingertip at
-        least, and the E-stop and the palm buttons share the remaining height.
+        least, and the E-stop and the palm buttons share the remaining height. If this is less than a
+        fingertip, the labels are less high.
         """
         u, scale = self.theme.unit_px, self.height() / DESIGN_HEIGHT
         label, control = self.theme.find_line_height(2.4 * scale / u), max(6.5 * scale, float(FINGERTIP_PX))
         top, gap = self.theme.title_height * u, 0.35 * scale
-        large = 0.5 * (self.height() - top - 4 * label - 4 * control - 6 * gap)
+        room = self.height() - top - 4 * control - 6 * gap
+        large = max(0.5 * (room - 4 * label), FINGERTIP_PX + _ROUND_BUTTON_MARGIN * u)
+        label = 0.25 * max(0.0, room - 2 * large)
         pair = (label, control + gap)
         rows, y = list[QRectF](), top
         for high in (large + gap, *pair, *pair, *pair, control + gap, label, large):
@@ -129,7 +133,7 @@ class StationDock(TouchPanel):
         look, u = self.theme, self.theme.unit_px
         box, pressed = self._find_rows().estop, self._desk.station_controls.is_estop_pressed
         painter.fill_rect(box, "estop_plate")
-        side = min(box.width() - 8.0 * u, box.height() - 0.6 * u)
+        side = min(box.width() - 8.0 * u, box.height() - _ROUND_BUTTON_MARGIN * u)
         head = QRectF(box.x() + 0.8 * u, box.center().y() - side / 2, side, side)
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(look.get_color("estop_rim"))
@@ -281,7 +285,7 @@ class StationDock(TouchPanel):
 
     def _palm(self, painter: ThemedPainter, box: QRectF, key: str, down: bool) -> None:
         look, u = self.theme, self.theme.unit_px
-        size = min(box.width(), box.height()) - 0.8 * u
+        size = min(box.width(), box.height()) - _ROUND_BUTTON_MARGIN * u
         head = QRectF(box.center().x() - size / 2, box.center().y() - size / 2, size, size)
         ink = "frame" if self.is_start_disabled else "run"
         painter.setPen(look.make_pen(ink, 0.3))

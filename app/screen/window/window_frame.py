@@ -47,7 +47,6 @@ from app.screen.window_layout import (
     AutomaticLayout,
     Rect,
     find_position_row_count,
-    find_unit_px,
     find_work_area,
     make_automatic_layout,
     make_compact_layout,
@@ -306,7 +305,7 @@ class WindowFrame(QWidget):
     def _place_parts(self, *, large: bool) -> Rect:
         """Arrange all parts for the current size, and return the rectangle of the page."""
         width, height = self.width(), self.height()
-        self.theme.set_unit_px(find_unit_px(width, height))
+        self.theme.set_window_size(width, height)
         with_dock = self.station_dock is not None and self.desk.settings_store.current_settings.dock
         at = make_automatic_layout(width, height, with_dock, self.theme.screen)
         low = make_compact_layout(

@@ -18,7 +18,7 @@ from app.extras.lessons.lessons_function import LessonsFunction
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme, measure_text, set_language
 from app.screen.window.window_bars import NOTICE_KEY
-from app.screen.window_layout import MIN_WINDOW_PX, find_unit_px, make_automatic_layout
+from app.screen.window_layout import MIN_WINDOW_PX, make_automatic_layout
 from app.special.special_functions import SpecialFunctionsModel
 from core.executor.snapshot import MachineState
 from core.extras.lessons.lesson_file import list_lesson_files, read_lesson
@@ -116,7 +116,7 @@ def test_lesson_is_completed_with_keys_alone(day: Day) -> None:
 @pytest.mark.parametrize("language", ["en", "es"])
 def test_every_instruction_fits_on_the_card_of_the_smallest_window(qapp: object, language: str) -> None:
     theme = ScreenTheme(DARK_PALETTE)
-    theme.set_unit_px(find_unit_px(*MIN_WINDOW_PX))
+    theme.set_window_size(*MIN_WINDOW_PX)
     strip_px = make_automatic_layout(*MIN_WINDOW_PX, has_dock=True).strip.w
     width_px = strip_px - (NOTICE_KEY + 2.4) * theme.unit_px  # next to the touch target and the margins
     set_language(language)
