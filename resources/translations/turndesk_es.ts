@@ -15000,6 +15000,11 @@
     </message>
     <message>
       <location filename="app/screen/window/alarm_panels.py" />
+      <source>?: MORE</source>
+      <translation>?: MÁS</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/alarm_panels.py" />
       <source>ALARMS AND STOPS  ·  ESC: CLOSE  ·  CTRL+ARROWS: SELECT  ·  SHIFT+F10: SHOW SCOPE RECORD</source>
       <translation>ALARMAS Y PAROS  ·  ESC: CERRAR  ·  CTRL+FLECHAS: SELECCIONAR  ·  MAYÚS+F10: REGISTRO DEL OSCILOSCOPIO</translation>
     </message>
@@ -15115,8 +15120,23 @@
     </message>
     <message>
       <location filename="app/screen/window/part_placement.py" />
+      <source>CYCLE</source>
+      <translation>CICLO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/part_placement.py" />
       <source>HELP</source>
       <translation>AYUDA</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/part_placement.py" />
+      <source>LAST</source>
+      <translation>ÚLTIMO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/part_placement.py" />
+      <source>LEFT</source>
+      <translation>FALTA</translation>
     </message>
     <message>
       <location filename="app/screen/window/part_placement.py" />

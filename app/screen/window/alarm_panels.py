@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from functools import partial
 
@@ -14,14 +16,16 @@ from app.desk.status.machine_status import StatusTone
 from app.desk.status.prompt_line import describe_cause
 from app.desk.translation import tr
 from app.screen.panel import Panel, RedrawingAttribute
-from app.screen.screen_theme import ScreenTheme, ThemedPainter, draw_state_symbol
+from app.screen.screen_theme import MIN_TEXT_SIZE, ScreenTheme, ThemedPainter, draw_state_symbol
 from app.screen.table_panel import LIST_KEYS, RowPanel
 from core.alarms import CATALOG, AlarmReaction
 from core.executor.snapshot import Alarm
 from core.message import Message, join_messages
 
-WRAP_ALIGNMENT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
-WORD_WRAP = int(Qt.TextFlag.TextWordWrap.value)
+WRAP_FLAGS = int((Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop).value) | int(
+    Qt.TextFlag.TextWordWrap.value
+)
+_SIDE_BY_SIDE_RATIO = 2.0  # Ratio of width to height above which causes and remedy are side by side.
 _RECORDING_KEY_WIDTH = 12.0  # Units: width of the key that opens a recording.
 # Units: height of an entry, width of the time column, height of the key row.
 _HIGH, _WHEN, _FOOT = 7.0, 17.0, 6.8
@@ -44,6 +48,11 @@ class AlarmNotice(Panel):
         """
         self.message, self._go_on, self._alarms = message, continue_hint, alarms
         self.setVisible(bool(message or alarms))
+
+    @property
+    def has_alarm(self) -> bool:
+        """Return whether the notice shows an alarm."""
+        return bool(self._alarms)
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the active alarms, or the message of M00 or M01 if there are no alarms."""
@@ -84,14 +93,19 @@ class AlarmNotice(Panel):
         room = self._head(painter, StatusTone.ALARM, join_messages("  ·  ", parts))
         if more:
             room = self._draw_more(painter, room, more)
-        high = room.height()
         causes = "\n".join(tr(each) for each in dict.fromkeys((alarm.cause, *alarm.causes)))
-        for label, text, y, part in (
-            ("CAUSES, MOST LIKELY FIRST", causes, 0.0, 0.62),
-            ("WHAT TO DO", tr(alarm.remedy), 0.64, 0.36),
-        ):
-            box = QRectF(room.x(), room.y() + y * high, room.width(), part * high)
-            self._labelled(painter, box, label, text)
+        left, right = self._divide(room)
+        self._labelled(painter, left, "CAUSES, MOST LIKELY FIRST", causes)
+        self._labelled(painter, right, "WHAT TO DO", tr(alarm.remedy))
+
+    def _divide(self, room: QRectF) -> tuple[QRectF, QRectF]:
+        """Return the rectangles of causes and remedy, side by side in a low area."""
+        wide, high, gap = room.width(), room.height(), self.theme.unit_px
+        if wide < _SIDE_BY_SIDE_RATIO * high:
+            upper = room.adjusted(0, 0, 0, -0.38 * high - gap)
+            return upper, room.adjusted(0, upper.height() + gap, 0, 0)
+        left = room.adjusted(0, 0, -0.5 * wide - gap, 0)
+        return left, room.adjusted(left.width() + 2 * gap, 0, 0, 0)
 
     def _draw_more(self, painter: ThemedPainter, area: QRectF, more: tuple[Alarm, ...]) -> QRectF:
         """Draw the other alarms in one line at the bottom, and return the rectangle that remains."""
@@ -104,21 +118,39 @@ class AlarmNotice(Panel):
         return area.adjusted(0, 0, 0, -3.0 * u)
 
     def _labelled(self, painter: ThemedPainter, room: QRectF, label: str, text: str) -> None:
-        u = self.theme.unit_px
-        painter.draw_text_line(QRectF(room.x(), room.y(), room.width(), 2.0 * u), label, 1.6, "soft")
-        self._draw_wrapped(painter, room.adjusted(0, 2.1 * u, 0, 0), text, 2.3)
+        high = self.theme.find_line_height(2.0)
+        painter.draw_text_line(QRectF(room.x(), room.y(), room.width(), high), label, 1.6, "soft")
+        below = room.adjusted(0, high + 0.3 * self.theme.unit_px, 0, 0)
+        self._draw_wrapped(painter, below, text, self.theme.find_table_size(2.3), f"…  {tr('?: MORE')}")
 
-    def _draw_wrapped(self, painter: ThemedPainter, area: QRectF, text: str, size: float) -> None:
-        """Draw a wrapped text, at most ``size`` theme units high, or smaller so that it fits."""
+    def _draw_wrapped(
+        self, painter: ThemedPainter, area: QRectF, text: str, size: float, ending: str = "…"
+    ) -> None:
+        """Draw a wrapped text, at most ``size`` theme units high, or smaller so that it fits.
+
+        A text that does not fit with the smallest letters ends with ``ending``.
+        """
         painter.setPen(self.theme.get_color("text"))
-        while True:
+        painter.setFont(self.theme.make_font(size, is_bold=True))
+        while not _fits(painter, area, text) and size > MIN_TEXT_SIZE:
+            size = max(MIN_TEXT_SIZE, 0.9 * size)
             painter.setFont(self.theme.make_font(size, is_bold=True))
-            flags = int(WRAP_ALIGNMENT.value) | WORD_WRAP
-            needed = painter.boundingRect(area, flags, text)
-            if size <= 1.4 or (needed.height() <= area.height() and needed.width() <= area.width()):
-                break
-            size *= 0.9
-        painter.draw_wrapped_text(area, flags, text)
+        painter.draw_wrapped_text(area, WRAP_FLAGS, _shorten(painter, area, text, ending))
+
+
+def _fits(painter: ThemedPainter, area: QRectF, text: str) -> bool:
+    """Return whether a wrapped text fits in an area with the font of the painter."""
+    needed = painter.boundingRect(area, WRAP_FLAGS, text)
+    return needed.height() <= area.height() and needed.width() <= area.width()
+
+
+def _shorten(painter: ThemedPainter, area: QRectF, text: str, ending: str) -> str:
+    """Return the text, or its longest start that fits in the area together with the ending."""
+    if _fits(painter, area, text):
+        return text
+    ends = [match.start() for match in re.finditer(r"\s+", text)]
+    count = bisect_left(ends, True, key=lambda end: not _fits(painter, area, f"{text[:end]} {ending}"))
+    return f"{text[: ends[count - 1]]} {ending}" if count else ending
 
 
 class AlarmList(RowPanel):
@@ -222,7 +254,8 @@ class AlarmList(RowPanel):
             painter.draw_text_line(room, "No alarms or stops yet.", 2.0, "soft", bold=False)
             return
         foot = QRectF(room.x(), room.bottom() - _FOOT * u, room.width(), _FOOT * u)
-        room.setBottom(foot.top())
+        if len(self.logged_stops) * _HIGH * u > room.height():
+            room.setBottom(foot.top())
         fits = self.count_fitting_rows(room, _HIGH * u, len(self.logged_stops))
         self.draw_scroll_keys(painter, room, fits, len(self.logged_stops), self.marked)
         for number, row in self.find_row_boxes(room, _HIGH * u):
@@ -262,14 +295,23 @@ class AlarmList(RowPanel):
             painter.draw_text_line(QRectF(left, row.y() + y * u, wide, 2.1 * u), text, 1.8, ink, bold=False)
 
     def _draw_pages(self, painter: ThemedPainter, foot: QRectF) -> None:
-        """Draw touch keys that scroll to newer and to older entries.
+        """Draw touch keys that scroll to newer and to older entries, with the number of these entries.
 
         Each key is drawn only if there are entries in its direction.
         """
-        u = self.theme.unit_px
-        for number, (label, by) in enumerate((("NEWER", -self.rows), ("OLDER", self.rows))):
-            possible = self.first_row > 0 if by < 0 else self.first_row + self.rows < len(self.logged_stops)
-            if not possible:
+        u, older = self.theme.unit_px, len(self.logged_stops) - self.first_row - self.rows
+        for number, (label, by, count) in enumerate(
+            (("NEWER", -self.rows, self.first_row), ("OLDER", self.rows, older))
+        ):
+            if count <= 0:
                 continue
             box = QRectF(foot.right() - (2 - number) * 17 * u, foot.y(), 16 * u, foot.height())
-            self.key(painter, box, label, 2.0, partial(self.scroll_by, by))
+            self.key(
+                painter,
+                box,
+                f"{tr(label)}: {count}",
+                2.0,
+                partial(self.scroll_by, by),
+                is_raw=True,
+                margin=1.0,
+            )

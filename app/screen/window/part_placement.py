@@ -2,29 +2,57 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from PySide6.QtWidgets import QWidget
 
 from app.desk.desk import Desk
+from app.desk.programs.program_loading import LoadedProgram
+from app.desk.status import formats
 from app.desk.status.machine_status import MachineStatus
 from app.desk.status.readouts import Lamp, make_drives_lamp
+from app.desk.status.state_prompt import find_remaining_time_s
+from app.screen import page_table
 from app.screen.page_base import Page
 from app.screen.window.key_table import HELP_KEY
 from app.screen.window_layout import LOW_WINDOW_HEIGHT_PX, Rect
 from core.executor.snapshot import Snapshot
 
-GAP_PX = 4  # Pixels below the notice rows.
+GAP_PX = 4  # Pixels below the notice rows, and next to the help.
 
 
-def find_needed_readouts(page: Page, window_height_px: int, has_notices: bool) -> tuple[bool, bool]:
-    """Return whether a page has a large position above it, and a run line below it.
+class LayoutNeeds(NamedTuple):
+    """What the layout of a page depends on.
+
+    ``has_automatic_layout`` is True if the large readouts of the Automatic page are shown. Otherwise the
+    readouts are in one row, with a large position or with a run line.
+    """
+
+    has_automatic_layout: bool
+    has_large_position: bool
+    has_run_line: bool
+    has_alarm: bool
+
+
+def find_layout_needs(
+    page: Page, window_height_px: int, *, has_notices: bool, has_alarm: bool
+) -> LayoutNeeds:
+    """Return the parts that are shown around a page.
 
     Pages on which axes can move have a large position. In a low window, they have no run line, and notices
-    and touch keyboards use the height of the large position.
+    and touch keyboards use the height of the large position. Alarms use the height of the large readouts of
+    the Automatic page.
     """
-    moves, needs_height = page.CAN_START_CYCLES, page.needs_height()
-    if window_height_px >= LOW_WINDOW_HEIGHT_PX:
-        return moves, True
-    return moves and not needs_height and not has_notices, not (moves or needs_height)
+    moves, needs_height, low = (
+        page.CAN_START_CYCLES,
+        page.needs_height(),
+        window_height_px < LOW_WINDOW_HEIGHT_PX,
+    )
+    has_automatic_layout = page.NAME == page_table.AUTOMATIC and not (low and has_alarm)
+    if not low:
+        return LayoutNeeds(has_automatic_layout, moves, True, has_alarm)
+    has_large_position = moves and not needs_height and not has_notices
+    return LayoutNeeds(has_automatic_layout, has_large_position, not (moves or needs_height), has_alarm)
 
 
 def make_lamp_row(desk: Desk, snapshot: Snapshot, status: MachineStatus) -> tuple[Lamp, ...]:
@@ -44,10 +72,27 @@ def make_lamp_row(desk: Desk, snapshot: Snapshot, status: MachineStatus) -> tupl
     )
 
 
+def make_times(
+    desk: Desk, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram
+) -> tuple[tuple[str, str], ...]:
+    """Return the part count and times for the times panel and the run status row."""
+    return (
+        ("PARTS", desk.program_runs.part_counter.part_count_text),
+        ("CYCLE", status.cycle_time_text),
+        ("LEFT", formats.format_duration(find_remaining_time_s(snapshot, loaded))),
+        ("LAST", status.last_cycle_time_text),
+    )
+
+
 def find_area_below(area: Rect, rows: Rect) -> Rect:
     """Return the part of a rectangle below the notice rows."""
     taken = rows.h + GAP_PX if rows.h else 0
     return Rect(area.x, area.y + taken, area.w, area.h - taken)
+
+
+def find_area_left_of(area: Rect, other: Rect) -> Rect:
+    """Return the part of a rectangle to the left of another rectangle."""
+    return area._replace(w=max(0, other.x - GAP_PX - area.x))
 
 
 def place_widget(widget: QWidget, rect: Rect) -> None:

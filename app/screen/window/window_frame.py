@@ -27,9 +27,12 @@ from app.screen.window.help_panel import HelpPanel
 from app.screen.window.key_table import AUTOMATIC_KEYS, HELP_KEY
 from app.screen.window.notices import make_notices
 from app.screen.window.part_placement import (
+    LayoutNeeds,
     find_area_below,
-    find_needed_readouts,
+    find_area_left_of,
+    find_layout_needs,
     make_lamp_row,
+    make_times,
     place_widget,
 )
 from app.screen.window.readout_panels import (
@@ -46,6 +49,7 @@ from app.screen.window.window_bars import FunctionKeyBar, LampStrip, NoticeRows,
 from app.screen.window_layout import (
     AutomaticLayout,
     Rect,
+    divide_work_area,
     find_position_row_count,
     find_work_area,
     make_automatic_layout,
@@ -94,10 +98,10 @@ class WindowFrame(QWidget):
         self.alarm_notice = AlarmNotice(theme, self)
         self.alarm_list = AlarmList(theme, self.open_recording, self)
         self.help_panel = HelpPanel(theme, self)
-        self._help_area = Rect(0, 0, 0, 0)
+        self._page_area = Rect(0, 0, 0, 0)
         self._docked = True
-        self._readouts = (False, True)  # Large position and run line of the last layout.
-        host = PageHost(theme, desk, press, self.open_page, self.alarm_list.close_list)
+        self._placed_needs: LayoutNeeds | None = None
+        host = PageHost(theme, desk, press, self.open_page, self.alarm_list.hide)
         self._host = host
         self._before_scope = page_table.AUTOMATIC
         self._moved_at: float | None = None  # Time of the last manual move.
@@ -249,9 +253,20 @@ class WindowFrame(QWidget):
         if blocks:
             page.stop_held_key_actions()
             self.help_panel.open_help(blocks)
-            self.help_panel.place_beside(self._help_area, self.alarm_notice)
+            self._place_notice_and_help()
         else:
             self.desk.say(tr("THE GUIDE IS NOT INSTALLED"))
+
+    def _place_notice_and_help(self) -> None:
+        """Place the notice and the help over the page, next to each other if both are open.
+
+        The notice of an alarm covers the page, and the notice of a program stop covers the path view.
+        """
+        area, notice, is_help_open = self._page_area, self.alarm_notice, not self.help_panel.isHidden()
+        path = divide_work_area(area, self.theme.unit_px)[2]
+        notice.setGeometry(*(area if notice.has_alarm and not is_help_open else path))
+        if is_help_open:
+            self.help_panel.setGeometry(*area if notice.isHidden() else find_area_left_of(area, path))
 
     def handle_escape(self) -> bool:
         """Close the alarm log or an open part of the page, and return whether one was open."""
@@ -300,11 +315,12 @@ class WindowFrame(QWidget):
 
     def arrange_parts(self) -> None:
         """Arrange all parts for the current size of the window and of the screen."""
-        place_widget(self.current_page, self._place_parts(large=self.current_page is self.automatic_page))
+        place_widget(self.current_page, self._place_parts())
 
-    def _place_parts(self, *, large: bool) -> Rect:
+    def _place_parts(self) -> Rect:
         """Arrange all parts for the current size, and return the rectangle of the page."""
-        width, height = self.width(), self.height()
+        width, height, needs = self.width(), self.height(), self._layout_needs
+        large = needs.has_automatic_layout
         self.theme.set_window_size(width, height)
         with_dock = self.station_dock is not None and self.desk.settings_store.current_settings.dock
         at = make_automatic_layout(width, height, with_dock, self.theme.screen)
@@ -313,16 +329,17 @@ class WindowFrame(QWidget):
             height,
             with_dock,
             self.theme.screen,
-            has_axis_motion=self._needed_readouts[0],
-            has_run_line=self._needed_readouts[1],
+            has_axis_motion=needs.has_large_position,
+            has_run_line=needs.has_run_line,
         )
-        self._readouts = self._needed_readouts
-        self.readout_line.has_axis_motion = self._readouts[0]
+        self._placed_needs = needs
+        self.readout_line.has_axis_motion = needs.has_large_position
         self.readout_line.position_row_count = find_position_row_count(width, height)
         self._docked = with_dock
         work = find_work_area(at) if large else low.work_area
-        rows = Rect(work.x, work.y, work.w, min(self.notice_rows.apply_needed_height(), work.h // 2))
-        work, over = find_area_below(work, rows), find_area_below(at.path if large else low.work_area, rows)
+        most = work.h // (4 if needs.has_alarm else 2)
+        rows = Rect(work.x, work.y, work.w, min(self.notice_rows.apply_needed_height(), most))
+        work = find_area_below(work, rows)
         place_widget(self.notice_rows, rows)
         self.notice_rows.setVisible(bool(rows.h))
         self._stand_readouts(at, large)
@@ -337,16 +354,20 @@ class WindowFrame(QWidget):
         place_widget(self.strip, at.strip if large else low.strip)
         place_widget(self.prompt_line, at.prompt)
         place_widget(self.key_bar, at.keys)
-        place_widget(self.alarm_notice, over)
-        place_widget(self.alarm_list, over)
-        self._help_area = work
-        self.help_panel.place_beside(self._help_area, self.alarm_notice)
+        place_widget(self.alarm_list, work)
+        self._page_area = work
+        self._place_notice_and_help()
         return work
 
     @property
-    def _needed_readouts(self) -> tuple[bool, bool]:
-        """Return whether a large position and a run line are shown."""
-        return find_needed_readouts(self.current_page, self.height(), bool(self.notice_rows.notice_rows))
+    def _layout_needs(self) -> LayoutNeeds:
+        """Return the parts that the layout of the current page needs now."""
+        return find_layout_needs(
+            self.current_page,
+            self.height(),
+            has_notices=bool(self.notice_rows.notice_rows),
+            has_alarm=bool(self.desk.read_snapshot().alarms),
+        )
 
     @property
     def _has_dock_changed(self) -> bool:
@@ -403,7 +424,7 @@ class WindowFrame(QWidget):
             self.desk, snapshot, loaded, here=self.current_page is self.automatic_page
         )
         by_hand = self._is_manual_motion(snapshot)
-        is_new_height = self.notice_rows.needs_new_height or self._readouts != self._needed_readouts
+        is_new_height = self.notice_rows.needs_new_height or self._placed_needs != self._layout_needs
         if self._has_dock_changed or (is_new_height and not by_hand):
             self.arrange_parts()
         self._show_bars(snapshot, view, loaded)
@@ -413,15 +434,17 @@ class WindowFrame(QWidget):
             lamp.switch_key for lamp in lamps if self._is_dead(lamp.switch_key)
         )
         if self.current_page is self.automatic_page:
-            self._show_readouts(snapshot, view, loaded)
             go_on = tr(Message("{start} TO CONTINUE", start=tr(self.desk.start_instruction)))
             self.alarm_notice.show_notice(view.message, go_on, view.alarms)
         else:
-            self.readout_line.show_status(view)
-            self.run_line.show_status(view, make_times(self.desk, snapshot, view, loaded))
             # The prompt line shows the alarm, so that no notice covers an input field.
             self.alarm_notice.show_notice("", "")
-        self.help_panel.place_beside(self._help_area, self.alarm_notice)
+        if self._layout_needs.has_automatic_layout:
+            self._show_readouts(snapshot, view, loaded)
+        else:
+            self.readout_line.show_status(view)
+            self.run_line.show_status(view, make_times(self.desk, snapshot, view, loaded))
+        self._place_notice_and_help()
         self.alarm_list.show_entries(self.desk.alarm_log.entries)
         if self.station_dock is not None:
             self.station_dock.show_state(snapshot)
