@@ -38,8 +38,10 @@ MESSAGE_STYLES = {
     MessageKind.SUCCESS: ("run", "✓"),
     MessageKind.QUESTION: ("wait", "?"),
 }
-PROMPT_WIDTH_FRACTION = 0.47  # Fraction of the prompt line's height for message and question.
-MIN_TWO_LINE_HEIGHT = 5.0  # Units: smallest height of the state for two lines.
+# Fractions of the prompt line's height for a message or question of one line and of two lines.
+PROMPT_HEIGHT_FRACTION, TWO_LINE_HEIGHT_FRACTION = 0.47, 0.62
+# Units: smallest height of the state, and of a message or question, for two lines.
+MIN_TWO_LINE_HEIGHT, MIN_TWO_LINE_NOTICE_HEIGHT = 5.0, 3.2
 SYMBOL_WIDTH = 5.0  # Units: width of the sign.
 _STATE_LEFT, _STATE_WIDTH = 30.0, 92.0  # Units: box of the machine state in the title line.
 _CLOCK_WIDTH = 15.0  # Units.
@@ -112,9 +114,12 @@ class TitleLine(Panel):
 class PromptLine(Panel):
     """Prompt line with a message and a question in one row, and the machine state below them.
 
-    If there are both a message and a question, each uses half of the row. No text covers another. The
-    question has two touch targets (yes and no), which are always at the right end.
+    If there are both a message and a question, each uses half of the row. No text covers another, but a
+    message or question of two lines replaces the state unless ``must_show_state`` is True. The question has
+    two touch targets (yes and no), which are always at the right end.
     """
+
+    must_show_state = RedrawingAttribute(True)
 
     state_text, reason_text, question_text, message_text, confirm_key = (
         RedrawingAttribute("") for _ in range(5)
@@ -168,19 +173,27 @@ class PromptLine(Panel):
             area.setRight(
                 self._draw_answer_keys(painter, area)
             )  # The targets use the full height, for touch.
-        upper = QRectF(area.x(), area.y(), area.width(), PROMPT_WIDTH_FRACTION * area.height())
-        noticed = bool(self.message_text or self.question_text)
-        self._state(painter, area.adjusted(0, upper.height() if noticed else 0, 0, 0))
+        upper = self._find_notice_area(area)
+        if upper.bottom() < area.bottom():
+            self._state(painter, area.adjusted(0, upper.height(), 0, 0))
         both = bool(self.message_text and self.question_text)
         half = upper.width() / 2
-        if noticed and not both and self._needs_two_lines(self.message_text or self.question_text, upper):
-            upper = area
         if self.message_text:
             place = upper.adjusted(0, 0, -half - 2 if both else 0, 0)
             self._notice(painter, place, self.message_text, self.message_kind or MessageKind.REFUSAL)
         if self.question_text:
             place = upper.adjusted(half + 2 if both else 0, 0, 0, 0)
             self._notice(painter, place, self.question_text, MessageKind.QUESTION)
+
+    def _find_notice_area(self, area: QRectF) -> QRectF:
+        """Return the part of the prompt line that the message and the question use."""
+        shown = [text for text in (self.message_text, self.question_text) if text]
+        upper = area.adjusted(0, 0, 0, (PROMPT_HEIGHT_FRACTION - 1.0) * area.height())
+        if not shown:
+            upper.setHeight(0.0)
+        elif len(shown) == 1 and self._needs_two_lines(shown[0], upper):
+            upper.setHeight((TWO_LINE_HEIGHT_FRACTION if self.must_show_state else 1.0) * area.height())
+        return upper
 
     def _state(self, painter: ThemedPainter, area: QRectF) -> None:
         u = self.theme.unit_px
@@ -189,22 +202,25 @@ class PromptLine(Panel):
             low = room.adjusted(0, 0.48 * room.height(), 0, -0.05 * room.height())
             painter.draw_text_line(low, self.reason_text, 1.9, "text", bold=False, role=TextRole.PROMPT)
             room.setBottom(low.top())
-        lines = self._lines(tr(self.state_text), room)
+        lines = self._lines(tr(self.state_text), room, MIN_TWO_LINE_HEIGHT)
         high = room.height() / len(lines)
         for number, line in enumerate(lines):
             row = QRectF(room.x(), room.y() + number * high, room.width(), high)
             size = 2.1 if self.reason_text else 2.3
             painter.draw_text_line(row, line, size, "text", raw=True, role=TextRole.PROMPT)
 
-    def _lines(self, text: str, room: QRectF) -> list[str]:
-        """Return the text as one line, or as two lines if they can be drawn larger."""
+    def _lines(self, text: str, room: QRectF, min_height: float) -> list[str]:
+        """Return the text as one line, or as two lines if they can be drawn larger.
+
+        ``min_height`` is the smallest height for two lines in units.
+        """
         look, words = self.theme, text.split(" ")
         one = look.find_em_height(2.3, TextRole.PROMPT, room.height())
         two = look.find_em_height(2.3, TextRole.PROMPT, room.height() / 2)
         wide = MIN_ONE_LINE_STRETCH * measure_text(text, look.make_font(one, is_bold=True))
         if (
             len(words) < 2
-            or room.height() < MIN_TWO_LINE_HEIGHT * look.unit_px
+            or room.height() < min_height * look.unit_px
             or wide <= room.width()
             or two <= one * room.width() / wide
         ):
@@ -232,7 +248,7 @@ class PromptLine(Panel):
             raw=True,
         )
         room = area.adjusted(SYMBOL_WIDTH * u, 0, -1.4 * u, 0)
-        lines = self._lines(tr(text), room)
+        lines = self._lines(tr(text), room, MIN_TWO_LINE_NOTICE_HEIGHT)
         room.setHeight(room.height() / len(lines))
         for number, line in enumerate(lines):
             row = room.translated(0, number * room.height())

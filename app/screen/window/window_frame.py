@@ -77,9 +77,7 @@ class WindowFrame(QWidget):
         super().__init__(parent)
         self.theme, self.desk = theme, desk
         self.is_at_rest = False  # Nothing moves on the machine.
-        self._shown: tuple[Snapshot, LoadedProgram] | None = (
-            None  # Snapshot and program that were shown last.
-        )
+        self._shown: tuple[Snapshot, LoadedProgram] | None = None  # What was shown last.
         self._shown_at, self._paints = 0.0, 0
         self.title_line = TitleLine(theme, self)
         self.readout_line = ReadoutRow(theme, self)
@@ -420,6 +418,7 @@ class WindowFrame(QWidget):
         self._shown, self._paints = (snapshot, loaded), Panel.paint_count
         self._shown_at = self.desk.clock.read_seconds()
         self.is_at_rest = snapshot.state in _REST_STATES and not snapshot.wheel
+        self.prompt_line.must_show_state = not self.is_at_rest or snapshot.state is MachineState.FAULT
         self.notice_rows.notice_rows = make_notices(
             self.desk, snapshot, loaded, here=self.current_page is self.automatic_page
         )
