@@ -15185,21 +15185,6 @@
     </message>
     <message>
       <location filename="app/screen/window/run_row.py" />
-      <source>CYCLE</source>
-      <translation>CICLO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/run_row.py" />
-      <source>LAST</source>
-      <translation>ÚLTIMO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/run_row.py" />
-      <source>LEFT</source>
-      <translation>FALTA</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/run_row.py" />
       <source>STOP {number}: {first}</source>
       <translation>PARO {number}: {first}</translation>
     </message>

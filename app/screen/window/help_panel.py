@@ -15,10 +15,11 @@ from app.screen.panel import RedrawingAttribute
 from app.screen.screen_theme import ScreenTheme, ThemedPainter, measure_text
 from app.screen.table_panel import RowPanel
 from app.screen.text_sizes import TextRole
+from app.screen.window.alarm_panels import AlarmNotice
 from app.screen.window.documentation_browser import DOCUMENTS_FOLDER_NAME, DocumentationBrowser
 from app.screen.window.key_table import HELP_KEY, MODIFIER_KEYS
-from app.screen.window.part_placement import GAP_PX
-from app.screen.window_layout import Rect
+from app.screen.window.part_placement import find_area_left_of
+from app.screen.window_layout import Rect, divide_work_area
 from core.message import Message
 
 TEXT_SIZE, MAX_TEXT_SIZE = 2.1, 3.0  # Units.
@@ -95,11 +96,15 @@ class HelpPanel(RowPanel):
         if field is not None and field.isVisible():
             field.setFocus()
 
-    def place_beside(self, area: Rect, notice: QWidget) -> None:
-        """Place the help over the page, or next to the visible notice of an alarm or stop."""
-        if not notice.isHidden():
-            area = area._replace(w=max(0, notice.x() - GAP_PX - area.x))
-        self.setGeometry(*area)
+    def place_with_notice(self, area: Rect, notice: AlarmNotice) -> None:
+        """Place the notice and the help over the page, next to each other if both are open.
+
+        The notice of an alarm covers the page, and the notice of a program stop covers the path view.
+        """
+        path = divide_work_area(area, self.theme.unit_px)[2]
+        notice.setGeometry(*(area if notice.has_alarm and self.isHidden() else path))
+        if not self.isHidden():
+            self.setGeometry(*area if notice.isHidden() else find_area_left_of(area, path))
 
     def show_next_screenful(self) -> None:
         """Scroll down by one screenful, or close the panel if its last row is already visible."""

@@ -4,11 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QRectF
 
-from app.desk.desk import Desk
-from app.desk.programs.program_loading import LoadedProgram
-from app.desk.status import formats
 from app.desk.status.machine_status import MachineStatus, StatusTone
-from app.desk.status.state_prompt import find_remaining_time_s
 from app.screen.panel import Panel, RedrawingAttribute
 from app.screen.screen_theme import (
     ALIGN_RIGHT,
@@ -16,20 +12,9 @@ from app.screen.screen_theme import (
     draw_state_symbol,
 )
 from app.screen.window.readout_panels import TimeTexts
-from core.executor.snapshot import Snapshot
 from core.message import Message, join_messages
 
 _COMMENT_WIDTH, _BLOCK_WIDTH = 0.38, 0.24  # Fractions of the width. Parts and times use the rest.
-
-
-def make_times(desk: Desk, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> TimeTexts:
-    """Return the part count and times for the times panel and the run status row."""
-    return (
-        ("PARTS", desk.program_runs.part_counter.part_count_text),
-        ("CYCLE", status.cycle_time_text),
-        ("LEFT", formats.format_duration(find_remaining_time_s(snapshot, loaded))),
-        ("LAST", status.last_cycle_time_text),
-    )
 
 
 class RunStatusRow(Panel):

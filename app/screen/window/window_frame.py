@@ -29,7 +29,6 @@ from app.screen.window.notices import make_notices
 from app.screen.window.part_placement import (
     LayoutNeeds,
     find_area_below,
-    find_area_left_of,
     find_layout_needs,
     make_lamp_row,
     make_times,
@@ -43,13 +42,12 @@ from app.screen.window.readout_panels import (
     TimesPanel,
     ToolPanel,
 )
-from app.screen.window.run_row import RunStatusRow, make_times
+from app.screen.window.run_row import RunStatusRow
 from app.screen.window.station_dock import StationDock
 from app.screen.window.window_bars import FunctionKeyBar, LampStrip, NoticeRows, PromptLine, TitleLine
 from app.screen.window_layout import (
     AutomaticLayout,
     Rect,
-    divide_work_area,
     find_position_row_count,
     find_work_area,
     make_automatic_layout,
@@ -99,7 +97,7 @@ class WindowFrame(QWidget):
         self._page_area = Rect(0, 0, 0, 0)
         self._docked = True
         self._placed_needs: LayoutNeeds | None = None
-        host = PageHost(theme, desk, press, self.open_page, self.alarm_list.hide)
+        host = PageHost(theme, desk, press, self.open_page, self.alarm_list.close_list)
         self._host = host
         self._before_scope = page_table.AUTOMATIC
         self._moved_at: float | None = None  # Time of the last manual move.
@@ -251,20 +249,9 @@ class WindowFrame(QWidget):
         if blocks:
             page.stop_held_key_actions()
             self.help_panel.open_help(blocks)
-            self._place_notice_and_help()
+            self.help_panel.place_with_notice(self._page_area, self.alarm_notice)
         else:
             self.desk.say(tr("THE GUIDE IS NOT INSTALLED"))
-
-    def _place_notice_and_help(self) -> None:
-        """Place the notice and the help over the page, next to each other if both are open.
-
-        The notice of an alarm covers the page, and the notice of a program stop covers the path view.
-        """
-        area, notice, is_help_open = self._page_area, self.alarm_notice, not self.help_panel.isHidden()
-        path = divide_work_area(area, self.theme.unit_px)[2]
-        notice.setGeometry(*(area if notice.has_alarm and not is_help_open else path))
-        if is_help_open:
-            self.help_panel.setGeometry(*area if notice.isHidden() else find_area_left_of(area, path))
 
     def handle_escape(self) -> bool:
         """Close the alarm log or an open part of the page, and return whether one was open."""
@@ -354,7 +341,7 @@ class WindowFrame(QWidget):
         place_widget(self.key_bar, at.keys)
         place_widget(self.alarm_list, work)
         self._page_area = work
-        self._place_notice_and_help()
+        self.help_panel.place_with_notice(self._page_area, self.alarm_notice)
         return work
 
     @property
@@ -370,10 +357,8 @@ class WindowFrame(QWidget):
     @property
     def _has_dock_changed(self) -> bool:
         """Return whether the operator station was shown or hidden since the last layout."""
-        return (
-            self.station_dock is not None
-            and self._docked is not self.desk.settings_store.current_settings.dock
-        )
+        dock = self.desk.settings_store.current_settings.dock
+        return self.station_dock is not None and self._docked is not dock
 
     def _stand_readouts(self, at: AutomaticLayout, large: bool) -> None:
         parts: tuple[tuple[QWidget, Rect], ...] = (
@@ -443,7 +428,7 @@ class WindowFrame(QWidget):
         else:
             self.readout_line.show_status(view)
             self.run_line.show_status(view, make_times(self.desk, snapshot, view, loaded))
-        self._place_notice_and_help()
+        self.help_panel.place_with_notice(self._page_area, self.alarm_notice)
         self.alarm_list.show_entries(self.desk.alarm_log.entries)
         if self.station_dock is not None:
             self.station_dock.show_state(snapshot)
@@ -509,10 +494,7 @@ class WindowFrame(QWidget):
 
     def _show_readouts(self, snapshot: Snapshot, view: MachineStatus, loaded: LoadedProgram) -> None:
         """Show the current values in the large displays."""
-        self.position_panel.position_readout, self.feed_panel.value, self.spindle_panel.value = (
-            view.position,
-            view.feed,
-            view.spindle,
-        )
+        self.position_panel.position_readout, self.feed_panel.value = view.position, view.feed
+        self.spindle_panel.value = view.spindle
         self.tool_panel.value = (view.tool_text, view.secondary_offset_text)
         self.times_panel.value = make_times(self.desk, snapshot, view, loaded)
