@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.status.alarm_log import LoggedStop
 from app.desk.translation import tr
+from app.screen import page_table
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import MIN_TEXT_SIZE, ScreenTheme, ThemedPainter
 from app.screen.text_sizes import ScreenResolution, make_screen_resolution
@@ -102,6 +103,34 @@ def test_alarm_on_low_panel_has_as_much_room_as_with_smaller_rows(hands: Hands) 
     hands.window.refresh()
     assert not notice.isVisible()
     assert hands.frame.position_panel.isVisible()
+
+
+@pytest.mark.parametrize("page", [page_table.JOG, page_table.PROGRAMS])
+def test_alarm_does_not_change_the_layout_of_another_page(hands: Hands, page: str) -> None:
+    show_panel(hands, "10")
+    hands.machine.now = replace(hands.machine.now, interrupted=broken_off())
+    hands.frame.open_page(page)
+    hands.window.refresh()
+    before = (hands.frame.current_page.geometry(), hands.frame.notice_rows.geometry())
+    hands.machine.now = replace(hands.machine.now, alarms=(catalog_alarm("following"),))
+    hands.window.refresh()
+    assert not hands.frame.alarm_notice.isVisible()
+    assert (hands.frame.current_page.geometry(), hands.frame.notice_rows.geometry()) == before
+
+
+def test_alarm_covers_the_page_again_after_the_help_closes(hands: Hands) -> None:
+    show_panel(hands, "10")
+    hands.machine.fault(catalog_alarm("following"))
+    hands.window.refresh()
+    whole = hands.frame.alarm_notice.geometry()
+    hands.frame.show_help()
+    hands.window.refresh()
+    help_area = hands.frame.help_panel.geometry()
+    assert help_area.width() > 0
+    assert not help_area.intersects(hands.frame.alarm_notice.geometry())
+    hands.frame.help_panel.close_help()
+    hands.window.refresh()
+    assert hands.frame.alarm_notice.geometry() == whole
 
 
 def test_program_stop_does_not_cover_listing(hands: Hands) -> None:

@@ -31,7 +31,7 @@ class LayoutNeeds(NamedTuple):
     has_automatic_layout: bool
     has_large_position: bool
     has_run_line: bool
-    has_alarm: bool
+    has_alarm_notice: bool
 
 
 def find_layout_needs(
@@ -48,11 +48,13 @@ def find_layout_needs(
         page.needs_height(),
         window_height_px < LOW_WINDOW_HEIGHT_PX,
     )
-    has_automatic_layout = page.NAME == page_table.AUTOMATIC and not (low and has_alarm)
+    is_automatic = page.NAME == page_table.AUTOMATIC
+    shows_alarm = is_automatic and has_alarm
+    has_automatic_layout = is_automatic and not (low and shows_alarm)
     if not low:
-        return LayoutNeeds(has_automatic_layout, moves, True, has_alarm)
+        return LayoutNeeds(has_automatic_layout, moves, True, shows_alarm)
     has_large_position = moves and not needs_height and not has_notices
-    return LayoutNeeds(has_automatic_layout, has_large_position, not (moves or needs_height), has_alarm)
+    return LayoutNeeds(has_automatic_layout, has_large_position, not (moves or needs_height), shows_alarm)
 
 
 def make_lamp_row(desk: Desk, snapshot: Snapshot, status: MachineStatus) -> tuple[Lamp, ...]:

@@ -322,7 +322,7 @@ class WindowFrame(QWidget):
         self.readout_line.position_row_count = find_position_row_count(width, height)
         self._docked = with_dock
         work = find_work_area(at) if large else low.work_area
-        most = work.h // (4 if needs.has_alarm else 2)
+        most = work.h // (4 if needs.has_alarm_notice else 2)
         rows = Rect(work.x, work.y, work.w, min(self.notice_rows.apply_needed_height(), most))
         work = find_area_below(work, rows)
         place_widget(self.notice_rows, rows)
@@ -351,7 +351,7 @@ class WindowFrame(QWidget):
             self.current_page,
             self.height(),
             has_notices=bool(self.notice_rows.notice_rows),
-            has_alarm=bool(self.desk.read_snapshot().alarms),
+            has_alarm=bool(self._shown and self._shown[0].alarms),
         )
 
     @property
@@ -423,12 +423,13 @@ class WindowFrame(QWidget):
         else:
             # The prompt line shows the alarm, so that no notice covers an input field.
             self.alarm_notice.show_notice("", "")
-        if self._layout_needs.has_automatic_layout:
+        if not self.position_panel.isHidden():
             self._show_readouts(snapshot, view, loaded)
         else:
             self.readout_line.show_status(view)
             self.run_line.show_status(view, make_times(self.desk, snapshot, view, loaded))
-        self.help_panel.place_with_notice(self._page_area, self.alarm_notice)
+        if not (self.alarm_notice.isHidden() and self.help_panel.isHidden()):
+            self._place_notice_and_help()
         self.alarm_list.show_entries(self.desk.alarm_log.entries)
         if self.station_dock is not None:
             self.station_dock.show_state(snapshot)
