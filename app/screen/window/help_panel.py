@@ -101,6 +101,8 @@ class HelpPanel(RowPanel):
 
         The notice of an alarm covers the page, and the notice of a program stop covers the path view.
         """
+        if notice.isHidden() and self.isHidden():
+            return
         path = divide_work_area(area, self.theme.unit_px)[2]
         notice.setGeometry(*(area if notice.has_alarm and self.isHidden() else path))
         if not self.isHidden():

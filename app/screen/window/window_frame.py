@@ -428,8 +428,7 @@ class WindowFrame(QWidget):
         else:
             self.readout_line.show_status(view)
             self.run_line.show_status(view, make_times(self.desk, snapshot, view, loaded))
-        if not (self.alarm_notice.isHidden() and self.help_panel.isHidden()):
-            self._place_notice_and_help()
+        self.help_panel.place_with_notice(self._page_area, self.alarm_notice)
         self.alarm_list.show_entries(self.desk.alarm_log.entries)
         if self.station_dock is not None:
             self.station_dock.show_state(snapshot)
