@@ -60,7 +60,7 @@ class AutomaticPage(Page):
         super().__init__(host, parent)
         look, desk = host.theme, host.desk
         self._loaded = LoadedProgram()
-        self._moving = False
+        self._moving = self._is_notice_shown = False
         self.program_listing = ProgramListing(look, self)
         self.comment_line = CommentLine(look, self)
         self.path_view = PathView(look, self, part_player=make_part_player(desk))
@@ -121,8 +121,10 @@ class AutomaticPage(Page):
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
         """Show the program with its current line, comment and path."""
-        if self.file_prompt.isVisible() and snapshot.state in {MachineState.RUN, MachineState.WAIT}:
-            # A cycle was started at the station, so the keys belong to the cycle.
+        self._is_notice_shown = bool(status.message or status.alarms)
+        is_running = snapshot.state in {MachineState.RUN, MachineState.WAIT}
+        if self.file_prompt.isVisible() and (is_running or self._is_notice_shown):
+            # The keys belong to a cycle that was started at the station, or a notice covers the prompt.
             self.file_prompt.close_prompt()
         self._moving = snapshot.state in MOVING_STATES
         if self.path_view.part_player is not None:
@@ -259,9 +261,9 @@ class AutomaticPage(Page):
     def show_file_prompt(self) -> None:
         """Show the prompt ``FILE TO BE PROCESSED``, or open the program list.
 
-        The program list opens if the prompt is already shown.
+        The program list opens if the prompt is already shown, or if a notice would cover the prompt.
         """
-        if self.file_prompt.isVisible():
+        if self.file_prompt.isVisible() or self._is_notice_shown:
             self.host.open_page(page_table.PROGRAMS)
         elif self.desk.program_choice.can_choose_program():
             self.host.close_alarm_log()

@@ -110,8 +110,8 @@ class ProgramListModel:
             self._receive_programs,
             self.desk.show_refusal,
         )
-        self.recent_worker.enqueue_work(
-            partial(list_recent_programs, paths, folders, own, persistence),
+        self.recent_worker.request_work(
+            lambda _request: list_recent_programs(paths, folders, own, persistence),
             self._receive_recent_programs,
             self.desk.show_refusal,
         )

@@ -83,7 +83,6 @@ NO_CHANGE = {
     "cli/proofs/proof_cache.py": "proofs that can be made again",
     "cli/proofs/report_file.py": "a report, to a file of whoever asks",
     "desk/programs/recent_programs.py": "the paths of programs that were loaded",
-    "extras/lessons/lesson_card.py": "which lessons were done",
     "extras/quality/shift_command.py": "a report",
     "extras/tool_tables/export_command.py": "a tool table, to a file that the user names",
     "cli/trace_command.py": "setpoints, to a file of whoever asks",

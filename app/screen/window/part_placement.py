@@ -10,13 +10,13 @@ from app.desk.desk import Desk
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status import formats
 from app.desk.status.machine_status import MachineStatus
-from app.desk.status.readouts import Lamp, make_drives_lamp
+from app.desk.status.readouts import TURNING_RPM, Lamp, make_drives_lamp
 from app.desk.status.state_prompt import find_remaining_time_s
 from app.screen import page_table
 from app.screen.page_base import Page
 from app.screen.window.key_table import HELP_KEY
 from app.screen.window_layout import LOW_WINDOW_HEIGHT_PX, Rect
-from core.executor.snapshot import Snapshot
+from core.executor.snapshot import MachineState, Snapshot
 
 GAP_PX = 4  # Pixels below the notice rows, and next to the help.
 
@@ -84,6 +84,12 @@ def make_times(
         ("LEFT", formats.format_duration(find_remaining_time_s(snapshot, loaded))),
         ("LAST", status.last_cycle_time_text),
     )
+
+
+def needs_instruction(snapshot: Snapshot) -> bool:
+    """Return whether the prompt must tell the operator how to stop or to continue, also at rest."""
+    is_stopped = snapshot.state in {MachineState.FAULT, MachineState.ESTOP} or bool(snapshot.alarms)
+    return is_stopped or bool(snapshot.rpm_command) or abs(snapshot.rpm_actual) > TURNING_RPM
 
 
 def find_area_below(area: Rect, rows: Rect) -> Rect:

@@ -470,7 +470,8 @@ class NoticeRows(Panel):
     def _key(self, painter: ThemedPainter, box: QRectF, name: str, label: str) -> None:
         u = self.theme.unit_px
         painter.fill_rect(box, "key")
-        painter.draw_text_line(QRectF(box.x() + 0.8 * u, box.y(), 3.2 * u, box.height()), name, 1.8, "accent")
+        key = name.replace("Shift+", "⇧")
+        painter.draw_text_line(QRectF(box.x() + 0.8 * u, box.y(), 3.2 * u, box.height()), key, 1.8, "accent")
         painter.draw_text_line(
             box.adjusted(3.8 * u, 0, -0.4 * u, 0), label, 1.8, "text", at=ALIGN_CENTER, margin=0.2
         )

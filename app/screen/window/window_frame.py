@@ -32,6 +32,7 @@ from app.screen.window.part_placement import (
     find_layout_needs,
     make_lamp_row,
     make_times,
+    needs_instruction,
     place_widget,
 )
 from app.screen.window.readout_panels import (
@@ -403,7 +404,7 @@ class WindowFrame(QWidget):
         self._shown, self._paints = (snapshot, loaded), Panel.paint_count
         self._shown_at = self.desk.clock.read_seconds()
         self.is_at_rest = snapshot.state in _REST_STATES and not snapshot.wheel
-        self.prompt_line.must_show_state = not self.is_at_rest or snapshot.state is MachineState.FAULT
+        self.prompt_line.must_show_state = not self.is_at_rest or needs_instruction(snapshot)
         self.notice_rows.notice_rows = make_notices(
             self.desk, snapshot, loaded, here=self.current_page is self.automatic_page
         )
@@ -421,8 +422,7 @@ class WindowFrame(QWidget):
             go_on = tr(Message("{start} TO CONTINUE", start=tr(self.desk.start_instruction)))
             self.alarm_notice.show_notice(view.message, go_on, view.alarms)
         else:
-            # The prompt line shows the alarm, so that no notice covers an input field.
-            self.alarm_notice.show_notice("", "")
+            self.alarm_notice.show_notice("", "")  # the prompt line shows it: no field is covered
         if not self.position_panel.isHidden():
             self._show_readouts(snapshot, view, loaded)
         else:
