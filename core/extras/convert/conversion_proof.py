@@ -11,13 +11,14 @@ from core.interpreter.dialects import interpret_program
 from core.interpreter.shared import actions
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import ControlLimits, InterpreterSetup, SecondaryOffset, ToolOffset
-from core.interpreter.shared.units import MM_S_PER_FT_MIN, MM_S_PER_M_MIN
+from core.interpreter.shared.units import get_surface_speed_unit
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, ProgramSource
 
 EQUAL_TOLERANCE_MM = 1e-6 * 25.4  # mm
 OMNITURN_RESOLUTION_MM = (0.00005 * 25.4, 0.0001)  # of OmniTurn in inches and in mm, of the radius and of Z
 _FIXED_POINT = (137.31719, 411.91337)  # mm; machine X as a radius, and machine Z
+_SPEED_RESOLUTION = 0.001  # of a written S in rpm, ft/min or m/min
 _CLEARANCE = 0.0002 * 25.4  # mm; retract of a thread pass
 _KINDS = {
     StepKind.RAPID: BlockKind.RAPID,
@@ -304,7 +305,7 @@ class PathComparison:
         self._is_tool_new = False
 
     def _action(self, step: PathStep, block: Block, action: actions.Action) -> None:
-        wanted = _action_of(step, metric=self._metric)
+        wanted = _action_of(step)
         if isinstance(action, actions.SpindleRun) and isinstance(wanted, actions.SpindleRun):
             self._spindle(step, action, wanted)
             limit = step.spindle.max_rpm
@@ -331,7 +332,9 @@ class PathComparison:
         if css != (wanted.surface_speed is not None) or (made.rpm > 0) != (wanted.rpm > 0):
             self._differs(step.line, "proof-differs", made, wanted, "the spindle")
         speeds = (made.surface_speed, wanted.surface_speed) if css else (made.rpm, wanted.rpm)
-        self._same(step, "the spindle speed", speeds[0] or 0.0, speeds[1] or 0.0, 1e-3)
+        unit = get_surface_speed_unit(is_metric=self._metric) if css else 1.0
+        near = _SPEED_RESOLUTION / 2 * unit + 1e-3
+        self._same(step, "the spindle speed", speeds[0] or 0.0, speeds[1] or 0.0, near)
 
     # --- threads
 
@@ -456,10 +459,10 @@ def _known(steps: Sequence[PathStep], *, has_partial_moves: bool) -> Iterator[Pa
         yield step
 
 
-def _action_of(step: PathStep, *, metric: bool) -> actions.Action | None:
+def _action_of(step: PathStep) -> actions.Action | None:
     """Return the block action that corresponds to a step, or None if no action corresponds to it."""
     if step.kind is StepKind.SPINDLE:
-        return _spindle_of(step, metric=metric)
+        return _spindle_of(step)
     if step.kind is StepKind.DWELL:
         return actions.Dwell(step.number)
     if step.kind is StepKind.END:
@@ -467,13 +470,12 @@ def _action_of(step: PathStep, *, metric: bool) -> actions.Action | None:
     return _M_ACTIONS.get(round(step.number)) if step.kind is StepKind.M else None
 
 
-def _spindle_of(step: PathStep, *, metric: bool) -> actions.Action:
+def _spindle_of(step: PathStep) -> actions.Action:
     spindle = step.spindle
     if not spindle.direction:
         return actions.SpindleStop()
     if spindle.is_css:
-        unit = MM_S_PER_M_MIN if metric else MM_S_PER_FT_MIN
-        return actions.SpindleRun(float(spindle.direction), spindle.speed * unit)
+        return actions.SpindleRun(float(spindle.direction), spindle.speed)
     return actions.SpindleRun(spindle.direction * spindle.speed)
 
 

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from core.extras.convert.conversion_messages import make_error, make_warning
 from core.extras.convert.path_steps import PathStep, SpindleState, StepKind, has_same_speed
 from core.extras.convert.source_options import ConversionOptions
+from core.interpreter.shared.units import get_surface_speed_unit
 from core.language.diagnostics import Diagnostic
 
 MM_PER_INCH = 25.4
@@ -228,7 +229,8 @@ class OmniTurnWriter:
         if spindle.max_rpm and spindle.max_rpm != before.max_rpm:
             self.append_line(f"G77S{number(spindle.max_rpm, 1)}", step)
         mode = "G96" if spindle.is_css else "G97"
-        speed = f"S{number(spindle.speed, 3)}" if spindle.speed else ""
+        unit = get_surface_speed_unit(is_metric=self.is_metric) if spindle.is_css else 1.0
+        speed = f"S{number(spindle.speed / unit, 3)}" if spindle.speed else ""
         if not has_same_speed(spindle, before):
             start = (
                 "" if spindle.direction == before.direction else ("M03" if spindle.direction > 0 else "M04")

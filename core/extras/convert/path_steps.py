@@ -31,8 +31,7 @@ class SpindleState:
     """State of the spindle in a source program.
 
     ``direction`` is 1 for M03, -1 for M04 and 0 for a stopped spindle. ``speed`` is in rpm or, if
-    ``is_css`` is True, in ft/min or m/min, according to the unit of the program. ``max_rpm`` is the maximum
-    rpm if ``is_css`` is True, otherwise 0.
+    ``is_css`` is True, in mm/s. ``max_rpm`` is the maximum rpm if ``is_css`` is True, otherwise 0.
     """
 
     direction: int = 0

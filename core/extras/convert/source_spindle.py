@@ -9,6 +9,7 @@ from core.extras.convert.path_steps import PathStep, SpindleState, StepKind
 from core.extras.convert.source_lines import SourceStatement, SourceWord
 from core.extras.convert.source_options import SourceControl
 from core.extras.convert.source_state import SourceState
+from core.interpreter.shared.units import get_surface_speed_unit
 
 
 def execute_spindle_words(state: SourceState, statement: SourceStatement) -> None:
@@ -70,12 +71,19 @@ def _set_speed(state: SourceState, statement: SourceStatement, spindle: SpindleS
     if word is not None and limit:
         spindle = replace(spindle, max_rpm=_limit_rpm(state, word))
     elif word is not None:
-        spindle = replace(spindle, speed=word.value if spindle.is_css else _limit_rpm(state, word))
+        speed = _convert_surface_speed(state, word) if spindle.is_css else _limit_rpm(state, word)
+        spindle = replace(spindle, speed=speed)
         state.speed_request = None
     most = statement.find_word("D")
     if most is not None and statement.has_g_code(96) and not control.is_fanuc:
         spindle = replace(spindle, max_rpm=_limit_rpm(state, most))
     return spindle
+
+
+def _convert_surface_speed(state: SourceState, word: SourceWord) -> float:
+    """Return a surface speed in mm/s. Raises ProgramError if the unit of the program is unknown."""
+    state.get_unit_mm(word)
+    return word.value * get_surface_speed_unit(is_metric=bool(state.is_metric))
 
 
 def _check_zero(statement: SourceStatement, spindle: SpindleState) -> None:

@@ -15,6 +15,11 @@ def get_mm_per_unit(*, is_metric: bool) -> float:
     return 1.0 if is_metric else MM_PER_INCH
 
 
+def get_surface_speed_unit(*, is_metric: bool) -> float:
+    """Return 1 m/min or 1 ft/min in mm/s, according to the unit of the program."""
+    return MM_S_PER_M_MIN if is_metric else MM_S_PER_FT_MIN
+
+
 def format_length(length_mm: float, *, is_metric: bool) -> str:
     """Return a length in mm as text with its unit.
 

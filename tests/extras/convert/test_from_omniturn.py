@@ -148,6 +148,27 @@ def test_speed_that_g97_retains_is_written() -> None:
 
 
 @pytest.mark.parametrize(
+    ("units", "speeds", "made"),
+    [
+        # 300 * .3048 = 91.44 m/min; 152.4 / .3048 = 500 ft/min
+        (("G71", "G70"), (152.4, 300), ["S152.4", "S91.44"]),
+        (("G70", "G71"), (300, 152.4), ["S300", "S500"]),
+    ],
+)
+def test_surface_speed_is_converted_if_the_program_changes_its_unit(
+    units: tuple[str, str], speeds: tuple[float, float], made: list[str]
+) -> None:
+    text = (
+        f"G90G94F300{units[0]}G72\nT1\nG77S2500\nG96M03S{speeds[0]}\nX1.Z.1\nG95F.005Z-.2\nT0\nG00X0Z0\n"
+        f"{units[1]}\nT2\nG96S{speeds[1]}\nX1.Z.1\nG95F.005Z-.2\nM30\n"
+    )
+    done = convert(text, "linuxcnc")
+    assert not done.errors
+    found = [each.text.split()[2] for each in done.lines if each.text.startswith("G96")]
+    assert list(dict.fromkeys(found)) == made
+
+
+@pytest.mark.parametrize(
     ("body", "target", "made"),
     [
         ("M08\nZ0", "fanuc", ["M09", "M05", "M30", "%"]),

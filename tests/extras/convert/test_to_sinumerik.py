@@ -132,13 +132,20 @@ def test_line_without_counterpart_is_rejected(body: str, control: str, found: tu
     assert error_of(body, control) == found
 
 
+def test_surface_speed_is_converted_if_the_program_changes_its_unit() -> None:
+    """300 ft/min is 300 * .3048 = 91.44 m/min; the written program is metric."""
+    body = "G50S2000\nG96S300\nG01Z0\nG28U0W0\nG21\nT0202\nG96S100\nG00X25.Z2.\nG01Z-10.F.1"
+    speeds = [each for each in lines_of(body) if "G96" in each]
+    assert speeds == ["G96 S91.44 LIMS=2000", "G96 S100 LIMS=2000 M3"]
+
+
 def test_program_without_moves_is_rejected() -> None:
     assert [each.code for each in convert("G20G99\nT0101\nM30\n").errors] == ["file-empty"]
 
 
 STEPS = [
     PathStep(StepKind.TOOL, 1, number=1),
-    PathStep(StepKind.SPINDLE, 2, spindle=SpindleState(1, 100.0, True, 2000.0)),
+    PathStep(StepKind.SPINDLE, 2, spindle=SpindleState(1, 100_000 / 60, True, 2000.0)),
     PathStep(StepKind.RAPID, 3, 10.0, 2.0),
     PathStep(StepKind.NOSE, 4, number=41),
     PathStep(StepKind.FEED, 4, 10.0, 0.0, feed=0.2, per_rev=True),

@@ -67,7 +67,7 @@ class LinuxCncWriter(ProgramWriter):
     def write_surface_speed(self, spindle: SpindleState, start: str, *, is_new: bool) -> None:  # noqa: ARG002
         """Write G96 with the maximum rpm in D."""
         most = f"D{self.format_speed(spindle.max_rpm)}"
-        self.append_line("G96", most, f"S{self.format_speed(spindle.speed)}", start)
+        self.append_line("G96", most, self.format_surface_speed(spindle), start)
 
     def format_lead(self, lead_mm: float, dx: float, dz: float) -> Sequence[str]:
         """Return K, which LinuxCNC measures along the path of the tool."""
@@ -126,7 +126,7 @@ class FanucWriter(ProgramWriter):
         if spindle.max_rpm != self.limit_rpm:
             self.append_line("G50", f"S{self.format_speed(spindle.max_rpm)}")
         if is_new:
-            self.append_line("G96", f"S{self.format_speed(spindle.speed)}", start)
+            self.append_line("G96", self.format_surface_speed(spindle), start)
 
     def format_lead(self, lead_mm: float, dx: float, dz: float) -> Sequence[str]:
         """Return F, which a Fanuc control measures along the axis with the longer travel.

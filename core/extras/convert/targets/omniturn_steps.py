@@ -19,7 +19,6 @@ from core.interpreter.dialects import interpret_program
 from core.interpreter.shared import actions
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import ControlLimits, InterpreterSetup, SecondaryOffset, ToolOffset
-from core.interpreter.shared.units import MM_S_PER_FT_MIN, MM_S_PER_M_MIN
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.source import Dialect, ProgramSource
 
@@ -391,9 +390,8 @@ class StepMaker:
             return SpindleState()
         if not modal.css:
             return SpindleState(modal.spindle, modal.rpm)
-        unit = MM_S_PER_M_MIN if modal.metric else MM_S_PER_FT_MIN
         most = self.limits.max_rpm if modal.max_css_rpm is None else modal.max_css_rpm
-        return SpindleState(modal.spindle, round(modal.surface_speed / unit, 6), True, most)
+        return SpindleState(modal.spindle, round(modal.surface_speed, 6), True, most)
 
 
 def _make_plain_step(block: Block, action: actions.Action) -> PathStep | None:

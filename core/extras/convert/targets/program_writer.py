@@ -12,6 +12,7 @@ from typing import ClassVar
 from core.extras.convert.conversion_messages import make_error, make_warning
 from core.extras.convert.omniturn_writer import WrittenLine, number
 from core.extras.convert.path_steps import MOVE_KINDS, PathStep, SpindleState, StepKind, has_same_speed
+from core.interpreter.shared.units import get_surface_speed_unit
 from core.language.diagnostics import Diagnostic
 
 MM_PER_INCH = 25.4
@@ -158,6 +159,11 @@ class ProgramWriter(ABC):
     def format_speed(self, speed: float) -> str:
         """Return an S value."""
         return number(speed, 3)
+
+    def format_surface_speed(self, spindle: SpindleState) -> str:
+        """Return S with a surface speed in the unit of the program."""
+        unit = get_surface_speed_unit(is_metric=self.form.is_metric)
+        return f"S{self.format_speed(spindle.speed / unit)}"
 
     def format_m_code(self, code: float) -> str:
         """Return an M code."""

@@ -60,7 +60,7 @@ class SinumerikWriter(ProgramWriter):
         if limit and not is_new:
             self.append_line(limit)
         if is_new:
-            self.append_line("G96", f"S{self.format_speed(spindle.speed)}", limit, start)
+            self.append_line("G96", self.format_surface_speed(spindle), limit, start)
             self.is_surface_speed_active, self.feed = True, ("G96", "")
 
     def write_speed(self, spindle: SpindleState, start: str) -> None:
