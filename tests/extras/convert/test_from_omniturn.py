@@ -188,6 +188,20 @@ def test_coolant_and_spindle_stop_before_the_end(body: str, target: str, made: l
     ]
 
 
+@pytest.mark.parametrize(
+    "body",
+    [
+        "G77S2000\nG96S300\nG00X2.\nM05\nT2\nX1.Z.2\nM03\nZ0",
+        "G77S2000\nG96S300\nG00X2.\nG97S500\nT2\nX1.Z.2\nG96S300\nZ0",
+        "G77S2000\nG96S300\nG00X2.\nT2\nG97S500\nX1.Z.2\nG96S300\nZ0",
+    ],
+)
+def test_maximum_speed_is_repeated_when_g96_starts_later_than_its_tool(body: str) -> None:
+    """A restart at T2 then has the maximum speed of this program before its constant surface speed."""
+    made = lines_of(body, "fanuc")
+    assert "G50 S2000" in made[made.index("T0202") :]
+
+
 def test_new_spindle_words_after_a_tool_change_are_complete() -> None:
     """Only the new speed is written, with the direction although it is the same as before."""
     assert lines_of("T2\nM03S800\nG00X2.Z.2", "fanuc") == ["T0202", "G97 S800 M03", "G00 X2. Z.2"]

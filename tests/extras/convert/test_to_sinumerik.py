@@ -132,6 +132,13 @@ def test_line_without_counterpart_is_rejected(body: str, control: str, found: tu
     assert error_of(body, control) == found
 
 
+def test_maximum_speed_is_repeated_when_g96_starts_later_than_its_tool() -> None:
+    """The tool starts with G97, so that LIMS is in the line of G96."""
+    body = "G50S2000\nG96S400\nG01Z0\nG28U0W0M05\nT0202\nG97S500M03\nG00X1.Z.1\nG96S400\nG01X-.03F.005"
+    speeds = [each for each in lines_of(body) if "G96" in each]
+    assert speeds == ["G96 S400 LIMS=2000", "G96 S400 LIMS=2000"]
+
+
 def test_surface_speed_is_converted_if_the_program_changes_its_unit() -> None:
     """300 ft/min is 300 * .3048 = 91.44 m/min; the written program is metric."""
     body = "G50S2000\nG96S300\nG01Z0\nG28U0W0\nG21\nT0202\nG96S100\nG00X25.Z2.\nG01Z-10.F.1"

@@ -66,6 +66,7 @@ class ProgramWriter(ABC):
         self.limit_rpm = 0.0  # maximum rpm that was written last
         self.is_spindle_mode_known = False  # whether G96 or G97 was written since the last tool change
         self._is_spindle_due = False  # since a tool change, until the spindle words are written again
+        self._is_limit_due = False  # since a tool change, until the maximum rpm is written again
         self._nose_word = ""
         self._point = (_UNKNOWN, _UNKNOWN)  # of the last move, in mm, X as a radius
 
@@ -189,6 +190,7 @@ class ProgramWriter(ABC):
             self.x = self.z = _UNKNOWN
             self.motion, self.feed = "", None
             self.is_spindle_mode_known, self._is_spindle_due = False, True
+            self._is_limit_due = True
         elif step.kind is StepKind.HOME:
             self.write_home(step)
             self.motion = ""
@@ -220,7 +222,6 @@ class ProgramWriter(ABC):
         self._is_spindle_due = False
         if self.spindle.direction:
             self.report_restart()
-            self.limit_rpm = 0.0 if self.spindle.is_css else self.limit_rpm
             self.write_spindle(SpindleState())
 
     def report_restart(self) -> None:
@@ -231,7 +232,6 @@ class ProgramWriter(ABC):
         before, self.spindle = self.spindle, spindle
         if self._is_spindle_due:
             before, self._is_spindle_due = SpindleState(), False
-            self.limit_rpm = 0.0 if spindle.is_css else self.limit_rpm
         if not spindle.direction:
             self.append_line(self.format_m_code(5))
         elif spindle != before:
@@ -245,6 +245,8 @@ class ProgramWriter(ABC):
             start = self.format_m_code(3 if spindle.direction > 0 else 4)
         is_new = not has_same_speed(spindle, before)
         if spindle.is_css:
+            self.limit_rpm = 0.0 if self._is_limit_due else self.limit_rpm
+            self._is_limit_due = False
             self.write_surface_speed(spindle, start, is_new=is_new)
             self.limit_rpm = spindle.max_rpm
         elif is_new:
