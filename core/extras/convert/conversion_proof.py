@@ -17,8 +17,8 @@ from core.language.source import Dialect, ProgramSource
 
 EQUAL_TOLERANCE_MM = 1e-6 * 25.4  # mm
 OMNITURN_RESOLUTION_MM = (0.00005 * 25.4, 0.0001)  # of OmniTurn in inches and in mm, of the radius and of Z
+SPEED_RESOLUTION = 0.001  # of a written S in rpm, ft/min or m/min
 _FIXED_POINT = (137.31719, 411.91337)  # mm; machine X as a radius, and machine Z
-_SPEED_RESOLUTION = 0.001  # of a written S in rpm, ft/min or m/min
 _CLEARANCE = 0.0002 * 25.4  # mm; retract of a thread pass
 _KINDS = {
     StepKind.RAPID: BlockKind.RAPID,
@@ -138,7 +138,7 @@ class PathComparison:
     control rounds coordinates. ``has_thread_cycles`` means that the rapids around a thread pass are those
     of a cycle, so that they are compared only within the retract of the cycle. ``home`` is the machine
     position to which the blocks move for machine home. ``feed_resolution_mm`` is the resolution to which
-    the control rounds feeds and leads.
+    the control rounds feeds and leads, and ``speed_resolution`` that of S.
     """
 
     def __init__(
@@ -152,12 +152,14 @@ class PathComparison:
         has_thread_cycles: bool = True,
         home: tuple[float, float] = (0.0, 0.0),
         feed_resolution_mm: float = 0.0,
+        speed_resolution: float = SPEED_RESOLUTION,
     ) -> None:
         self._blocks = drop_idle(blocks, has_home_moves=not has_thread_cycles)
         self._has_source_blocks, self._has_thread_cycles = has_source_blocks, has_thread_cycles
         self._metric = metric
         self._home_point = home
         self._resolution, self._near_feed = resolution_mm, feed_resolution_mm / 2
+        self._near_speed = speed_resolution / 2
         self._steps = list(_known(steps, has_partial_moves=not has_thread_cycles))
         self._at = 0
         self._tool = 0
@@ -333,7 +335,7 @@ class PathComparison:
             self._differs(step.line, "proof-differs", made, wanted, "the spindle")
         speeds = (made.surface_speed, wanted.surface_speed) if css else (made.rpm, wanted.rpm)
         unit = get_surface_speed_unit(is_metric=self._metric) if css else 1.0
-        near = _SPEED_RESOLUTION / 2 * unit + 1e-3
+        near = self._near_speed * unit + 1e-3
         self._same(step, "the spindle speed", speeds[0] or 0.0, speeds[1] or 0.0, near)
 
     # --- threads

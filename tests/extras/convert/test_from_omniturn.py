@@ -261,6 +261,34 @@ def test_rounded_feed_of_fanuc_is_reported_or_rejected() -> None:
     assert not convert(f"{METRIC}Z0F.00134\nM30\n", "linuxcnc").errors
 
 
+@pytest.mark.parametrize(
+    ("body", "made"),
+    [
+        ("S1200.4\nZ0", "G97 S1200"),
+        ("G77S2000.3\nG96S300.4\nZ0", "G96 S300"),
+        # 300 ft/min at the diameter 2. in: 3600 / (2 pi) = 572.958 rpm
+        ("G77S2000\nG96S300\nG00Z.3\nG97\nZ0", "G97 S573"),
+    ],
+)
+def test_rounded_speed_of_fanuc_is_reported_and_proved(body: str, made: str) -> None:
+    done = convert(complete(body), "fanuc")
+    assert not done.errors
+    assert made in [each.text for each in done.lines]
+    assert "speed-rounded" in [each.code for each in done.findings]
+
+
+def test_changed_speed_of_fanuc_is_rejected_beyond_its_rounding() -> None:
+    texts = complete("S1200.4\nZ0").splitlines()
+    program = interpret_source(texts, ConversionOptions(SourceControl.LINUXCNC), LIMITS)
+    lines = convert(complete("S1200.4\nZ0"), "fanuc").lines
+    wrong = [WrittenLine(each.text.replace("S1200", "S1201"), each.source_line_number) for each in lines]
+    for written, codes in ((lines, []), (wrong, ["proof-differs"])):
+        proof = prove_by_reading(
+            written, SourceControl.FANUC_A, program, resolution_mm=0.00254, speed_resolution=1.0
+        )
+        assert [each.code for each in proof.errors] == codes
+
+
 def test_feed_is_repeated_after_a_fanuc_thread() -> None:
     body = "Z.2\nG33X1.95Z-.3I.05K.05O\nX1.99"
     assert lines_of(body, "fanuc")[-1] == "G01 X1.99 F.01"

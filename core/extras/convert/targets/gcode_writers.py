@@ -89,6 +89,7 @@ class FanucWriter(ProgramWriter):
 
     coordinate_places: ClassVar[tuple[int, int]] = (4, 3)
     feed_places: ClassVar[tuple[int, int]] = (6, 4)
+    speed_places: ClassVar[int] = 0
     feed_modes: ClassVar[tuple[str, str]] = ("G98", "G99")
     motions: ClassVar[Mapping[StepKind, str]] = {
         StepKind.RAPID: "G00",

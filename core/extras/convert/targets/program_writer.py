@@ -44,6 +44,7 @@ class ProgramWriter(ABC):
 
     coordinate_places: ClassVar[tuple[int, int]]  # decimal places in inches and in mm
     feed_places: ClassVar[tuple[int, int]] = (8, 8)  # decimal places of F in inches and in mm
+    speed_places: ClassVar[int] = 3  # decimal places of S
     feed_modes: ClassVar[tuple[str, str]]  # feed per minute and feed per revolution
     motions: ClassVar[Mapping[StepKind, str]]
     arcs: ClassVar[tuple[str, str]]  # clockwise and counterclockwise
@@ -159,7 +160,7 @@ class ProgramWriter(ABC):
 
     def format_speed(self, speed: float) -> str:
         """Return an S value."""
-        return number(speed, 3)
+        return number(speed, self.speed_places)
 
     def format_surface_speed(self, spindle: SpindleState) -> str:
         """Return S with a surface speed in the unit of the program."""

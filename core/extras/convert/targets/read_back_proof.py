@@ -9,6 +9,7 @@ from math import inf
 
 from core.extras.convert.conversion_messages import make_error
 from core.extras.convert.conversion_proof import (
+    SPEED_RESOLUTION,
     PathComparison,
     Proof,
     drop_idle,
@@ -34,12 +35,13 @@ def prove_by_reading(
     *,
     resolution_mm: float,
     feed_resolution_mm: float = 0.0,
+    speed_resolution: float = SPEED_RESOLUTION,
 ) -> Proof:
     """Read a written program and compare its steps with the blocks of the source program.
 
     ``resolution_mm`` and ``feed_resolution_mm`` are the resolutions of the written coordinates in mm and of
-    F in mm. The maximum speeds, the nose
-    compensation of each move, and all moves and actions must be equal.
+    F in mm. ``speed_resolution`` is the resolution of S in rpm and in the unit of the surface speed. The
+    maximum speeds, the nose compensation of each move, and all moves and actions must be equal.
     """
     options = ConversionOptions(control, max_rpm=inf, max_feed_mm_min=inf)
     state, findings = read_source([each.text for each in lines], options)
@@ -49,12 +51,15 @@ def prove_by_reading(
         numbers = [each.source_line_number for each in lines]
         return Proof(tuple(make_target_error(each, text, numbers) for each in errors))
     steps = [replace(each, line=lines[each.line - 1].source_line_number) for each in state.steps]
-    different = _find_nose_difference(program.blocks, steps) or _find_speed_difference(program.steps, steps)
+    different = _find_nose_difference(program.blocks, steps) or _find_speed_difference(
+        program.steps, steps, speed_resolution / 2 + 1e-6
+    )
     if different is not None:
         return Proof((different,))
     comparison = PathComparison(
         drop_repeated_speeds(program.blocks), steps, metric=program.is_metric,
         resolution_mm=resolution_mm, feed_resolution_mm=feed_resolution_mm,
+        speed_resolution=speed_resolution,
         has_source_blocks=True, has_thread_cycles=False,
     )  # fmt: skip
     return comparison.compare_steps()
@@ -92,11 +97,13 @@ def _find_nose_difference(blocks: Sequence[Block], steps: Sequence[PathStep]) ->
     return None
 
 
-def _find_speed_difference(source: Sequence[PathStep], steps: Sequence[PathStep]) -> Diagnostic | None:
-    """Return the first difference between the maximum spindle speeds."""
+def _find_speed_difference(
+    source: Sequence[PathStep], steps: Sequence[PathStep], near: float
+) -> Diagnostic | None:
+    """Return the first difference of more than ``near`` rpm between the maximum spindle speeds."""
     wanted, made = _list_maximum_speeds(source), _list_maximum_speeds(steps)
     for (line, want), (_, speed) in zip_longest(wanted, made, fillvalue=(0, 0.0)):
-        if abs(speed - want) > 1e-3:
+        if abs(speed - want) > near:
             error = make_error(
                 line,
                 0,

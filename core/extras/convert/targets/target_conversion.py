@@ -61,6 +61,7 @@ def convert_from_omniturn(
         program,
         resolution_mm=writer.unit_mm / 10**writer.places,
         feed_resolution_mm=writer.unit_mm / 10**writer.places_of_feed,
+        speed_resolution=10**-writer.speed_places,
     )
     findings = sorted((*program.findings, *writer.findings), key=lambda each: each.line)
     return Conversion(tuple(writer.lines), (*findings, *proof.errors), proof)
