@@ -202,6 +202,26 @@ def test_maximum_speed_is_repeated_when_g96_starts_later_than_its_tool(body: str
     assert "G50 S2000" in made[made.index("T0202") :]
 
 
+@pytest.mark.parametrize(
+    ("next_line", "made"),
+    [
+        ("G04F5", ["G97 S572.958", "G4 P5"]),
+        ("M00(LOOK)", ["G97 S572.958", "(MSG, LOOK)", "M0"]),
+        ("M08", ["G97 S572.958", "M8"]),
+        ("T0\nX0Z0", ["G97 S572.958", "G30"]),
+        ("T2(DRILL)\nX1.Z.2", ["G97 S572.958", "(DRILL)", "T2 M6 G43", "G97 S572.958 M3", "X1 Z.2"]),
+        ("M25\nZ0", ["G97 S572.958", "Z0"]),
+    ],
+)
+def test_speed_that_g97_retains_is_written_before_the_next_step(next_line: str, made: list[str]) -> None:
+    """300 ft/min at the diameter 2. in is 3600 / (2 pi) = 572.958 rpm, as in the source during a dwell."""
+    body = f"G77S2000\nG96S300\nG00Z.3\nG97\n{next_line}"
+    written = lines_of(body, "linuxcnc", skipped_m_codes=frozenset({25}))
+    begin = written.index("G97 S572.958")
+    found = [each for each in written[begin:] if each not in {"M5", "M9", "M30"}]
+    assert [each.removeprefix("G0 ") for each in found] == made
+
+
 def test_new_spindle_words_after_a_tool_change_are_complete() -> None:
     """Only the new speed is written, with the direction although it is the same as before."""
     assert lines_of("T2\nM03S800\nG00X2.Z.2", "fanuc") == ["T0202", "G97 S800 M03", "G00 X2. Z.2"]

@@ -35,6 +35,7 @@ _MOVES = {
     BlockKind.THREAD: StepKind.THREAD,
 }
 _C_AXIS = actions.SpindleLock | actions.SpindlePositioning
+_SPINDLE_ACTIONS = actions.SpindleRun | actions.SpindleStop | actions.ProgramEnd
 _INPUTS = actions.InputWait | actions.InputRead
 
 
@@ -191,6 +192,8 @@ class StepMaker:
         self._read_comments(block.line)
         if block.plane is not None or block.travel is not None or abs(block.c - block.c0) > _NEAR:
             raise make_error(block.line, 0, "c-axis-target")
+        if not isinstance(block.action, _SPINDLE_ACTIONS) and not self.is_left_out(block):
+            self._follow_maximum_speed(block)
         if block.action is None:
             self._append_move(block)
         else:
@@ -244,7 +247,6 @@ class StepMaker:
             return
         self._select_nose_code(block)
         self._report_offset(block)
-        self._follow_maximum_speed(block)
         is_first, self._is_tool_new = self._is_tool_new, False
         if not is_first and block.kind is not BlockKind.ARC and block.x == block.x0 and block.z == block.z0:
             return
@@ -376,10 +378,15 @@ class StepMaker:
             self._append(PathStep(StepKind.SPINDLE, block.line, spindle=spindle))
 
     def _follow_maximum_speed(self, block: Block) -> None:
-        """Append a spindle step if G77 or G97 without S has changed the state since the last spindle step."""
+        """Append a spindle step if G77 or G97 without S has changed the state since the last spindle step.
+
+        The comments stay with the next step, because they belong to the line of the block.
+        """
         spindle = self._read_spindle(block)
         if self.spindle.is_css and spindle.max_rpm != self.spindle.max_rpm:
+            comments, self._comments = self._comments, []
             self._append_spindle(block)
+            self._comments = comments
             if spindle.direction and not spindle.is_css:
                 speed = block.modal.spindle * block.modal.rpm
                 self._implied_actions[block.n] = (actions.SpindleRun(speed),)
