@@ -396,15 +396,23 @@ class PathComparison:
         return abs(block.x - step.x) <= _CLEARANCE and abs(block.z - step.z) <= self._near
 
 
-def drop_repeated_speeds(blocks: Sequence[Block]) -> Sequence[Block]:
-    """Return the blocks without those that repeat the spindle speed of the block before."""
+def drop_repeated_speeds(
+    blocks: Sequence[Block], *, resolution: float = 1e-6, is_metric: bool = True
+) -> Sequence[Block]:
+    """Return the blocks without those that repeat the spindle speed of the block before.
+
+    Speeds are equal if they do not differ after rounding to ``resolution`` in rpm, m/min or ft/min.
+    """
+    css_resolution = resolution * get_surface_speed_unit(is_metric=is_metric)
     found = []
     speed: object = None
     for block in blocks:
         action = block.action
         if isinstance(action, actions.SpindleRun):
             css = action.surface_speed
-            now = (css, action.rpm > 0) if css is not None else action.rpm
+            now = round(action.rpm / resolution), False
+            if css is not None:
+                now = round(css / css_resolution) * (1 if action.rpm > 0 else -1), True
             if now == speed:
                 continue
             speed = now

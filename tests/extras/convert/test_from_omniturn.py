@@ -285,6 +285,7 @@ def test_rounded_feed_of_fanuc_is_reported_or_rejected() -> None:
     ("body", "made"),
     [
         ("S1200.4\nZ0", "G97 S1200"),
+        ("S1200.4\nZ0\nS1200\nZ-.1", "G97 S1200"),
         ("G77S2000.3\nG96S300.4\nZ0", "G96 S300"),
         # 300 ft/min at the diameter 2. in: 3600 / (2 pi) = 572.958 rpm
         ("G77S2000\nG96S300\nG00Z.3\nG97\nZ0", "G97 S573"),

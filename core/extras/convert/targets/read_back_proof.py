@@ -56,8 +56,9 @@ def prove_by_reading(
     )
     if different is not None:
         return Proof((different,))
+    blocks = drop_repeated_speeds(program.blocks, resolution=speed_resolution, is_metric=program.is_metric)
     comparison = PathComparison(
-        drop_repeated_speeds(program.blocks), steps, metric=program.is_metric,
+        blocks, steps, metric=program.is_metric,
         resolution_mm=resolution_mm, feed_resolution_mm=feed_resolution_mm,
         speed_resolution=speed_resolution,
         has_source_blocks=True, has_thread_cycles=False,
