@@ -162,3 +162,10 @@ def test_proof_detects_a_difference() -> None:
     assert (error.line, error.code) == (7, "proof-differs")
     steps[:1] = [PathStep(StepKind.RAPID, 7, 12.7, 2.54), PathStep(StepKind.RAPID, 7, 12.8, 2.54)]
     assert prove(text, [7, 7, 8], steps, ControlLimits(), is_metric=False).errors
+
+
+def test_surface_speed_before_the_unit_is_known_is_rejected() -> None:
+    """S300 is 300 ft/min or 300 m/min; the G21 of a later line does not decide which."""
+    text = "G99\nT0101\nG96S300M03\nG21\nG00X50.Z2.\nG01Z-5.F.1\nM30\n"
+    (error,) = converted(text).errors
+    assert (error.line, error.column, error.code) == (3, 4, "unit")
