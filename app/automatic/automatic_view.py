@@ -263,8 +263,11 @@ class AutomaticPage(Page):
 
         The program list opens if the prompt is already shown, or if a notice would cover the prompt.
         """
-        if self.file_prompt.isVisible() or self._is_notice_shown:
+        if self.file_prompt.isVisible():
             self.host.open_page(page_table.PROGRAMS)
         elif self.desk.program_choice.can_choose_program():
             self.host.close_alarm_log()
-            self.file_prompt.show_prompt()
+            if self._is_notice_shown:
+                self.host.open_page(page_table.PROGRAMS)
+            else:
+                self.file_prompt.show_prompt()

@@ -203,3 +203,14 @@ def test_alarm_log_covers_the_whole_page(hands: Hands) -> None:
     show_panel(hands, "10")
     hands.key(Key.Key_F7)
     assert hands.frame.alarm_list.geometry() == hands.page.geometry()
+
+
+def test_alarm_closes_the_file_prompt_that_its_notice_covers(hands: Hands) -> None:
+    hands.key(Key.Key_F2)
+    hands.sees(hands.page.file_prompt.isVisible)
+    hands.machine.fault(catalog_alarm("following"))
+    hands.window.refresh()
+    assert not hands.page.file_prompt.isVisible()
+    assert not hands.frame.has_text_field()
+    hands.key(Key.Key_F2)
+    assert hands.frame.current_page.NAME == page_table.PROGRAMS
