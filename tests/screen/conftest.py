@@ -13,7 +13,7 @@ os.environ["QT_QPA_PLATFORM"] = "offscreen"
 import pytest
 import shiboken6
 from PySide6.QtCore import QCoreApplication, QEvent, Qt, QThread, QTimer
-from PySide6.QtWidgets import QApplication, QWidget
+from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.compose.runs.journal import Journal
@@ -41,13 +41,15 @@ def left_over(*, collect: bool) -> list[str]:
     found = [f"thread {name}" for name in names if name.startswith(("loading", "editing"))]
     if QApplication.mouseButtons() is not Qt.MouseButton.NoButton:
         found.append("a mouse button held down")
+    found += [f"window {widget}" for widget in QApplication.topLevelWidgets() if widget.isVisible()]
     for thing in shiboken6.getAllValidWrappers():
-        if isinstance(thing, QTimer) and thing.isActive():
-            found.append(f"timer of {thing.parent()}")
-        elif isinstance(thing, QThread) and thing.isRunning() and thing is not QThread.currentThread():
+        if not isinstance(thing, QTimer | QThread):
+            continue  # nearly all of ten thousand colors, fonts and widgets
+        if isinstance(thing, QTimer):
+            if thing.isActive():
+                found.append(f"timer of {thing.parent()}")
+        elif thing.isRunning() and thing is not QThread.currentThread():
             found.append(f"thread {thing}")
-        elif isinstance(thing, QWidget) and thing.isWindow() and thing.isVisible():
-            found.append(f"window {thing}")
     return found
 
 

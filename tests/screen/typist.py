@@ -221,11 +221,15 @@ def tables(store: Store) -> dict[str, int]:
 def _files(folder: Path) -> dict[str, object]:
     """Every file of the operator with its time and size, without those of the store."""
     found: dict[str, object] = {}
-    for where, _, names in os.walk(folder):
-        for name in names:
-            if ".db" not in name and "lock" not in name and "thumbnails" not in where:
-                about = Path(where, name).stat()
-                found[f"file {name}"] = (about.st_mtime_ns, about.st_size)
+    folders = [str(folder)]
+    while folders:
+        with os.scandir(folders.pop()) as entries:
+            for entry in entries:
+                if entry.is_dir():
+                    folders += [entry.path] if "thumbnails" not in entry.name else []
+                elif ".db" not in entry.name and "lock" not in entry.name:
+                    about = entry.stat()
+                    found[f"file {entry.name}"] = (about.st_mtime_ns, about.st_size)
     return found
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 
 from PySide6.QtGui import QResizeEvent
@@ -415,9 +415,7 @@ class WindowFrame(QWidget):
         self._show_bars(snapshot, view, loaded)
         lamps = make_lamp_row(self.desk, snapshot, view)
         self.strip.lamps = lamps
-        self.strip.hidden_keys = frozenset(
-            lamp.switch_key for lamp in lamps if self._is_dead(lamp.switch_key)
-        )
+        self.strip.hidden_keys = self._find_dead_keys(lamp.switch_key for lamp in lamps)
         if self.current_page is self.automatic_page:
             go_on = tr(Message("{start} TO CONTINUE", start=tr(self.desk.start_instruction)))
             self.alarm_notice.show_notice(view.message, go_on, view.alarms)
@@ -432,7 +430,7 @@ class WindowFrame(QWidget):
         self.alarm_list.show_entries(self.desk.alarm_log.entries)
         if self.station_dock is not None:
             self.station_dock.show_state(snapshot)
-            self.station_dock.hidden_keys = frozenset(key for key in "AHU," if self._is_dead(key))
+            self.station_dock.hidden_keys = self._find_dead_keys("AHU,")
         self.current_page.refresh(snapshot, view, loaded)
         self._update_caret()
         self.key_bar.key_labels, self.key_bar.disabled_keys = (
@@ -448,15 +446,16 @@ class WindowFrame(QWidget):
             for panel in self.current_page.findChildren(Panel):
                 panel.update()
 
-    def _is_dead(self, key: str) -> bool:
-        """Return whether the key of a lamp has no function on the current page.
+    def _find_dead_keys(self, keys: Iterable[str]) -> frozenset[str]:
+        """Return the keys of these lamps that have no function on the current page.
 
         Touching the lamp itself has the same function on every page.
         """
-        if key == HELP_KEY:
-            return self.accepts_text(key)
-        elsewhere = key in AUTOMATIC_KEYS and self.current_page is not self.automatic_page
-        return elsewhere or self._blocks_letters() or self.accepts_text(key)
+        dead = () if self.current_page is self.automatic_page else AUTOMATIC_KEYS
+        blocked = self._blocks_letters()
+        return frozenset(
+            key for key in keys if self.accepts_text(key) or (key != HELP_KEY and (blocked or key in dead))
+        )
 
     def accepts_text(self, key: str) -> bool:
         """Return whether a character goes to an input field of the page or to a standard text field."""

@@ -29,6 +29,7 @@ from tests.screen.yes import yes
 
 Key = Qt.Key
 TICK = 0.01
+TICKS_PER_PICTURE = 3
 INCH = 25.4
 NONE = Qt.KeyboardModifier.NoModifier
 SHIFT = Qt.KeyboardModifier.ShiftModifier
@@ -103,20 +104,26 @@ class JogBench:
         return self.executor.snapshot
 
     def run(self, seconds: float, *, screen: bool = True) -> None:
-        """So much time on the machine, and on the screen unless it stands still."""
+        """Advance the machine. The screen shows it every 30 ms and at the end."""
         end = self.clock.now() + seconds
         while self.clock.now() < end - 1e-9:
-            self.clock.advance(TICK)
-            self.executor.run_tick()
-            if screen:
-                self.window.refresh()
+            self._tick(screen=screen)
+        if screen:
+            self.window.refresh()
+
+    def _tick(self, *, screen: bool = True) -> None:
+        self.clock.advance(TICK)
+        self.executor.run_tick()
+        if screen and self.executor.tick_count % TICKS_PER_PICTURE == 0:
+            self.window.refresh()
 
     def until(self, true: Callable[[], bool], limit: float = 20.0) -> None:
         """Run until something is so."""
         end = self.clock.now() + limit
         while not true():
             assert self.clock.now() < end, f"not within {limit} s: {self.shot.state}, {self.prompt}"
-            self.run(TICK)
+            self._tick()
+        self.window.refresh()
 
     def rests(self) -> None:
         """Run until the machine is ready again."""
