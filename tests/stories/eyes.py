@@ -216,12 +216,14 @@ def _note_prompt() -> None:
         _PROMPTS.append(prompt)
 
 
-def _break(told: Told) -> None:
-    """Something of the simulated lathe breaks, by the name of its method."""
+def _break(told: Told) -> list[float]:
+    """Break a part of the simulated lathe, by the name of its method; return where the slides are then."""
     desk = _desk()
     assert desk is not None
     assert isinstance(desk.desk_control.station_panel, PlantControls)
     getattr(desk.desk_control.station_panel, told["name"])(*told["values"])
+    slides: list[float] = _machine(desk)["slides"]
+    return slides
 
 
 def _executor() -> Any:

@@ -430,9 +430,10 @@ class Operator:
         self.ask("real time")
         return self.post("freeze", seconds=seconds)
 
-    def breaks(self, what: str, *values: object) -> None:
-        """Something of the simulated lathe breaks: ``jam``, ``spindle_fault``, ``station_silent`` …"""
-        self.ask("break", name=what, values=values)
+    def breaks(self, what: str, *values: object) -> list[float]:
+        """Break a part (``jam``, ``spindle_fault``, …); return where the slides are then, mm from home."""
+        slides: list[float] = self.ask("break", name=what, values=values)
+        return slides
 
     def stops_the_process(self) -> None:
         """As a debugger or a suspended computer stops it: every thread of it."""

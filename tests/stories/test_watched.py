@@ -78,8 +78,7 @@ def test_axis_jammed_off_its_position_raises_alarm_and_does_not_jump(story: Stor
 def test_encoder_failure_at_start_of_hold_stops_machine(story: Story) -> None:
     operator = story.begins(CUT, tools=TOOLS)
     cutting(operator)
-    before = operator.slides[1]
-    operator.breaks("encoder_stuck", "Z")
+    before = operator.breaks("encoder_stuck", "Z")[1]
     operator.key("Pause")
     operator.reaches("ALARM")
     operator.rests()
