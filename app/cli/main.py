@@ -276,7 +276,7 @@ def _screen(args: argparse.Namespace) -> int:
 
 
 def _make_streams_tolerant() -> None:
-    """Make the output streams replace characters that they cannot encode with question marks.
+    """Make the output streams write a question mark for each character that they cannot encode.
 
     A stream that the parent process has closed is replaced with the null device.
     """

@@ -1,6 +1,6 @@
 """Proving of programs, MDI lines and restarts on this machine.
 
-The module also draws the tool path and compares the part for changed offsets.
+The module also draws the tool path. After a change of offsets, it compares the new part with the old part.
 """
 
 from __future__ import annotations
@@ -56,8 +56,8 @@ def create_loading_steps(
     """Return the functions that load a program.
 
     Offsets, tool shapes and the stored part data of a program are read at the time of loading. The unit and
-    the rapid rate of the previous job are then read from ``read_modal_state``. If ``draw_pictures`` is
-    true, programs are drawn and their parts proved.
+    the rapid rate of the previous job are read from ``read_modal_state``, also at the time of loading. If
+    ``draw_pictures`` is true, programs are drawn and their parts proved.
     """
 
     def make_new_job(source: ProgramSource, block_delete: bool) -> Job:

@@ -233,7 +233,7 @@ class JogPad(JogCross):
         return [*([] if self.has_free_top_corners else [self._draw_steps_and_speeds]), *wheel]
 
     def _has_step_rows(self, area: QRectF) -> bool:
-        """Return whether steps and speeds have a row each, because all rows are as high as a fingertip."""
+        """Return whether steps and speeds have their own rows, each as high as a fingertip."""
         rows = 2 + self._model.handwheel.is_available + 1 + CROSS_ROW_COUNT
         return area.height() >= self.theme.find_key_rows_height(rows) + 0.6 * self.theme.unit_px
 

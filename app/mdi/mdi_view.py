@@ -64,7 +64,7 @@ class MdiLinePanel(Panel):
         return next(errors, self.diagnostics[0] if self.diagnostics else None)
 
     def draw(self, painter: ThemedPainter) -> None:
-        """Draw the input line with its cursor and its first proof finding.
+        """Draw the input line with its cursor and the first error or warning of its proof.
 
         If the line is ready for Cycle Start, its frame is highlighted.
         """

@@ -125,9 +125,9 @@ def read_shape_rows(path: Path) -> dict[int, ToolShapeRow]:
 def read_tool_shapes(path: Path) -> dict[int, ToolShape]:
     """Return all tool shapes of a file in mm, with the nose radius and tip quadrant of each tool.
 
-    In the file, lengths are in inches. The outlines of holder and profile are texts in mm. Raise
-    CommandError, which lists all mistakes of the tool tables. The secondary and zero offsets of the file
-    are not checked.
+    In the file, lengths are in inches. The outlines of holder and profile are strings in mm. The secondary
+    and zero offsets of the file are not checked. Raises CommandError, which lists all mistakes of the tool
+    tables, if there is a mistake.
     """
     data = read_toml(path)
     mistakes = _unknown_tables(data)

@@ -375,7 +375,10 @@ class SolidPane(PartPane):
         self.part_player.set_image_request(SolidImageRequest(view, projection.width_px, projection.height_px))
 
     def find_tip_position(self, tip: TipPosition) -> PlanePosition | None:
-        """Return the position of the tool, and rotate the picture to the position of a locked C axis."""
+        """Return the position of the tool tip in the picture.
+
+        If the C axis is locked, the picture is first rotated to its position.
+        """
         if tip.c is not None and tip.c != self._roll:
             self._roll = tip.c
             self._want()

@@ -140,7 +140,7 @@ class _PressAction(QAccessibleActionInterface):
             self._spot.target.on_press()
 
     def keyBindingsForAction(self, _name: str) -> list[str]:
-        """Return no key bindings, because the painted texts name the keys."""
+        """Return no key bindings, because the label on the screen already contains the key."""
         return []
 
 

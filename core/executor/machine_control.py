@@ -155,7 +155,10 @@ class MachineControl:
             self.program_run.start_run()
 
     def refuse_start(self, reason: str) -> bool:
-        """Store and log a start refusal; return True if ``reason`` is not empty."""
+        """Store a start refusal and return True, or clear it and return False if ``reason`` is empty.
+
+        A refusal is also logged.
+        """
         self.status.start_refusal_reason = reason
         if reason:
             self._context.log_text("refused", reason)

@@ -54,7 +54,7 @@ class OrientationControl:
 
     @property
     def max_rpm(self) -> float:
-        """Return the maximum speed in rpm that an orientation can cause, or 0 without a requested angle."""
+        """Return the maximum speed in rpm during an orientation, or 0 if no angle is requested."""
         return self._rpm if self._asked is not None else 0.0
 
     def request_angle(self, angle: float, direction: int) -> bool:

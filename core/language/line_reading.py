@@ -1,4 +1,4 @@
-"""Helpers for the parsers of all dialects, with positions, blanks, comments and numbers."""
+"""Helpers for the parsers of all dialects, which read positions, blanks, comments and numbers."""
 
 from __future__ import annotations
 

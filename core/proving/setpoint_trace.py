@@ -54,7 +54,7 @@ class _SpanSampler:
         self._rpm = 0.0  # rpm of the last row
 
     def sample_motion(self, span: MotionSpan) -> SetpointRows:
-        """Return the rows of a span of motion."""
+        """Return the setpoints of a motion span as rows with equal time steps."""
         profile = span.planned_chunk.profile
         _, positions, numbers = sample_positions(
             profile, self._dt, max(0.0, self._row * self._dt - span.start_time_s)

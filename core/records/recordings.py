@@ -24,7 +24,7 @@ class ScopeRecordings:
         self.ring, self.folder, self.storage_error = ring, folder, storage_error
 
     def get_record_since(self, start_time_s: float, names: Collection[str] | None = None) -> ScopeRecord:
-        """Return the samples after ``start_time_s``, in seconds of the clock.
+        """Return the samples after ``start_time_s``, a time of the machine clock in seconds.
 
         ``names`` selects channels; None selects all channels.
         """

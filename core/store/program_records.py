@@ -355,7 +355,10 @@ def _loaded(value: object) -> str:
 
 
 def assign_rows_to_text(connection: sqlite3.Connection, program: str) -> None:
-    """Assign rows that an older version stored by name to the text that was proved then, if known."""
+    """Assign rows that an older version stored by program name to the program text of the last proof.
+
+    Nothing changes if this text is unknown.
+    """
     row = connection.execute(
         "SELECT sha256 FROM program_versions JOIN programs ON program = programs.id"
         " WHERE name = ?1 AND saved <= coalesce((SELECT proved FROM runs WHERE program = ?1), '')"

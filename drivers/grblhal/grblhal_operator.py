@@ -223,9 +223,9 @@ _MIN_RENEWAL_S = 0.02  # Seconds; a shorter renewal is not sent.
 class GrblJogSender:
     """Sender of jog lines (``$J``), which waits for the acknowledgment of each line.
 
-    The lease is the time for which a jog may continue without renewal. The target is always the position
-    that the axis would reach one lease later if it had moved at full speed since the start of the jog. The
-    remaining travel is therefore at most lease · velocity plus the braking distance.
+    The lease is the time for which a jog may continue without renewal. The target of a line is the position
+    that the axis would reach one lease later at full speed since the start of the jog. The remaining travel
+    is therefore at most lease · velocity plus the braking distance.
     """
 
     def __init__(self, controller: GrblController) -> None:

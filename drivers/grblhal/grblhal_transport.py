@@ -1,6 +1,7 @@
-"""Connection to a grblHAL controller, lines with one reply each, and scripts that wait for replies.
+"""Connection to a grblHAL controller, with request lines and scripts of such lines.
 
-The connection is a serial device, a pseudo terminal or a TCP connection. Only opening and closing may wait.
+The controller answers each line with one reply, and a script waits for these replies. The connection is a
+serial device, a pseudo terminal or a TCP connection. Calls do not block, except opening and closing.
 """
 
 from __future__ import annotations

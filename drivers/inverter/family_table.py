@@ -79,7 +79,7 @@ class FrequencyKeys:
 
 @make_key_table
 class OutputCurrentKeys:
-    """The register that contains the output current."""
+    """The keys of the table for the register that contains the output current."""
 
     register: int = declare_key(_ADDRESS, meaning="Address of the register.")
     counts_per_a: float = declare_key(_COUNT_RANGE, meaning="Register value for 1 A.")

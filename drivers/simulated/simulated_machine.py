@@ -128,7 +128,7 @@ class SimSpindleGear(_PlantPort):
         self._plant.engage_cam(cam)
 
     def geared(self) -> GearState | None:
-        """Return the position of the axes on the cam, or None if they do not follow the spindle."""
+        """Return the positions for the current spindle angle, or None if no axis follows the spindle."""
         with self._plant.lock:
             self._plant.advance()
             return self._plant.setpoint_queue.read_gear_state()

@@ -110,7 +110,7 @@ class SnapshotMessage(NamedTuple):
 
 
 class EventMessage(NamedTuple):
-    """Event for the event log, with its number and the rows of cycles and stops that it has changed."""
+    """Event for the event log, with its number and the rows of cycles and stops that belong to it."""
 
     event_number: int
     event: LogEvent

@@ -57,7 +57,7 @@ class GuidanceCard(Protocol):
     """Card that guides the operator on every page, in place of the card of the first job."""
 
     def make_row(self) -> NoticeRow | None:
-        """Return the card, or None if it is closed."""
+        """Return the row of the card, or None if the card is closed."""
         ...
 
     def close_card(self) -> bool:

@@ -44,7 +44,7 @@ class JobsPage(ListPage):
         return self.model.make_function_keys()
 
     def make_key_labels(self) -> tuple[str, ...]:
-        """Return the labels of F2 and of the function keys of the model."""
+        """Return the labels of all function keys: F2 from the page and the others from its model."""
         return self.make_function_key_labels({"F2": "LOAD"}, self.make_function_keys())
 
     def make_key_actions(self) -> KeyActions:

@@ -271,7 +271,7 @@ class KeyboardFilter(QObject):
         self._behind.set_event_late(is_late=self._late)
 
     def _handle_screen_press(self, event: QInputEvent) -> bool:
-        """Handle a mouse press or touch, and return whether it must not be passed on."""
+        """Handle a mouse press or touch. Return True if the press is discarded."""
         if self._behind.is_stop_control_at(event):
             return False
         if self._relies_on_dropped():

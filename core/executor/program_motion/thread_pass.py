@@ -141,7 +141,7 @@ class ThreadPass(SynchronizedThreadPass):
         raise DriverError("the thread moves could not be queued in time", "late")
 
     def correct_motion(self) -> None:
-        """Correct the motion from one commit time ahead, and measure the deviation.
+        """Correct the setpoints that are later than the commit time, and measure the deviation.
 
         The function is called once per tick.
         """

@@ -15,8 +15,9 @@ from core.interpreter.shared.units import get_surface_speed_unit
 def execute_spindle_words(state: SourceState, statement: SourceStatement) -> None:
     """Execute G96, G97, S, M03 and M04.
 
-    A speed in rpm above the maximum of the options is limited with a warning. Without a speed, no spindle
-    step is appended, and the next cut raises ProgramError. Raises ProgramError if the speed is invalid.
+    A speed in rpm above the maximum speed in the conversion options is limited with a warning. Without a
+    speed, no spindle step is appended, and the next cut raises ProgramError. Raises ProgramError if the
+    speed is invalid.
     """
     before = state.spindle
     spindle = _set_speed(state, statement, _select_mode(state, statement))

@@ -1,6 +1,6 @@
 """Tool bits of FreeCAD: one tool in a ``.fctb`` file, or a ``.fctl`` library that names such files.
 
-Both are JSON. Values are texts with a unit, such as ``"5.0000 mm"`` or ``"0.375 in"``. A number without a
+Both are JSON. Values are strings with a unit, such as ``"5.0000 mm"`` or ``"0.375 in"``. A number without a
 unit is in mm. A library contains the tool numbers; a tool bit has no number.
 """
 

@@ -91,7 +91,7 @@ def interpret_source(
 def _interpret_variant(
     texts: Sequence[str], options: ConversionOptions, limits: ControlLimits, variant: int
 ) -> InterpretedProgram:
-    """Interpret a program with one variant of the invented setup."""
+    """Interpret a program with one variant of the assumed setup."""
     source = ProgramSource("source", "".join(f"{each}\n" for each in texts), Dialect.OMNITURN)
     done = interpret_program(source, make_invented_setup(limits, variant))
     blocks = [_relative_to_part_zero(each) for each in done.generate_blocks()]
@@ -210,7 +210,7 @@ class StepMaker:
         return number is not None and number in self.options.skipped_m_codes
 
     def add_implied_actions(self, block: Block) -> Sequence[Block]:
-        """Return the block, after blocks for the actions that the program does not contain as words."""
+        """Return the block, preceded by blocks for the actions that the program does not contain as words."""
         implied = self._implied_actions.get(block.n, ())
         return *(replace(block, kind=BlockKind.ACTION, action=each) for each in implied), block
 

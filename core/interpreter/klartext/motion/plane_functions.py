@@ -344,8 +344,8 @@ def _swivel(
 ) -> Block:
     """Return the block of kind ``plane``, which swivels the rotary axes to ``goal``.
 
-    Only the rotary axes move, unless ``pivot`` is given. The linear axes then follow, so that the tool does
-    not move relative to the pivot point.
+    Without ``pivot``, only the rotary axes move. With ``pivot``, the linear axes follow, so that the tool
+    does not move relative to the pivot point.
     """
     rate = None if feed is None else feed / 60.0
     start = state.rotary_angles

@@ -221,7 +221,7 @@ def compute_peck_z_positions(cycle: CycleCall, hole: HolePositions) -> list[floa
 
 
 def _turning(cycle: CycleCall) -> list[CycleStep]:
-    """Return the step that starts the spindle in the direction SDIR, unless it already turns so.
+    """Return the step that starts the spindle in the direction SDIR, or no step if it already turns.
 
     Raises ProgramError if SDIR is not 3 or 4, if no speed is programmed, or if G96 is active.
     """

@@ -277,8 +277,8 @@ class _Plan:
     def _extend_contour(self) -> list[Element]:
         """Return the contour with its ends extended by the nose radius where they lead straight outward.
 
-        Only an end that is a line along the depth toward the open side is extended. The tip then reaches
-        the programmed end.
+        An end is extended only if it is a straight line in the infeed direction that leads to the open
+        side. The tip then reaches the programmed end.
         """
         *_, last = contour = list(self._contour)
         contour[-1] = self._straight_out(last)
