@@ -9,7 +9,7 @@ from core.part.insert_codes import parse_outline
 from core.part.shape_rules import ShapeMistake, find_shape_mistakes
 from core.part.tool_shape import ToolHand, ToolKind, ToolShape
 from core.store.store_rows import ToolOffsetRow, ToolShapeRow
-from core.tool_edges import format_edge_name, get_tool_number
+from core.tool_edges import TIP_DIRECTIONS, format_edge_name, get_tool_number
 
 
 def make_tool_shape(row: ToolShapeRow, tool: ToolOffsetRow | None) -> ToolShape:
@@ -66,3 +66,15 @@ def find_shape_row_mistakes(row: ToolShapeRow, tool: ToolOffsetRow | None) -> tu
         text = "a profile needs at least three points, each with Z and X in mm, for example 0,0 2.5,0 1.2,1.5"
         return (ShapeMistake("profile", text, "not-an-outline"),)
     return find_shape_mistakes(make_tool_shape(row, tool))
+
+
+def is_quadrant_for_other_side(row: ToolShapeRow, tool: ToolOffsetRow, tip_x_mm: float) -> bool:
+    """Return whether the tip quadrant of a tool is for the other side of the part than its tip.
+
+    ``tip_x_mm`` is X of the tip relative to part zero. The result is False for a rotating tool, and for a
+    quadrant that points neither to the axis nor away from it.
+    """
+    shape = make_tool_shape(row, tool)
+    if shape.is_rotating or TIP_DIRECTIONS[tool.quadrant][1] == 0:
+        return False
+    return tip_x_mm * (-1.0 if shape.is_rear_tool else 1.0) < 0.0

@@ -31,6 +31,8 @@ LARGE_CHANGE_MM = 0.5  # Geometry: about .02 in.
 # Wear: .010 in as entered, X on the diameter. A misplaced decimal point turns .002 into .020.
 LARGE_CORRECTION_MM = 0.254
 _ROUNDING_TOLERANCE_MM = 1e-6  # Rounding tolerance in mm.
+# Largest deviation from half or twice the previous diameter, as a ratio to the change of the diameter.
+_FACTOR_TOLERANCE = 0.1
 
 TravelLimits = Mapping[str, tuple[float, float]]  # Travel of x and z in mm from home.
 
@@ -40,6 +42,9 @@ class SuspicionReason(StrEnum):
 
     OUTSIDE_TRAVEL = "travel"  # The tip cannot reach part zero.
     WRONG_SIDE = "side"  # The tool would cut on the other side of the part.
+    TIP_QUADRANT = "quadrant"  # The tip quadrant is for the other side of the part.
+    RADIUS_ENTERED = "radius"  # The entered diameter is half of the previous one.
+    DOUBLE_DIAMETER = "double"  # The entered diameter is twice the previous one.
     LARGE_CHANGE = "large"  # The value differs much from the value in use.
     NEW_MASTER = "master"  # Other tools will follow this tool.
 
@@ -198,6 +203,22 @@ def _check_new_master(
         was = isinstance(old, ToolOffsetRow) and old.master
         if isinstance(row, ToolOffsetRow) and row.master and not was and find_following_tools(table, number):
             yield SuspiciousChange(SuspicionReason.NEW_MASTER, number, "master", False, True)
+
+
+def find_factor_suspicion(old_tip_x_mm: float, new_tip_x_mm: float) -> SuspicionReason | None:
+    """Return the reason if an entered diameter is about half or twice the previous one, or else None.
+
+    The operator then probably entered a radius or doubled a diameter. Both positions are X of the tip
+    relative to part zero, as a radius in mm.
+    """
+    tolerance = _FACTOR_TOLERANCE * abs(new_tip_x_mm - old_tip_x_mm)
+    if tolerance <= _ROUNDING_TOLERANCE_MM:
+        return None
+    if abs(2.0 * new_tip_x_mm - old_tip_x_mm) <= tolerance:
+        return SuspicionReason.RADIUS_ENTERED
+    if abs(new_tip_x_mm - 2.0 * old_tip_x_mm) <= tolerance:
+        return SuspicionReason.DOUBLE_DIAMETER
+    return None
 
 
 # --- several tools ---------------------------------------------------------------------------------------

@@ -14,6 +14,7 @@ from functools import partial
 from app.desk.desk import Desk
 from app.desk.status.formats import format_local_time
 from app.desk.status.prompt_line import ACTIVE_STATES
+from app.desk.stored_shapes import is_quadrant_for_other_side
 from app.desk.translation import tr
 from app.offsets.change_rules import (
     LARGE_CHANGE_MM,
@@ -21,6 +22,7 @@ from app.offsets.change_rules import (
     SuspiciousChange,
     apply_touch_off,
     describe_suspicious_changes,
+    find_factor_suspicion,
     find_following_tools,
     find_required_access_right,
     find_suspicious_changes,
@@ -44,7 +46,7 @@ from core.message import Message
 from core.store.offsets.touch_off import TouchPosition
 from core.store.store_errors import StoreError
 from core.store.store_rows import FIELDS_BY_KIND, FieldValue, OffsetChange, OffsetKind, ToolOffsetRow
-from core.tool_edges import format_edge_name
+from core.tool_edges import format_edge_name, get_tool_number
 
 NUMBER_PREFIXES = {
     OffsetKind.TOOL: "T",
@@ -279,12 +281,21 @@ class ConfirmedOffsetChanges:
         found = find_suspicious_changes(tool_number, old, new, travel)
         if old is not None and old.master and not touch.applies_to_this_tool_only:
             found += find_suspicious_follower_changes(tools, tool_number, new, travel)
-        if tip_x_mm is not None and self._is_other_side(tool_number, tip_x_mm, new.x):
-            found = (
-                SuspiciousChange(SuspicionReason.WRONG_SIDE, tool_number, "x", old.x if old else None, new.x),
-                *found,
-            )
+        if tip_x_mm is not None and (reason := self._find_position_suspicion(tool_number, tip_x_mm, new.x)):
+            found = (SuspiciousChange(reason, tool_number, "x", old.x if old else None, new.x), *found)
         return found
+
+    def _find_position_suspicion(self, number: int, tip_x_mm: float, new_x: float) -> SuspicionReason | None:
+        """Return why the position of a tip after a touch-off in X is suspicious, or None."""
+        old = self.offset_history.offset_book.tool_offsets.get(number)
+        if self._is_other_side(number, tip_x_mm, new_x):
+            return SuspicionReason.WRONG_SIDE
+        if old is None:
+            return None
+        shape = self.offset_history.offset_book.tool_shapes.get(get_tool_number(number))
+        if shape is not None and is_quadrant_for_other_side(shape, old, tip_x_mm):
+            return SuspicionReason.TIP_QUADRANT
+        return find_factor_suspicion(tip_x_mm + new_x - old.offset[0], tip_x_mm)
 
     def _describe_followers(self, number: int, touch: TouchPosition) -> str:
         """Return the names of the tools that follow a touch-off of the master tool.
@@ -323,7 +334,7 @@ class ConfirmedOffsetChanges:
         if (why := history.offset_book.barred(act)) or not found:
             return why or save()
         changes = describe_suspicious_changes(
-            found, lambda each: self._describe_field(kind, each), lambda each: _reason(each.kind)
+            found, lambda each: self._describe_field(kind, each), lambda each: describe_suspicion(each.kind)
         )
         text = tr("{changes}. Y: CHANGE   N: KEEP OLD VALUE")
         if others:
@@ -434,14 +445,18 @@ class ConfirmedOffsetChanges:
             self.offset_history.desk.show_success(done)
 
 
-def _reason(doubt: SuspicionReason) -> str:
+def describe_suspicion(reason: SuspicionReason) -> str:
+    """Return the text of the reason why a change must be confirmed."""
     words = {
         SuspicionReason.OUTSIDE_TRAVEL: tr("OUTSIDE AXIS TRAVEL"),
         SuspicionReason.WRONG_SIDE: tr("CUTS ON THE OPPOSITE SIDE OF THE PART"),
+        SuspicionReason.TIP_QUADRANT: tr("TIP QUADRANT IS FOR THE OPPOSITE SIDE OF THE PART"),
+        SuspicionReason.RADIUS_ENTERED: tr("HALF OF THE OLD DIAMETER. RADIUS ENTERED?"),
+        SuspicionReason.DOUBLE_DIAMETER: tr("TWICE THE OLD DIAMETER"),
         SuspicionReason.LARGE_CHANGE: tr("LARGE CHANGE"),
         SuspicionReason.NEW_MASTER: tr("OTHER TOOLS ARE ADJUSTED WITH THIS TOOL"),
     }
-    return words[doubt]
+    return words[reason]
 
 
 def _changed_meanwhile() -> str:

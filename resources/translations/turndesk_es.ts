@@ -12345,6 +12345,11 @@
     </message>
     <message>
       <location filename="app/offsets/offset_changes.py" />
+      <source>HALF OF THE OLD DIAMETER. RADIUS ENTERED?</source>
+      <translation>MITAD DEL DIÁMETRO ANTERIOR. ¿ES UN RADIO?</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
       <source>LARGE CHANGE</source>
       <translation>CAMBIO GRANDE</translation>
     </message>
@@ -12397,6 +12402,16 @@
       <location filename="app/offsets/offset_changes.py" />
       <source>THIS TABLE</source>
       <translation>ESTA TABLA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>TIP QUADRANT IS FOR THE OPPOSITE SIDE OF THE PART</source>
+      <translation>EL CUADRANTE DE PUNTA ES PARA EL LADO OPUESTO DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_changes.py" />
+      <source>TWICE THE OLD DIAMETER</source>
+      <translation>DOBLE DEL DIÁMETRO ANTERIOR</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_changes.py" />

@@ -4,7 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from app.offsets.change_rules import SuspicionReason, find_suspicious_changes, find_suspicious_table_changes
+from app.desk.stored_shapes import is_quadrant_for_other_side
+from app.offsets.change_rules import (
+    SuspicionReason,
+    find_factor_suspicion,
+    find_suspicious_changes,
+    find_suspicious_table_changes,
+)
 from core.store.store_rows import (
     MillToolRow,
     OffsetKind,
@@ -12,6 +18,7 @@ from core.store.store_rows import (
     PresetRow,
     SecondaryOffsetRow,
     ToolOffsetRow,
+    ToolShapeRow,
     ZeroOffsetRow,
 )
 from tests.offsets.conftest import Room
@@ -153,3 +160,48 @@ def test_undo_of_a_row_without_a_change_asks_nothing(room: Room) -> None:
     grid.handle_undo()
     assert room.desk.prompt_notice == text("offsets.no-change-to-undo", row="T9")
     assert not room.desk.confirmation_key
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        (12.5, 6.25, SuspicionReason.RADIUS_ENTERED),  # Ø 25 of a diameter of 50: the change is 6.25
+        (12.5, 6.4, SuspicionReason.RADIUS_ENTERED),  # .3 from half; a tenth of the change is .61
+        (12.5, 6.7, None),  # .9 from half; a tenth of the change is .58
+        (-12.5, -6.25, SuspicionReason.RADIUS_ENTERED),
+        (12.5, 25.0, SuspicionReason.DOUBLE_DIAMETER),
+        (12.5, 26.5, None),  # 1.5 from twice; a tenth of the change is 1.4
+        (1.0, 0.5, SuspicionReason.RADIUS_ENTERED),  # .5 mm is not a large change
+        (12.5, 12.4, None),
+        (12.5, 12.5, None),
+        (0.0, 0.0, None),
+        (0.0, 10.0, None),
+        (12.5, 0.0, None),
+        (12.5, -6.25, None),  # the other side has its own reason
+    ],
+)
+def test_half_and_twice_the_old_diameter_are_suspicious(
+    old: float, new: float, reason: SuspicionReason | None
+) -> None:
+    assert find_factor_suspicion(old, new) is reason
+
+
+@pytest.mark.parametrize(
+    ("row", "quadrant", "tip_x", "wrong"),
+    [
+        (ToolShapeRow("turning"), 3, 10.0, False),
+        (ToolShapeRow("turning"), 2, 10.0, True),  # points away from the axis
+        (ToolShapeRow("turning"), 2, -10.0, False),
+        (ToolShapeRow("boring", diameter=12.0), 2, 10.0, False),
+        (ToolShapeRow("boring", diameter=12.0), 3, 10.0, True),  # a bar that points to the axis
+        (ToolShapeRow("boring", diameter=12.0), 3, -10.0, False),
+        (ToolShapeRow("grooving"), 6, 10.0, True),
+        (ToolShapeRow("turning"), 7, -10.0, False),  # points neither to the axis nor away from it
+        (ToolShapeRow("turning"), 0, -10.0, False),
+        (ToolShapeRow("drill", diameter=8.0), 8, -10.0, False),
+    ],
+)
+def test_quadrant_of_a_stored_shape_must_fit_the_side(
+    row: ToolShapeRow, quadrant: int, tip_x: float, wrong: bool
+) -> None:
+    assert is_quadrant_for_other_side(row, ToolOffsetRow(quadrant=quadrant), tip_x) is wrong
