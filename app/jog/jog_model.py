@@ -17,6 +17,7 @@ from app.jog.skim_cut_and_setter import HeldTouchOff, SkimCut, ToolSetterTouchOf
 from app.jog.tilted_jog import TiltedJog
 from app.jog.tool_setting import TOOL_QUESTION, ToolSetting
 from app.jog.tool_touch_off import TOUCH_X, TOUCH_Z
+from app.jog.touch_off_picture import TouchOffPictures
 from app.offsets.mill_touch import MillTouchCalculator
 from core.executor.commands import StopJog
 from core.executor.snapshot import ACTIVE_STATES, MachineState, Snapshot
@@ -48,6 +49,7 @@ class JogModel:
     handwheel: JogHandwheel = field(init=False)
     homing_question: HomingQuestion = field(init=False)
     tool_setting: ToolSetting = field(init=False)
+    touch_off_pictures: TouchOffPictures = field(init=False)
     skim_cut: SkimCut = field(init=False)
     manual_functions: ManualFunctions = field(init=False)
     tool_setter_touch_off: ToolSetterTouchOff = field(init=False)
@@ -75,6 +77,7 @@ class JogModel:
         self.handwheel = JogHandwheel(self.machine, self.held_jog, names, self._find_wheel_refusal)
         self.homing_question = HomingQuestion(self.machine, desk)
         self.tool_setting = ToolSetting(desk, desk.offset_book)
+        self.touch_off_pictures = TouchOffPictures(self.tool_setting)
         self.skim_cut = SkimCut(desk, self.tool_setting)
         hand = desk.page_registry.find_model(ManualFunctions)
         if hand is None:
@@ -135,6 +138,7 @@ class JogModel:
         self.tool_setter_touch_off.update(snapshot)
         self.tool_setting.update(snapshot)
         self.skim_cut.update(snapshot)
+        self.touch_off_pictures.update()
         self.manual_functions.update(snapshot)
         if self.tool_setting.question_name and (
             self.manual_functions.selected_function or self.manual_functions.is_asking_speed

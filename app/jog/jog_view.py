@@ -350,16 +350,17 @@ class JogPage(HeldKeysPage):
         if not self._has_keyboard():
             self.stop_if_active()
         self.model.update(snapshot)
-        entering, hand = self.model.is_entry_open, self.model.manual_functions
+        entering = self.model.is_entry_open
         self.jog_cross.setVisible(not entering)
         self.number_pad.setVisible(entering)
         self.number_pad.selected_page_key = (
             ("L", tr("THIS TOOL ONLY")) if self.model.tool_setting.is_master_touch_off else None
         )
         self.jog_cross.show_state(snapshot)
-        self.manual_panel.setVisible(hand.is_panel_shown)
-        self.mill_panel.setVisible(self.model.is_mill and not hand.is_panel_shown)
-        self.tool_panel.setVisible(not self.model.is_mill and not hand.is_panel_shown)
+        functions = self._are_functions_shown(snapshot)
+        self.manual_panel.setVisible(functions)
+        self.mill_panel.setVisible(self.model.is_mill and not functions)
+        self.tool_panel.setVisible(not self.model.is_mill and not functions)
         if entering is self.entry_panel.isHidden():
             self.entry_panel.setVisible(entering)
             self._arrange_parts()
@@ -370,6 +371,15 @@ class JogPage(HeldKeysPage):
         else:
             self.tool_panel.show_tool(snapshot)
         self._show_question(snapshot)
+
+    def _are_functions_shown(self, snapshot: Snapshot) -> bool:
+        """Return whether the manual functions are shown.
+
+        The picture of a touch-off replaces them, unless the operator needs the key that stops the spindle.
+        """
+        hand = self.model.manual_functions
+        has_picture = self.model.touch_off_pictures.picture is not None
+        return hand.is_panel_shown and (not has_picture or hand.is_spindle_turning(snapshot))
 
     def _show_question(self, snapshot: Snapshot) -> None:
         """Show the open question, or the available keys if no question is open."""

@@ -14,6 +14,8 @@ from app.jog.jog_model import JogModel
 from app.jog.tilted_jog import LINEAR_AXES
 from app.jog.tool_setting import TOOL_QUESTION
 from app.jog.tool_touch_off import TOUCH_X, TOUCH_Z
+from app.jog.touch_off_picture import TouchOffPicture
+from app.jog.touch_off_scene_view import draw_touch_off_picture
 from app.offsets.offset_values import (
     UnitMode,
     describe_missing_offset,
@@ -51,6 +53,7 @@ class ToolSettingPanel(Panel):
     _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
     _tip: RedrawingAttribute[tuple[float, float] | None] = RedrawingAttribute(None)
     _mode = RedrawingAttribute(UnitMode())
+    _picture: RedrawingAttribute[TouchOffPicture | None] = RedrawingAttribute(None)
 
     def __init__(self, theme: ScreenTheme, model: JogModel, parent: QWidget) -> None:
         super().__init__(theme, parent)
@@ -61,6 +64,7 @@ class ToolSettingPanel(Panel):
         tool = self._model.tool_setting
         self._mode = tool.offset_history.unit_mode
         self._tip = tool.find_tip_position(snapshot)
+        self._picture = self._model.touch_off_pictures.picture
         self._shown = (
             tool.tool_number,
             tool.tool_row,
@@ -102,12 +106,17 @@ class ToolSettingPanel(Panel):
         cells = self._find_row_count(room) * (FINGERTIP_PX + 0.5 * u)  # Each cell is a touch target.
         lines = 2 * self.theme.find_line_height(2.0)
         high = min(max(10.5 * u, lines), 0.36 * room.height(), max(room.height() - cells, lines))
+        if self._picture is not None:
+            high = max(lines, float(FINGERTIP_PX), 6.0 * u)
         head = QRectF(room.x(), room.y(), room.width(), high)
         self._draw_head(painter, head)
         rest = QRectF(
             room.x(), head.bottom() + 0.5 * u, room.width(), room.bottom() - head.bottom() - 0.5 * u
         )
-        self._cells(painter, rest)
+        if self._picture is None:
+            self._cells(painter, rest)
+        else:
+            draw_touch_off_picture(painter, rest, self._picture)
 
     def _find_row_count(self, room: QRectF) -> int:
         """Return the number of rows of fields, which is smaller in a low panel."""
@@ -141,7 +150,8 @@ class ToolSettingPanel(Panel):
         painter.draw_text_line(
             QRectF(room.x(), room.y(), room.width(), line), self.tip_position_heading, 1.5, "soft"
         )
-        high = (room.height() - line) / 2
+        rows = 1 if self._picture is not None else 2  # X and Z are in one row above a picture.
+        high, wide = (room.height() - line) / rows, room.width() * rows / 2
         if self._tip is None:
             painter.draw_text_line(
                 room.adjusted(0, line, 0, 0),
@@ -159,8 +169,9 @@ class ToolSettingPanel(Panel):
             ("Z", format_length(z, mode.is_metric)),
         )
         for number, (name, figure) in enumerate(axis_texts):
-            row = QRectF(room.x(), room.y() + line + number * high, room.width(), high)
-            painter.draw_text_line(row, name, 2.2, "accent")
+            down, across = divmod(number, 3 - rows)
+            row = QRectF(room.x() + across * wide, room.y() + line + down * high, wide, high)
+            painter.draw_text_line(row.adjusted(across * u, 0, 0, 0), name, 2.2, "accent")
             painter.draw_text_line(row.adjusted(5 * u, 0, 0, 0), figure, 3.4, "text", at=ALIGN_RIGHT)
 
     def _cells(self, painter: ThemedPainter, room: QRectF) -> None:

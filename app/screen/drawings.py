@@ -136,20 +136,10 @@ class SketchPanel(Panel):
                 painter.drawLine(b, b + lift)
             line = QLineF(a + lift, b + lift)
             painter.drawLine(line)
-            self._draw_arrow(painter, line)
-            self._draw_arrow(painter, QLineF(line.p2(), line.p1()))
+            draw_arrowhead(painter, line)
+            draw_arrowhead(painter, QLineF(line.p2(), line.p1()))
             middle = line.pointAt(share)
         self._figure(painter, middle, dim.prefix + figure, ink, dim.field_label, marked=marked)
-
-    def _draw_arrow(self, painter: ThemedPainter, line: QLineF) -> None:
-        """Draw an arrowhead at the first point of a line."""
-        if line.length() < 1e-6:
-            return
-        for turn in (20.0, -20.0):
-            side = QLineF(line)
-            side.setLength(_ARROW_SIZE * self.theme.unit_px)
-            side.setAngle(line.angle() + turn)
-            painter.drawLine(side)
 
     def _figure(
         self, painter: ThemedPainter, at: QPointF, figure: str, ink: str, word: str, *, marked: bool
@@ -174,6 +164,17 @@ class SketchPanel(Panel):
         place.moveLeft(max(0.0, min(place.x(), self.width() - place.width())))
         place.moveTop(max(0.0, min(place.y(), self.height() - place.height())))
         return place
+
+
+def draw_arrowhead(painter: ThemedPainter, line: QLineF) -> None:
+    """Draw an arrowhead at the first point of a line with the current pen."""
+    if line.length() < 1e-6:
+        return
+    for turn in (20.0, -20.0):
+        side = QLineF(line)
+        side.setLength(_ARROW_SIZE * painter.theme.unit_px)
+        side.setAngle(line.angle() + turn)
+        painter.drawLine(side)
 
 
 def _is_diameter(dim: Dimension) -> bool:
@@ -202,7 +203,7 @@ def draw_tool_outline(
         for points in polygons:
             painter.setPen(look.make_pen(ink, width))
             painter.setBrush(look.get_color(ground))
-            painter.drawPolygon(place.map(_polygon(points)))
+            painter.drawPolygon(place.map(make_outline_polygon(points)))
     at = place.map(QPointF(0.0, 0.0))
     painter.setPen(look.make_pen("tip", 0.2))
     arm, circle = (0.7 * u, 0.3 * u) if is_small else (1.6 * u, 0.6 * u)
@@ -220,17 +221,17 @@ def _make_transform(box: QRectF, outline: ToolOutline) -> QTransform:
 
     Axial tools are shown completely. For other tools, only the surroundings of the cutting edges are shown.
     """
-    cutting = _polygon(outline.cutting_outlines[0]).boundingRect()
+    cutting = make_outline_polygon(outline.cutting_outlines[0]).boundingRect()
     for points in outline.cutting_outlines[1:]:
-        cutting = cutting.united(_polygon(points).boundingRect())
+        cutting = cutting.united(make_outline_polygon(points).boundingRect())
     share = 1.15 if outline.is_axially_symmetric else _DRAWING_SCALE
     if outline.is_axially_symmetric and outline.body_outlines:
-        cutting = cutting.united(_polygon(outline.body_outlines[0]).boundingRect())
+        cutting = cutting.united(make_outline_polygon(outline.body_outlines[0]).boundingRect())
     scale = min(box.width() / cutting.width(), box.height() / cutting.height()) / share
     # Shift the center of the drawing toward the body.
     middle = cutting.center()
     if outline.body_outlines and not outline.is_axially_symmetric:
-        whole = _polygon(outline.body_outlines[0]).boundingRect().center() - middle
+        whole = make_outline_polygon(outline.body_outlines[0]).boundingRect().center() - middle
         reach = max(abs(whole.x()), abs(whole.y()), 1e-9)
         middle += whole * (0.3 * min(cutting.width(), cutting.height()) / reach)
     return QTransform(
@@ -238,7 +239,8 @@ def _make_transform(box: QRectF, outline: ToolOutline) -> QTransform:
     )
 
 
-def _polygon(points: FloatArray) -> QPolygonF:
+def make_outline_polygon(points: FloatArray) -> QPolygonF:
+    """Return points (z, x) in mm as a polygon."""
     return QPolygonF([QPointF(z, x) for z, x in points.tolist()])
 
 

@@ -10250,11 +10250,6 @@
     </message>
     <message>
       <location filename="app/extras/quality/features_section.py" />
-      <source>NEW</source>
-      <translation>NUEVA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/quality/features_section.py" />
       <source>NEXT PART DOES NOT WAIT FOR REQUIRED MEASUREMENTS</source>
       <translation>LA PIEZA SIGUIENTE NO ESPERA LAS MEDICIONES REQUERIDAS</translation>
     </message>
@@ -12112,6 +12107,41 @@
       <location filename="app/jog/tool_touch_off.py" />
       <source>{axis} IS NOT HOMED AND ITS POSITION IS UNKNOWN. HOME IT FIRST</source>
       <translation>{axis} NO TIENE REFERENCIA Y SU POSICIÓN NO SE CONOCE. REFERÉNCIELO ANTES</translation>
+    </message>
+    <message>
+      <location filename="app/jog/touch_off_picture.py" />
+      <source>BORE DIAMETER</source>
+      <translation>DIÁMETRO INTERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/jog/touch_off_picture.py" />
+      <source>EXAMPLE TOOL. SHAPE: F8, F8</source>
+      <translation>HERRAMIENTA DE EJEMPLO. FORMA: F8, F8</translation>
+    </message>
+    <message>
+      <location filename="app/jog/touch_off_picture.py" />
+      <source>FACE OF THE PART</source>
+      <translation>CARA DE LA PIEZA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/touch_off_picture.py" />
+      <source>OUTSIDE DIAMETER</source>
+      <translation>DIÁMETRO EXTERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/jog/touch_off_picture.py" />
+      <source>TOOL ON CENTER</source>
+      <translation>HERRAMIENTA EN EL CENTRO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/touch_off_scene_view.py" />
+      <source>NEW</source>
+      <translation>NUEVA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/touch_off_scene_view.py" />
+      <source>OLD</source>
+      <translation>ANTES</translation>
     </message>
     <message>
       <location filename="app/mdi/mdi_model.py" />

@@ -316,6 +316,7 @@ _OWN_SCENES = (
     Scene("editor", "F3"),
     Scene("mdi", 'F1 F4 "G90G94F10X.9Z.1'),
     Scene("jog", "F1 F5"),
+    Scene("touch-off", 'F1 F5 T "1 Enter X "1.002'),
     Scene("by-hand", 'F1 F5 T "1 Enter C X B 1 "800 Enter'),
     Scene("searchto", 'F6 "20 Enter'),
     Scene("tools", "F8"),

@@ -1,0 +1,197 @@
+"""Picture of the touch-off that is being entered: its drawing, its texts and its warnings."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from dataclasses import dataclass, field, replace
+
+from app.desk.arithmetic import InvalidEntryError
+from app.desk.status.formats import format_length
+from app.desk.stored_shapes import find_shape_row_mistakes, make_tool_shape
+from app.desk.translation import tr
+from app.jog.tool_setting import ToolSetting
+from app.jog.tool_touch_off import TOUCH_FIELDS
+from app.jog.touch_off_scene import (
+    ToolAtPart,
+    TouchedSurface,
+    TouchOffScene,
+    find_working_side,
+    make_touch_off_scene,
+)
+from app.offsets.offset_changes import ConfirmedOffsetChanges, describe_suspicion
+from app.offsets.offset_values import UnitMode, describe_missing_offset, format_signed_length
+from core.part.tool_shape import ToolKind, ToolShape
+from core.store.store_rows import ToolOffsetRow
+from core.tool_edges import TIP_DIRECTIONS, get_tool_number
+
+MISSING_VALUE = "?"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TouchOffPicture:
+    """Drawing of a touch-off with its texts.
+
+    - ``new_text`` is the entered size, and ``old_text`` is the size according to the old offset.
+    - ``size_texts`` are the lines of the dimension: the entered size, and the radius if the machine uses
+      radii.
+    - ``warning_text`` is the reason why the entry must be confirmed, or an empty string.
+    - ``note_text`` explains how the tool is drawn, or is an empty string.
+    """
+
+    scene: TouchOffScene
+    title: str
+    old_text: str
+    new_text: str
+    size_texts: tuple[str, ...]
+    difference_text: str
+    warning_text: str
+    note_text: str
+
+
+@dataclass(slots=True)
+class TouchOffPictures:
+    """The picture of the touch-off that is being entered.
+
+    The picture remains until the operator has answered the question about a suspicious change.
+    """
+
+    tool_setting: ToolSetting
+    picture: TouchOffPicture | None = None
+    _inputs: Hashable = field(default=None)  # The values that the current picture was made from.
+
+    def update(self) -> None:
+        """Make the picture again if the entry or the tool has changed.
+
+        This method is called once per frame.
+        """
+        tool = self.tool_setting
+        if tool.question_name in TOUCH_FIELDS and not tool.is_tool_setter_result:
+            inputs = self._list_inputs()
+            if self.picture is None or inputs != self._inputs:
+                self.picture, self._inputs = self._make_picture(), inputs
+        elif not tool.desk.confirmation_key:
+            self.picture = None
+
+    def _list_inputs(self) -> Hashable:
+        tool, touch = self.tool_setting, self.tool_setting.touch_off
+        return (
+            tool.question_name,
+            str(tool.text),
+            tool.tool_number,
+            tool.tool_row,
+            tool.offset_book.tool_shapes.get(get_tool_number(tool.tool_number)),
+            tool.offset_history.unit_mode,
+            touch.touch_position_mm,
+            touch.moves_only_this_tool,
+            touch.is_skim_cut,
+        )
+
+    def _make_picture(self) -> TouchOffPicture:
+        tool, touch = self.tool_setting, self.tool_setting.touch_off
+        mode, row, name = tool.offset_history.unit_mode, tool.tool_row, touch.field_name
+        old = None if row is None else touch.touch_position_mm - row.offset["xz".index(name)]
+        new = self._find_new_position(mode)
+        shape, is_example = self._find_shape(old if name == "x" else self._find_old_x(row))
+        side, is_internal = find_working_side(
+            shape, old if name == "x" else self._find_old_x(row), is_shape_known=not is_example
+        )
+        scene = make_touch_off_scene(
+            ToolAtPart(shape, side, is_internal, name == "x", new, old, touch.is_skim_cut)
+        )
+        return TouchOffPicture(
+            scene,
+            _name_surface(scene.surface),
+            _format_size(name, old, mode) if old is not None else describe_missing_offset(),
+            _format_size(name, new, mode),
+            _format_dimension(name, new, mode),
+            _format_difference(name, old, new, mode),
+            self._find_warning(new),
+            tr("EXAMPLE TOOL. SHAPE: F8, F8") if is_example else "",
+        )
+
+    def _find_new_position(self, mode: UnitMode) -> float | None:
+        """Return the entered size as the position of the tip in mm, or None if it is not a valid number."""
+        touch = self.tool_setting.touch_off
+        try:
+            return touch.touch_position_mm - touch.find_zero_position(self.tool_setting.text, mode)
+        except InvalidEntryError:
+            return None
+
+    def _find_old_x(self, row: ToolOffsetRow | None) -> float | None:
+        """Return X of the tip according to the old offset, or None for a new tool."""
+        if row is None:
+            return self.tool_setting.tool_fields.incomplete_tool.tip_x_mm
+        return self.tool_setting.desk.read_snapshot().tip[0] - row.offset[0]
+
+    def _find_shape(self, old_x_mm: float | None) -> tuple[ToolShape, bool]:
+        """Return the stored shape of the tool, or else an example shape, and whether it is an example."""
+        tool = self.tool_setting
+        stored = tool.offset_book.tool_shapes.get(get_tool_number(tool.tool_number))
+        if stored is None or find_shape_row_mistakes(stored, tool.tool_row):
+            return make_example_shape(tool.tool_row or ToolOffsetRow(), old_x_mm), True
+        return _add_tip_quadrant(make_tool_shape(stored, tool.tool_row)), False
+
+    def _find_warning(self, new_position_mm: float | None) -> str:
+        """Return the most serious reason why the entry must be confirmed, or an empty string."""
+        tool, touch = self.tool_setting, self.tool_setting.touch_off
+        if new_position_mm is None:
+            return ""
+        position = touch.make_touch_position(touch.touch_position_mm - new_position_mm)
+        tip_x_mm = new_position_mm if touch.field_name == "x" else None
+        found = ConfirmedOffsetChanges(tool.offset_history).find_suspicious_touch_changes(
+            tool.tool_number, position, tip_x_mm
+        )
+        return next((describe_suspicion(each.kind) for each in found if each.name == touch.field_name), "")
+
+
+def make_example_shape(row: ToolOffsetRow, old_x_mm: float | None) -> ToolShape:
+    """Return an example of a tool without a stored shape.
+
+    It is a boring bar if the tip quadrant points away from the axis, and otherwise a turning tool.
+    """
+    is_rear = old_x_mm is not None and old_x_mm < 0.0
+    shape = ToolShape(ToolKind.TURNING, tip=row.quadrant, nose_radius=row.nose_radius, rear=is_rear)
+    _side, is_internal = find_working_side(shape, old_x_mm, is_shape_known=False)
+    return _add_tip_quadrant(replace(shape, kind=ToolKind.BORING) if is_internal else shape)
+
+
+def _add_tip_quadrant(shape: ToolShape) -> ToolShape:
+    """Return the shape with the tip quadrant that its kind implies, if no quadrant is specified.
+
+    The measured size then refers to the edge of the tool, and not to its nose center.
+    """
+    if shape.tip or shape.is_rotating:
+        return shape
+    return replace(shape, tip=next(tip for tip in range(1, 9) if TIP_DIRECTIONS[tip] == shape.direction))
+
+
+def _name_surface(surface: TouchedSurface) -> str:
+    words = {
+        TouchedSurface.OUTSIDE_DIAMETER: tr("OUTSIDE DIAMETER"),
+        TouchedSurface.BORE: tr("BORE DIAMETER"),
+        TouchedSurface.FACE: tr("FACE OF THE PART"),
+        TouchedSurface.NONE: tr("TOOL ON CENTER"),
+    }
+    return words[surface]
+
+
+def _format_size(name: str, position_mm: float | None, mode: UnitMode) -> str:
+    """Return a position of the tip as it is entered: X as a diameter, and Z."""
+    symbol, factor = ("Ø", 2.0) if name == "x" else ("Z", 1.0)
+    value = MISSING_VALUE if position_mm is None else format_length(factor * position_mm, mode.is_metric)
+    return f"{symbol} {value}"
+
+
+def _format_dimension(name: str, position_mm: float | None, mode: UnitMode) -> tuple[str, ...]:
+    """Return the lines of the dimension: the entered size, and the radius if the machine uses radii."""
+    size = _format_size(name, position_mm, mode)
+    if name == "z" or mode.is_diameter or position_mm is None:
+        return (size,)
+    return size, f"R {format_length(position_mm, mode.is_metric)}"
+
+
+def _format_difference(name: str, old_mm: float | None, new_mm: float | None, mode: UnitMode) -> str:
+    """Return the new size minus the old size as text, or an empty string if one of them is unknown."""
+    if old_mm is None or new_mm is None:
+        return ""
+    return format_signed_length((new_mm - old_mm) * (2.0 if name == "x" else 1.0), mode.is_metric)
