@@ -21099,52 +21099,52 @@
       <translation>{word}: este valor debe ser mayor que cero.</translation>
     </message>
     <message>
-      <location filename="core/extras/convert/conversion_proof.py" />
+      <location filename="core/extras/convert/proof/conversion_proof.py" />
       <source>feed per revolution</source>
       <translation>el avance por revolución</translation>
     </message>
     <message>
-      <location filename="core/extras/convert/conversion_proof.py" />
+      <location filename="core/extras/convert/proof/conversion_proof.py" />
       <source>the center in X</source>
       <translation>el centro en X</translation>
     </message>
     <message>
-      <location filename="core/extras/convert/conversion_proof.py" />
+      <location filename="core/extras/convert/proof/conversion_proof.py" />
       <source>the center in Z</source>
       <translation>el centro en Z</translation>
     </message>
     <message>
-      <location filename="core/extras/convert/conversion_proof.py" />
+      <location filename="core/extras/convert/proof/conversion_proof.py" />
       <source>the kind of move</source>
       <translation>el tipo de movimiento</translation>
     </message>
     <message>
-      <location filename="core/extras/convert/conversion_proof.py" />
+      <location filename="core/extras/convert/proof/conversion_proof.py" />
       <source>the lead</source>
       <translation>el paso</translation>
     </message>
     <message>
-      <location filename="core/extras/convert/conversion_proof.py" />
+      <location filename="core/extras/convert/proof/conversion_proof.py" />
       <source>the maximum spindle speed</source>
       <translation>la velocidad máxima del husillo</translation>
     </message>
     <message>
-      <location filename="core/extras/convert/conversion_proof.py" />
+      <location filename="core/extras/convert/proof/conversion_proof.py" />
       <source>the nose compensation</source>
       <translation>la compensación de punta</translation>
     </message>
     <message>
-      <location filename="core/extras/convert/conversion_proof.py" />
+      <location filename="core/extras/convert/proof/conversion_proof.py" />
       <source>the number of axes after a tool change</source>
       <translation>el número de ejes después de un cambio de herramienta</translation>
     </message>
     <message>
-      <location filename="core/extras/convert/conversion_proof.py" />
+      <location filename="core/extras/convert/proof/conversion_proof.py" />
       <source>the spindle speed</source>
       <translation>la velocidad del husillo</translation>
     </message>
     <message>
-      <location filename="core/extras/convert/conversion_proof.py" />
+      <location filename="core/extras/convert/proof/conversion_proof.py" />
       <source>the step</source>
       <translation>el paso</translation>
     </message>

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from core.extras.convert.conversion_messages import make_error
-from core.extras.convert.conversion_proof import Proof, prove
 from core.extras.convert.omniturn_writer import OmniTurnWriter, WrittenLine
 from core.extras.convert.path_steps import MOVE_KINDS
+from core.extras.convert.proof.conversion_proof import Proof, prove
 from core.extras.convert.source_options import ConversionOptions
 from core.extras.convert.source_reader import read_source
 from core.interpreter.shared.job_setup import ControlLimits

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from core.extras.convert.conversion_proof import prove
 from core.extras.convert.path_steps import PathStep, StepKind
+from core.extras.convert.proof.conversion_proof import prove
 from core.interpreter.shared.job_setup import ControlLimits
 from core.language.diagnostics import Severity
 from tests.extras.convert.sources import LINUXCNC, converted, lines_after, refused

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from core.extras.convert.conversion import Conversion
-from core.extras.convert.conversion_proof import prove
 from core.extras.convert.path_steps import PathStep, SpindleState, StepKind
+from core.extras.convert.proof.conversion_proof import prove
 from core.extras.convert.source_options import ConversionOptions, SourceControl
 from core.extras.convert.targets.target_conversion import convert_to_sinumerik
 from core.interpreter.shared.job_setup import ControlLimits

@@ -8,16 +8,15 @@ from itertools import zip_longest
 from math import inf
 
 from core.extras.convert.conversion_messages import make_error
-from core.extras.convert.conversion_proof import (
+from core.extras.convert.omniturn_writer import WrittenLine
+from core.extras.convert.path_steps import MOVE_KINDS, PathStep, StepKind
+from core.extras.convert.proof.compared_steps import drop_idle, drop_repeated_speeds
+from core.extras.convert.proof.conversion_proof import (
     SPEED_RESOLUTION,
     PathComparison,
     Proof,
-    drop_idle,
-    drop_repeated_speeds,
     make_target_error,
 )
-from core.extras.convert.omniturn_writer import WrittenLine
-from core.extras.convert.path_steps import MOVE_KINDS, PathStep, StepKind
 from core.extras.convert.source_options import ConversionOptions, SourceControl
 from core.extras.convert.source_reader import read_source
 from core.extras.convert.targets.omniturn_steps import InterpretedProgram

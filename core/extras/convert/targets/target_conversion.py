@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from core.extras.convert.conversion import Conversion
 from core.extras.convert.conversion_messages import make_error
-from core.extras.convert.conversion_proof import Proof, prove
 from core.extras.convert.path_steps import MOVE_KINDS
+from core.extras.convert.proof.conversion_proof import Proof, prove
 from core.extras.convert.source_options import ConversionOptions, SourceControl, TargetControl
 from core.extras.convert.source_reader import read_source
 from core.extras.convert.targets.gcode_writers import FanucWriter, LinuxCncWriter

@@ -1,0 +1,1 @@
+"""Proof that a converted program moves and acts as its source does."""
