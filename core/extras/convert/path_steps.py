@@ -53,7 +53,7 @@ class PathStep:
     - ``cx cz``: center of an arc; ``clockwise`` is as seen with X+ toward the operator, as in OmniTurn
     - ``feed``: in mm/min, or in mm/rev if ``per_rev`` is True; the lead of a thread
     - ``number``: tool, M code, dwell in seconds, or the G code 40, 41 or 42 of nose compensation
-    - ``comment``: comment of the source
+    - ``comment``: comments of the source, separated by line feeds
     """
 
     kind: StepKind

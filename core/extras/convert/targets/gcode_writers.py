@@ -75,8 +75,8 @@ class LinuxCncWriter(ProgramWriter):
 
     def write_stop(self, code: float, text: str) -> None:
         """Write M0 or M1 after a line with a message for the operator."""
-        if text:
-            self.append_raw_line(super().make_comment(_MESSAGE_PREFIX + text))
+        for part in self.split_text(text):
+            self.append_raw_line(super().make_comment(_MESSAGE_PREFIX + part))
         super().write_stop(code, "")
 
     def make_comment(self, text: str) -> str:

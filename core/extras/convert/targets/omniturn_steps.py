@@ -15,6 +15,7 @@ from itertools import zip_longest
 from core.extras.convert.conversion_messages import make_error, make_note, make_warning
 from core.extras.convert.path_steps import PathStep, SpindleState, StepKind
 from core.extras.convert.source_options import ConversionOptions
+from core.extras.convert.targets.source_comments import COMMENT, SourceComments
 from core.interpreter.dialects import interpret_program
 from core.interpreter.shared import actions
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
@@ -25,7 +26,6 @@ from core.language.source import Dialect, ProgramSource
 MAX_TOOL_NUMBER = 32
 _NEAR = 1e-6  # mm
 _OTHER_SIDE_MM = 1.0  # minimum travel of a cut beyond the spindle axis
-_COMMENT = re.compile(r"\(([^()]*)\)?")
 _BLOCK_DELETE = re.compile(r"\s*/")
 _AXIS_WORD = re.compile(r"[XZ](?=\s*[-+.\d(#])", re.IGNORECASE)
 _MOVES = {
@@ -98,7 +98,8 @@ def _interpret_variant(
     errors = [each for each in done.diagnostics if each.severity is Severity.ERROR]
     if errors:
         return InterpretedProgram(blocks, (), errors)
-    maker = StepMaker(texts, options, limits)
+    comments = SourceComments(texts, sorted({each.line for each in blocks}))
+    maker = StepMaker(texts, options, limits, comments)
     try:
         for block in blocks:
             maker.append_block(block)
@@ -169,27 +170,26 @@ def _relative_to_part_zero(block: Block) -> Block:
 class StepMaker:
     """Conversion of elementary blocks to steps, in program order.
 
-    ``texts`` contains the lines of the program, from which the comments are taken.
+    ``texts`` contains the lines of the program, and ``comments`` reads their comments.
     """
 
     texts: Sequence[str]
     options: ConversionOptions
     limits: ControlLimits
+    comments: SourceComments
     steps: list[PathStep] = field(default_factory=list)
     findings: list[Diagnostic] = field(default_factory=list)
     tool_number: int = 0
     spindle: SpindleState = field(default_factory=SpindleState)
     nose_code: int = 40
     _is_tool_new: bool = False  # since a tool change and until the next move
-    _line: int = 0
     _implied_actions: dict[int, Sequence[actions.Action]] = field(default_factory=dict)  # by number of block
-    _comments: list[str] = field(default_factory=list)
     _reported: set[tuple[str, object]] = field(default_factory=set)
     _cut_range: dict[int, tuple[int, float, float]] = field(default_factory=dict)  # line, min X, max X
 
     def append_block(self, block: Block) -> None:
         """Append the steps of a block. Raises ProgramError if another control cannot execute it."""
-        self._read_comments(block.line)
+        self._report_block_delete(block)
         if block.plane is not None or block.travel is not None or abs(block.c - block.c0) > _NEAR:
             raise make_error(block.line, 0, "c-axis-target")
         if not isinstance(block.action, _SPINDLE_ACTIONS) and not self.is_left_out(block):
@@ -215,25 +215,17 @@ class StepMaker:
         return *(replace(block, kind=BlockKind.ACTION, action=each) for each in implied), block
 
     def _append(self, step: PathStep) -> None:
-        if self._comments:
-            step = replace(step, comment=" ".join(self._comments))
-            self._comments.clear()
-        self.steps.append(step)
+        self.steps.append(replace(step, comment=self.comments.take()))
 
     def _warn_once(self, key: object, line: int, code: str, /, **values: object) -> None:
         if (code, key) not in self._reported:
             self._reported.add((code, key))
             self.findings.append(make_warning(line, 0, code, **values))
 
-    def _read_comments(self, line: int) -> None:
-        """Collect the comments from the last line to this one; a jump back has only its own line."""
-        if line == self._line:
-            return
-        first = self._line + 1 if line > self._line else line
-        self._line = line
-        for number in range(first, line + 1):
+    def _report_block_delete(self, block: Block) -> None:
+        """Report the lines with a slash, whose comments were read for this block."""
+        for number in self.comments.read_lines_before(block):
             text = self.texts[number - 1]
-            self._comments += [each.strip() for each in _COMMENT.findall(text) if each.strip()]
             if _BLOCK_DELETE.match(text):
                 self._warn_once(number, number, "block-delete", word=text.strip())
 
@@ -276,7 +268,7 @@ class StepMaker:
 
         Raises ProgramError for another machine position.
         """
-        words = {each.upper() for each in _AXIS_WORD.findall(_COMMENT.sub("", self.texts[block.line - 1]))}
+        words = {each.upper() for each in _AXIS_WORD.findall(COMMENT.sub("", self.texts[block.line - 1]))}
         x, z = "X" in words, "Z" in words
         is_home = (not x or abs(block.mx) < _NEAR) and (not z or abs(block.mz) < _NEAR)
         if block.kind is not BlockKind.RAPID or not is_home or not words:
@@ -384,9 +376,9 @@ class StepMaker:
         """
         spindle = self._read_spindle(block)
         if self.spindle.is_css and spindle.max_rpm != self.spindle.max_rpm:
-            comments, self._comments = self._comments, []
+            comment = self.comments.take()
             self._append_spindle(block)
-            self._comments = comments
+            self.comments.put_back(comment)
             if spindle.direction and not spindle.is_css:
                 speed = block.modal.spindle * block.modal.rpm
                 self._implied_actions[block.n] = (actions.SpindleRun(speed),)

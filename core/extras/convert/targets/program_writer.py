@@ -7,7 +7,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import dist
+from textwrap import wrap
 from typing import ClassVar
+from unicodedata import combining, normalize
 
 from core.extras.convert.conversion_messages import make_error, make_warning
 from core.extras.convert.omniturn_writer import WrittenLine, number
@@ -135,8 +137,13 @@ class ProgramWriter(ABC):
         """Return the words of a lead along Z for a thread with these travels in mm; X is a radius."""
 
     def make_comment(self, text: str) -> str:
-        """Return a comment with the characters that the control accepts."""
-        return f"({self.not_in_comments.sub(' ', text)[:LONGEST_COMMENT].strip()})"
+        """Return a comment with the characters that the control accepts, and without accents."""
+        plain = "".join(each for each in normalize("NFKD", text) if not combining(each))
+        return f"({self.not_in_comments.sub(' ', plain).strip()})"
+
+    def split_text(self, text: str) -> list[str]:
+        """Return a text in parts that are short enough for the screen of a control."""
+        return wrap(text, LONGEST_COMMENT)
 
     def format_number(self, value: float, places: int) -> str:
         """Return a number in the form of the control."""
@@ -172,15 +179,26 @@ class ProgramWriter(ABC):
         return f"M{round(code)}"
 
     def write_stop(self, code: float, text: str) -> None:
-        """Write M00 or M01 with the text for the operator."""
-        self.append_line(self.format_m_code(code), self.make_comment(text) if text else "")
+        """Write M00 or M01 with the text for the operator. A long text is in the lines before."""
+        parts = self.split_text(text)
+        if len(parts) > 1:
+            self.write_comment(text)
+            parts = []
+        self.append_line(self.format_m_code(code), *map(self.make_comment, parts))
+
+    def write_comment(self, text: str) -> None:
+        """Write a comment in as many lines as it needs."""
+        for part in self.split_text(text):
+            self.append_raw_line(self.make_comment(part))
 
     # --- steps
 
     def _write_step(self, step: PathStep, *, is_departure: bool) -> None:
         is_stop = step.kind is StepKind.M and step.number in {0, 1}
-        if step.comment and not is_stop:
-            self.append_raw_line(self.make_comment(step.comment))
+        comments = step.comment.split("\n")
+        text = comments.pop() if is_stop else ""
+        for each in comments:
+            self.write_comment(each)
         if step.kind in MOVE_KINDS:
             self._write_move(step, is_departure=is_departure)
         elif step.kind is StepKind.NOSE:
@@ -202,7 +220,7 @@ class ProgramWriter(ABC):
         elif step.kind is StepKind.DWELL:
             self.write_dwell(step.number)
         elif is_stop:
-            self.write_stop(step.number, step.comment)
+            self.write_stop(step.number, text)
         else:
             self.append_line(self.format_m_code(step.number))
 

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from textwrap import shorten
 from typing import ClassVar
 
 from core.extras.convert.omniturn_writer import number
 from core.extras.convert.path_steps import PathStep, SpindleState, StepKind
 from core.extras.convert.targets.program_writer import ProgramWriter
+
+_LONGEST_MESSAGE = 120  # characters of MSG
 
 
 class SinumerikWriter(ProgramWriter):
@@ -101,10 +104,12 @@ class SinumerikWriter(ProgramWriter):
         return text.replace(".", "0.", 1) if text.startswith((".", "-.")) else text
 
     def write_stop(self, code: float, text: str) -> None:
-        """Write M0 or M1 with a message for the operator."""
+        """Write M0 or M1 with a message for the operator, after comments with a text that is too long."""
+        if len(text) > _LONGEST_MESSAGE:
+            self.write_comment(text)
         if text:
-            message = self.make_comment(text)[2:].replace('"', " ")
-            self.append_line(f'MSG("{message}")')
+            short = shorten(text.replace('"', " "), _LONGEST_MESSAGE, placeholder="...")
+            self.append_line(f'MSG("{self.make_comment(short)[2:]}")')
         super().write_stop(code, "")
         if text:
             self.append_line("MSG()")
