@@ -335,6 +335,10 @@ NOTES: Mapping[str, tuple[str, str]] = {
         "The coordinates of the converted program contain the work shift or the preset of this line.",
         "No action is needed.",
     ),
+    "slow-rapid": (
+        "Moves at {rate} without G00 become G1 with this feed, because they may be cuts.",
+        "Write G00 before the moves that are rapids.",
+    ),
     "spindle-restarted": (
         "The tool change stops the spindle, so the converted program starts it again after T{number}.",
         "No action is needed.",

@@ -65,7 +65,7 @@ def test_program_for_linuxcnc_states_its_modes_and_restarts_the_spindle() -> Non
 
 
 def test_program_for_fanuc_has_decimal_points_and_a_program_number() -> None:
-    done = convert("G90G94F300G71G73\nT1\nG96M03S120\nX10Z2(ROUGH)\nG95F.2Z-8\nT0\nG00X0Z0\nM02\n", "fanuc")
+    done = convert("G90G94F3000G71G73\nT1\nG96M03S120\nX10Z2(ROUGH)\nG95F.2Z-8\nT0\nG00X0Z0\nM02\n", "fanuc")
     # G73: X is a radius of 10 mm, so the diameter is 20 mm; without G77, the limit of the lathe is 3500 rpm
     assert [each.text for each in done.lines] == [
         "%", "O0001 (PART.NC)", "G21 G18 G40 G80 G97 G99 G54", "T0101", "G50 S3500",
@@ -260,7 +260,7 @@ def test_lead_of_fanuc_has_no_more_decimal_places_than_the_control() -> None:
     assert [each for each in made if "G32" in each] == ["G32 Z-.3 F.076923"]
 
 
-METRIC = "G90G94F300G71G72\nT1\nM03S1000\nX20Z2\nG95F.1\n"
+METRIC = "G90G94F3000G71G72\nT1\nM03S1000\nX20Z2\nG95F.1\n"
 
 
 def test_displaced_end_of_a_fanuc_thread_is_rejected() -> None:

@@ -16,6 +16,40 @@ def texts_of(text: str, target: str) -> list[str]:
 
 
 @pytest.mark.parametrize(
+    ("target", "made"),
+    [
+        ("linuxcnc", ["G1 G94 X1 Z.1 F5", "Z-.5", "G0 X1.2", "G1 Z-.6"]),
+        ("fanuc", ["G01 G98 X1. Z.1 F5.", "Z-.5", "G00 X1.2", "G01 Z-.6"]),
+        ("sinumerik", ["G1 G94 X1 Z0.1 F5", "Z-0.5", "G0 X1.2", "G1 Z-0.6"]),
+    ],
+)
+def test_cut_at_the_feed_of_the_first_line_does_not_become_a_rapid(target: str, made: list[str]) -> None:
+    """F5 of the first line is the rapid rate of OmniTurn, but Z-.5 at 5 in/min is a cut."""
+    text = "G90G94F5G70G72\nT1\nM03S1000\nX1.Z.1\nZ-.5\nG00X1.2\nG94F5Z-.6\nM30\n"
+    assert texts_of(text, target)[-len(made) - 2 - (target == "fanuc") :][: len(made)] == made
+
+
+@pytest.mark.parametrize(
+    ("first_line", "made"),
+    [
+        ("G90G94F99.9G70G72", ["G1 G94 X1 Z.1 F99.9", "Z-.5"]),
+        ("G90G94F100G70G72", ["G0 X1 Z.1", "Z-.5"]),
+        ("G90G94F2539G71G72", ["G1 G94 X1 Z.1 F2539", "Z-.5"]),  # 99.96 in/min
+        ("G90G94F2540G71G72", ["G0 X1 Z.1", "Z-.5"]),
+    ],
+)
+def test_move_without_g00_is_a_rapid_from_100_in_per_minute(first_line: str, made: list[str]) -> None:
+    done = convert(f"{first_line}\nT1\nM03S1000\nX1.Z.1\nZ-.5\nM30\n", "linuxcnc")
+    assert [each.text for each in done.lines][-4:-2] == made
+    assert ("slow-rapid" in {each.code for each in done.findings}) is made[0].startswith("G1")
+
+
+def test_slow_move_to_machine_home_remains_a_move_to_home() -> None:
+    text = "G90G94F20G70G72\nT1\nM03S1000\nX1.Z.1\nT0\nX0Z0\nM30\n"
+    assert texts_of(text, "linuxcnc")[-3:] == ["G30", "M5", "M30"]
+
+
+@pytest.mark.parametrize(
     ("body", "made"),
     [
         # the lines from (PART OFF) to M30 are not executed before M00

@@ -105,7 +105,7 @@ def test_nose_compensation_starts_and_ends_on_its_moves() -> None:
 
 
 def test_omniturn_program_becomes_a_sinumerik_program() -> None:
-    done = convert("G90G94F300G71G73\nT1\nM03S500\nX10Z2\nG95F.2G02X12Z0I12K2\nM30\n", "omniturn")
+    done = convert("G90G94F3000G71G73\nT1\nM03S500\nX10Z2\nG95F.2G02X12Z0I12K2\nM30\n", "omniturn")
     # OmniTurn sees the arc from the other side
     assert [each.text for each in done.lines] == [
         "; part.nc", "G18 G710 G90 DIAMOF G40 G54", "TRANS", "G64 G95", "T1 D1", "G97 S500 M3", "G0 X10 Z2",

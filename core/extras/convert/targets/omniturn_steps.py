@@ -26,6 +26,7 @@ from core.language.source import Dialect, ProgramSource
 MAX_TOOL_NUMBER = 32
 _NEAR = 1e-6  # mm
 _OTHER_SIDE_MM = 1.0  # minimum travel of a cut beyond the spindle axis
+_MIN_RAPID_MM_S = 100.0 * 25.4 / 60.0  # slower moves without G00 may be cuts
 _BLOCK_DELETE = re.compile(r"\s*/")
 _AXIS_WORD = re.compile(r"[XZ](?=\s*[-+.\d(#])", re.IGNORECASE)
 _MOVES = {
@@ -94,12 +95,14 @@ def _interpret_variant(
     """Interpret a program with one variant of the assumed setup."""
     source = ProgramSource("source", "".join(f"{each}\n" for each in texts), Dialect.OMNITURN)
     done = interpret_program(source, make_invented_setup(limits, variant))
-    blocks = [_relative_to_part_zero(each) for each in done.generate_blocks()]
+    relative = [_relative_to_part_zero(each) for each in done.generate_blocks()]
+    blocks = [replace(each, kind=BlockKind.FEED) if _is_slow_rapid(each) else each for each in relative]
     errors = [each for each in done.diagnostics if each.severity is Severity.ERROR]
     if errors:
         return InterpretedProgram(blocks, (), errors)
     comments = SourceComments(texts, sorted({each.line for each in blocks}))
     maker = StepMaker(texts, options, limits, comments)
+    maker.findings += _find_slow_rapids(relative)
     try:
         for block in blocks:
             maker.append_block(block)
@@ -164,6 +167,25 @@ def _relative_to_part_zero(block: Block) -> Block:
         block, x0=block.x0 + x, x=block.x + x, cx=block.cx + x, z0=block.z0 + z, z=block.z + z,
         cz=block.cz + z, offset_x=modal.drawing_zero_x, offset_z=modal.drawing_zero_z,
     )  # fmt: skip
+
+
+def _is_slow_rapid(block: Block) -> bool:
+    """Return whether a block is a rapid without G00 that is slow enough to be a cut.
+
+    Moves at the feed of the first line are rapids on this lathe. If this feed is low, they may be cuts,
+    which would destroy the tool at the rapid rate of another lathe.
+    """
+    is_rapid = block.kind is BlockKind.RAPID and not block.modal.rapid
+    return is_rapid and bool(block.modal.tool) and block.feed < _MIN_RAPID_MM_S
+
+
+def _find_slow_rapids(blocks: Sequence[Block]) -> list[Diagnostic]:
+    """Return a note for each rate of the slow rapids, at its first line."""
+    first: dict[str, int] = {}
+    for each in blocks:
+        if _is_slow_rapid(each):
+            first.setdefault(each.modal.format_feed(each.feed, is_per_rev=False), each.line)
+    return [make_note(line, 0, "slow-rapid", rate=rate) for rate, line in first.items()]
 
 
 @dataclass(slots=True)
