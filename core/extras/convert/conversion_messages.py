@@ -257,8 +257,8 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
         "Check that this is the function of the code on the other control.",
     ),
     "maximum-speed-added": (
-        "The program has no maximum spindle speed (G77); the maximum of this lathe, {rpm} rpm, is used.",
-        "Check that this speed is permitted on the other lathe.",
+        "The program has no maximum spindle speed for G96; the maximum of this lathe, {rpm} rpm, is used.",
+        "Check that this speed is permitted on the other lathe and for its chuck.",
     ),
     "minimum-speed": (
         "{word}: the other control has no minimum spindle speed, so the code is left out.",

@@ -348,7 +348,7 @@ def test_each_rapid_rate_is_reported_once() -> None:
         ("/Z0", (1, "block-delete")),
         ("Z0D2", (1, "secondary-offset")),
         ("T2\nG00X1.Z.1", (1, "tool-change-place")),
-        ("G96S300\nG77S2000\nG76S200\nG97S500", (1, "maximum-speed-added")),
+        ("G96S300\nG76S200\nG97S500", (1, "maximum-speed-added")),
         ("X-2.2\nT0\nG00X0Z0\nT2\nX-1.Z.1\nG01X-.8", (6, "far-side-tool")),
     ],
 )

@@ -86,3 +86,27 @@ def test_long_text_for_the_operator_is_not_cut() -> None:
 
 def test_accents_become_plain_letters() -> None:
     assert lines_of("(OPERACIÓN Ü)\nZ0", "fanuc")[0] == "(OPERACION U)"
+
+
+@pytest.mark.parametrize("target", ["linuxcnc", "fanuc", "sinumerik"])
+def test_surface_speed_starts_with_the_maximum_of_the_following_g77(target: str) -> None:
+    """The spindle never turns with the maximum of this lathe, 3500 rpm."""
+    text = "G90G94F300G70G72\nT1\nG96M03S400\nG77S1200\nX1.Z.1\nG95F.01Z0\nM30\n"
+    made = texts_of(text, target)
+    assert not any("3500" in each for each in made)
+    assert any("1200" in each for each in made)
+    codes = {each.code for each in convert(text, "fanuc").findings}
+    assert "maximum-speed-added" not in codes
+
+
+def test_maximum_of_this_lathe_is_reported_if_g77_follows_too_late() -> None:
+    text = "G90G94F300G70G72\nT1\nG96M03S400\nX1.Z.1\nG77S1200\nG95F.01Z0\nM30\n"
+    found = [(each.line, each.code) for each in convert(text, "fanuc").findings]
+    assert (3, "maximum-speed-added") in found
+
+
+def test_surface_speed_of_a_fanuc_program_without_g50_is_limited() -> None:
+    """A SINUMERIK control would retain LIMS of another program."""
+    done = convert_to_sinumerik("G20G99\nT0101\nG96S400M03\nG00X2.Z.1\nG01Z0F.01\nM30\n")
+    assert "G96 S400 LIMS=3500 M3" in [each.text for each in done.lines]
+    assert [(each.line, each.code) for each in done.findings] == [(3, "maximum-speed-added")]

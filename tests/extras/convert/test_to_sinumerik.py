@@ -73,8 +73,11 @@ def test_fanuc_program_becomes_a_sinumerik_program() -> None:
         # X moves .5 per side and Z .4: the lead .05 is along X
         ("G00X1.2Z.4\nX.6\nG32X1.6Z0F.05\nG00X2.2", ["X1.2 Z0.4", "X0.6", "G33 X1.6 Z0 I0.05", "G0 X2.2"]),
         # G96 and G961 contain the feed mode, and G97 selects the feed per revolution
-        ("G96S300\nG98G01Z0F9.\nG97S500\nZ-.1", ["G96 S300", "G1 G961 Z0 F9", "G97 S500", "G94 Z-0.1 F9"]),
-        ("G96S300\nG01Z0\nG97\nM05", ["G96 S300", "G1 Z0 F0.01", "G97", "M5"]),
+        (
+            "G96S300\nG98G01Z0F9.\nG97S500\nZ-.1",
+            ["G96 S300 LIMS=3500", "G1 G961 Z0 F9", "G97 S500", "G94 Z-0.1 F9"],
+        ),
+        ("G96S300\nG01Z0\nG97\nM05", ["G96 S300 LIMS=3500", "G1 Z0 F0.01", "G97", "M5"]),
         ("M05\nM03S900", ["M5", "S900 M3"]),
         # a restart at the line of T has the speed, the direction, the move and the feed
         (

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from itertools import zip_longest
 
 from core.extras.convert.conversion_messages import make_error, make_note, make_warning
-from core.extras.convert.path_steps import PathStep, SpindleState, StepKind
+from core.extras.convert.path_steps import PathStep, SpindleState, StepKind, has_same_speed
 from core.extras.convert.source_options import ConversionOptions
 from core.extras.convert.targets.source_comments import COMMENT, SourceComments
 from core.interpreter.dialects import interpret_program
@@ -205,6 +205,7 @@ class StepMaker:
     spindle: SpindleState = field(default_factory=SpindleState)
     nose_code: int = 40
     _is_tool_new: bool = False  # since a tool change and until the next move
+    _unlimited_line: int = 0  # of a surface speed without G77, unless G77 follows before the next step
     _implied_actions: dict[int, Sequence[actions.Action]] = field(default_factory=dict)  # by number of block
     _reported: set[tuple[str, object]] = field(default_factory=set)
     _cut_range: dict[int, tuple[int, float, float]] = field(default_factory=dict)  # line, min X, max X
@@ -237,6 +238,10 @@ class StepMaker:
         return *(replace(block, kind=BlockKind.ACTION, action=each) for each in implied), block
 
     def _append(self, step: PathStep) -> None:
+        if self._unlimited_line:
+            rpm = f"{self.limits.max_rpm:g}"
+            self._warn_once("G77", self._unlimited_line, "maximum-speed-added", rpm=rpm)
+            self._unlimited_line = 0
         self.steps.append(replace(step, comment=self.comments.take()))
 
     def _warn_once(self, key: object, line: int, code: str, /, **values: object) -> None:
@@ -385,11 +390,14 @@ class StepMaker:
         if spindle.is_css and block.modal.min_css_rpm:
             rpm = f"{block.modal.min_css_rpm:g}"
             self._warn_once(rpm, block.line, "minimum-speed", word=f"G76S{rpm}")
-        if spindle.is_css and block.modal.max_css_rpm is None:
-            self._warn_once("G77", block.line, "maximum-speed-added", rpm=f"{spindle.max_rpm:g}")
         if spindle != self.spindle:
+            is_new_limit = spindle.is_css and has_same_speed(spindle, self.spindle)
             self.spindle = spindle
-            self._append(PathStep(StepKind.SPINDLE, block.line, spindle=spindle))
+            if is_new_limit and self.steps[-1].kind is StepKind.SPINDLE:
+                self.steps[-1] = replace(self.steps[-1], spindle=spindle)
+            else:
+                self._append(PathStep(StepKind.SPINDLE, block.line, spindle=spindle))
+        self._unlimited_line = block.line if spindle.is_css and block.modal.max_css_rpm is None else 0
 
     def _follow_maximum_speed(self, block: Block) -> None:
         """Append a spindle step if G77 or G97 without S has changed the state since the last spindle step.

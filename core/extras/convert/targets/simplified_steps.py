@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from core.extras.convert.conversion_messages import make_error, make_note
+from core.extras.convert.conversion_messages import make_error, make_note, make_warning
 from core.extras.convert.path_steps import MOVE_KINDS, PathStep, StepKind
 from core.language.diagnostics import Diagnostic
 
 
-def simplify_steps(steps: Sequence[PathStep]) -> tuple[list[PathStep], list[Diagnostic]]:
-    """Return the steps without presets and without moves to the present position, and notes.
+def simplify_steps(steps: Sequence[PathStep], max_rpm: float) -> tuple[list[PathStep], list[Diagnostic]]:
+    """Return the steps without presets and without moves to the present position, and findings.
 
     A note reports each preset, because the coordinates of the moves contain it. M02 becomes M30, which has
-    the same effect on a SINUMERIK control. Raises ProgramError for a preset at an unknown position, and for
-    a tool change while a preset is active.
+    the same effect on a SINUMERIK control. A constant surface speed without a maximum gets ``max_rpm``, with
+    a warning. Raises ProgramError for a preset at an unknown position, and for a tool change while a preset
+    is active.
     """
     made: list[PathStep] = []
     notes: list[Diagnostic] = []
@@ -38,6 +39,10 @@ def simplify_steps(steps: Sequence[PathStep]) -> tuple[list[PathStep], list[Diag
         elif step.kind is StepKind.HOME:
             position = _leave_axes(step, position)
         made.append(_simplify_step(step, shift))
+        if step.spindle.is_css and step.spindle.direction and not step.spindle.max_rpm:
+            made[-1] = replace(made[-1], spindle=replace(step.spindle, max_rpm=max_rpm))
+            if not any(each.code == "maximum-speed-added" for each in notes):
+                notes.append(make_warning(step.line, 0, "maximum-speed-added", rpm=f"{max_rpm:g}"))
     return made, notes
 
 

@@ -117,7 +117,7 @@ def _read_source(
     if any(each.severity is Severity.ERROR for each in program.findings):
         return program
     try:
-        steps, notes = simplify_steps(program.steps)
+        steps, notes = simplify_steps(program.steps, limits.max_rpm)
     except ProgramError as error:
         return replace(program, findings=[*program.findings, error.diagnostic])
     if not any(each.kind in MOVE_KINDS for each in steps):
