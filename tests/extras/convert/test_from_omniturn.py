@@ -55,7 +55,7 @@ def test_program_for_linuxcnc_states_its_modes_and_restarts_the_spindle() -> Non
     assert [each.text for each in done.lines] == [
         "(part.nc)", "G20 G18 G7 G90 G40 G97 G54", "G80 G91.1 G92.1", "G64 P0.0005", "G30",
         "(ROUGHER)", "T1 M6 G43", "G96 D2500 S400 M3", "G0 X1.1 Z.1", "M8", "G1 G95 Z-.5 F.006",
-        "G30", "T2 M6 G43", "G96 D2500 S400 M3", "G0 X0 Z.1", "G1 G94 Z-.2 F2", "G4 P.5",
+        "G30", "T2 M6 G43", "G96 D2500 S400 M3", "M8", "G0 X0 Z.1", "G1 G94 Z-.2 F2", "G4 P.5",
         "(MSG, LOOK)", "M1", "M5", "M9", "M30",
     ]  # fmt: skip
     assert [each.source_line_number for each in done.lines][4:11] == [3, 4, 4, 6, 7, 8, 9]

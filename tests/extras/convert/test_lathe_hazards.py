@@ -110,3 +110,34 @@ def test_surface_speed_of_a_fanuc_program_without_g50_is_limited() -> None:
     done = convert_to_sinumerik("G20G99\nT0101\nG96S400M03\nG00X2.Z.1\nG01Z0F.01\nM30\n")
     assert "G96 S400 LIMS=3500 M3" in [each.text for each in done.lines]
     assert [(each.line, each.code) for each in done.findings] == [(3, "maximum-speed-added")]
+
+
+def test_coolant_is_repeated_after_a_tool_change() -> None:
+    """A restart at the line of T runs with coolant."""
+    body = "M08\nZ0\nT2\nG00X1.Z.1\nM09\nT3\nX1.Z.1"
+    made = lines_of(body, "fanuc")
+    assert made[made.index("T0202") :][:4] == ["T0202", "G97 S1000 M03", "M08", "G00 X1. Z.1"]
+    assert "M08" not in made[made.index("T0303") :]
+    assert lines_of("M08\nT2\nM09\nG00X1.Z.1", "linuxcnc")[1:4] == ["T2 M6 G43", "G97 S1000 M3", "M9"]
+
+
+def test_fanuc_program_starts_spindle_and_coolant_again_after_a_stop() -> None:
+    """M00 and M01 of many lathes with Fanuc controls stop both."""
+    assert lines_of("M08\nM00\nZ0", "fanuc")[:5] == [
+        "M08", "M00", "G97 S1000 M03", "M08", "G01 G99 Z0. F.01",
+    ]  # fmt: skip
+    assert lines_of("G77S2000\nG96S300\nM01\nZ0", "fanuc")[-4:-1] == ["M01", "G50 S2000", "G96 S300 M03"]
+    assert lines_of("M08\nM00\nZ0", "linuxcnc")[:3] == ["M8", "M0", "G1 G95 Z0 F.01"]
+
+
+@pytest.mark.parametrize(
+    ("body", "made"),
+    [
+        ("M09\nM05\nM00\nG00Z.2", ["M09", "M05", "M00", "Z.2"]),
+        ("M00\nM05\nG00Z.2", ["M00", "M05", "Z.2"]),
+        ("M00\nM04S500\nG00Z.2", ["M00", "G97 S500 M04", "Z.2"]),
+        ("M01\nT2\nG00X1.Z.2", ["M01", "T0202", "G97 S1000 M03", "G00 X1. Z.2"]),
+    ],
+)
+def test_fanuc_program_does_not_start_what_the_next_lines_stop(body: str, made: list[str]) -> None:
+    assert lines_of(body, "fanuc") == made

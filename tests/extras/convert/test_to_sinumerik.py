@@ -53,8 +53,8 @@ def test_fanuc_program_becomes_a_sinumerik_program() -> None:
         "; part.nc", "G18 G700 G90 DIAMON G40 G54", "TRANS", "G64 G95", "; PIN", "D0", "G75 X0 Z0",
         "; ROUGH", "T1 D1",
         "G96 S400 LIMS=2500 M3", "M8", "G0 X2.1 Z0.1", "G1 Z0 F0.01", "G2 X2.6 Z-0.25 I0.25 K0",
-        "G97 S800", "G1 G94 X2.8 F5", "G4 F0.5", "D0", "G75 X0 Z0", "T2 D1", "G97 S800 M3", "G0 X1 Z0.1",
-        'MSG("LOOK")', "M1", "MSG()", "M5", "M30",
+        "G97 S800", "G1 G94 X2.8 F5", "G4 F0.5", "D0", "G75 X0 Z0", "T2 D1", "G97 S800 M3", "M8",
+        "G0 X1 Z0.1", 'MSG("LOOK")', "M1", "MSG()", "M5", "M30",
     ]  # fmt: skip
     assert done.proof.compared_step_count == 14
     assert [each.line for each in done.findings if each.code == "home-fixed-point"] == [4]

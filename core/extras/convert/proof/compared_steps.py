@@ -41,19 +41,22 @@ def drop_repeated_speeds(
 def drop_idle(blocks: Sequence[Block], *, has_home_moves: bool) -> list[Block]:
     """Return the blocks that the comparison includes.
 
-    Tool changes, presets and moves of zero length are excluded. The first move after a tool change is never
-    excluded, and with ``has_home_moves``, neither are moves without a tool offset.
+    Tool changes, presets, repeated coolant codes and moves of zero length are excluded. The first move
+    after a tool change is never excluded, and with ``has_home_moves``, neither are moves without a tool
+    offset.
     """
     found = []
     is_tool_new, tool = False, 0
+    coolant: actions.Action | None = None
     for block in blocks:
         action = block.action
         if isinstance(action, actions.ToolChange):
             is_tool_new = is_tool_new or action.tool not in {0, tool}
             tool = action.tool or tool
         if action is not None:
-            if not isinstance(action, actions.ToolChange | actions.Preset):
+            if not isinstance(action, actions.ToolChange | actions.Preset) and action != coolant:
                 found.append(block)
+            coolant = action if isinstance(action, actions.CoolantSwitch) else coolant
             continue
         is_home = has_home_moves and (not block.modal.tool or block.modal.edge == 0)
         is_still = block.kind is not BlockKind.ARC and block.x == block.x0 and block.z == block.z0
@@ -66,16 +69,21 @@ def drop_idle(blocks: Sequence[Block], *, has_home_moves: bool) -> list[Block]:
 def select_compared_steps(steps: Sequence[PathStep], *, has_partial_moves: bool) -> Iterator[PathStep]:
     """Yield the source steps that must have a matching block in the converted program.
 
-    Nose compensation codes, presets and moves to an unknown end point are omitted. With
-    ``has_partial_moves``, a move is not omitted if one of its coordinates is known.
+    Nose compensation codes, presets, repeated coolant codes and moves to an unknown end point are omitted.
+    With ``has_partial_moves``, a move is not omitted if one of its coordinates is known.
     """
     spindle = SpindleState()
+    coolant = 0.0
     for step in steps:
         unknown = (step.x, step.z).count(None)
         if step.kind in MOVE_KINDS and unknown > has_partial_moves:
             continue
         if step.kind in {StepKind.NOSE, StepKind.PRESET}:
             continue
+        if step.kind is StepKind.M and step.number in {8, 9}:
+            is_repeated, coolant = step.number == coolant, step.number
+            if is_repeated:
+                continue
         if step.kind is StepKind.SPINDLE:
             same, spindle = has_same_speed(step.spindle, spindle), step.spindle
             if same or (spindle.direction and not spindle.speed and not has_partial_moves):

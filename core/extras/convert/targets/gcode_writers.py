@@ -97,6 +97,7 @@ class FanucWriter(ProgramWriter):
         StepKind.THREAD: "G32",
     }
     arcs: ClassVar[tuple[str, str]] = ("G02", "G03")
+    repeats_after_stop: ClassVar[bool] = True
     not_in_comments: ClassVar[re.Pattern[str]] = re.compile(r"[^A-Z0-9 .,+\-*/=]")
 
     def write_beginning(self) -> None:

@@ -50,6 +50,7 @@ class ProgramWriter(ABC):
     feed_modes: ClassVar[tuple[str, str]]  # feed per minute and feed per revolution
     motions: ClassVar[Mapping[StepKind, str]]
     arcs: ClassVar[tuple[str, str]]  # clockwise and counterclockwise
+    repeats_after_stop: ClassVar[bool] = False  # M00 and M01 may stop the spindle and the coolant
     not_in_comments: ClassVar[re.Pattern[str]] = re.compile(r"[^ -'*-~]")
 
     def __init__(self, form: ProgramForm) -> None:
@@ -70,6 +71,9 @@ class ProgramWriter(ABC):
         self.is_spindle_mode_known = False  # whether G96 or G97 was written since the last tool change
         self._is_spindle_due = False  # since a tool change, until the spindle words are written again
         self._is_limit_due = False  # since a tool change, until the maximum rpm is written again
+        self._has_coolant = False
+        self._is_coolant_due = False  # since a tool change, until the coolant code is written again
+        self._waits_for_move = False  # whether words that are due are written before the next move
         self._nose_word = ""
         self._point = (_UNKNOWN, _UNKNOWN)  # of the last move, in mm, X as a radius
 
@@ -80,6 +84,7 @@ class ProgramWriter(ABC):
         departures = _find_departures(steps)
         for index, step in enumerate(steps):
             self._repeat_spindle(step)
+            self._repeat_coolant(step)
             self.line_number = step.line
             self._write_step(step, is_departure=index in departures)
         self.write_ending()
@@ -208,8 +213,8 @@ class ProgramWriter(ABC):
             self.write_tool(step)
             self.x = self.z = _UNKNOWN
             self.motion, self.feed = "", None
-            self.is_spindle_mode_known, self._is_spindle_due = False, True
-            self._is_limit_due = True
+            self.is_spindle_mode_known = False
+            self._require_repetition(before_move=False)
         elif step.kind is StepKind.HOME:
             self.write_home(step)
             self.motion = ""
@@ -221,7 +226,10 @@ class ProgramWriter(ABC):
             self.write_dwell(step.number)
         elif is_stop:
             self.write_stop(step.number, text)
+            if self.repeats_after_stop:
+                self._require_repetition(before_move=True)
         else:
+            self._has_coolant = step.number == 8 if step.number in {8, 9} else self._has_coolant
             self.append_line(self.format_m_code(step.number))
 
     def _select_nose_code(self, step: PathStep) -> None:
@@ -231,12 +239,35 @@ class ProgramWriter(ABC):
         # The steps see X+ toward the operator, but these controls calculate in Z and X on every lathe.
         self._nose_word = f"G{round(83 - step.number)}"
 
+    def _require_repetition(self, *, before_move: bool) -> None:
+        """Require that the spindle words and the coolant code are written again.
+
+        With ``before_move``, they are written before the next move or dwell, and otherwise before any step.
+        """
+        self._is_spindle_due = self._is_limit_due = self._is_coolant_due = True
+        self._waits_for_move = before_move
+
+    def _is_repeated_before(self, step: PathStep) -> bool:
+        """Return whether due spindle words and coolant codes are written again before this step."""
+        if self._waits_for_move:
+            return step.kind in MOVE_KINDS or step.kind is StepKind.DWELL
+        return step.kind not in {StepKind.TOOL, StepKind.SPINDLE, StepKind.END}
+
+    def _repeat_coolant(self, step: PathStep) -> None:
+        """Write M08 again after a tool change or a stop, unless this step is a coolant code."""
+        if not self._is_coolant_due or not self._is_repeated_before(step):
+            return
+        self._is_coolant_due = False
+        is_coolant_code = step.kind is StepKind.M and step.number in {8, 9}
+        if self._has_coolant and not is_coolant_code:
+            self.append_line(self.format_m_code(8))
+
     def _repeat_spindle(self, step: PathStep) -> None:
-        """Write the spindle words again after a tool change, unless this step writes new ones.
+        """Write the spindle words again after a tool change or a stop, unless this step writes new ones.
 
         A restart at the line of T then does not run with the state that the control happens to have.
         """
-        if not self._is_spindle_due or step.kind in {StepKind.TOOL, StepKind.SPINDLE, StepKind.END}:
+        if not self._is_spindle_due or not self._is_repeated_before(step):
             return
         self._is_spindle_due = False
         if self.spindle.direction:
