@@ -20255,8 +20255,8 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
-      <source>Check that this speed is permitted on the other lathe.</source>
-      <translation>Compruebe que el otro torno permite esta velocidad.</translation>
+      <source>Check that this speed is permitted on the other lathe and for its chuck.</source>
+      <translation>Compruebe que el otro torno y su plato permiten esta velocidad.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
@@ -20422,6 +20422,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>Mount the tool on that side too, or edit the program: mirror the moves of this tool and reverse the spindle.</source>
       <translation>Monte la herramienta también en ese lado, o refleje sus movimientos e invierta el husillo a mano.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Moves at {rate} without G00 become G1 with this feed, because they may be cuts.</source>
+      <translation>Los movimientos a {rate} sin G00 se convierten en G1 con este avance, porque pueden ser pasadas de corte.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
@@ -20630,6 +20635,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The move to machine home is not a rapid, but the other control always moves there in rapid.</source>
+      <translation>El movimiento al origen de máquina no es rápido, pero el otro control siempre va allí en rápido.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>The move without a tool offset does not end at machine home.</source>
       <translation>El movimiento sin corrector de herramienta no termina en el origen de máquina.</translation>
     </message>
@@ -20660,8 +20670,8 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
-      <source>The program has no maximum spindle speed (G77); the maximum of this lathe, {rpm} rpm, is used.</source>
-      <translation>El programa no tiene velocidad máxima del husillo (G77); se usan las {rpm} rpm de este torno.</translation>
+      <source>The program has no maximum spindle speed for G96; the maximum of this lathe, {rpm} rpm, is used.</source>
+      <translation>El programa no tiene velocidad máxima del husillo para G96; se usan las {rpm} rpm de este torno.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
@@ -20747,6 +20757,16 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>Write F with the lead of the thread.</source>
       <translation>Escriba F con el paso de la rosca.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write G00 before the moves that are rapids.</source>
+      <translation>Escriba G00 antes de los movimientos que son rápidos.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write G00 on this line.</source>
+      <translation>Escriba G00 en esta línea.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
@@ -21112,6 +21132,11 @@
       <location filename="core/extras/convert/proof/conversion_proof.py" />
       <source>the center in Z</source>
       <translation>el centro en Z</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/proof/conversion_proof.py" />
+      <source>the dwell</source>
+      <translation>la temporización</translation>
     </message>
     <message>
       <location filename="core/extras/convert/proof/conversion_proof.py" />

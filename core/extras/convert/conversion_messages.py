@@ -92,6 +92,10 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "{word} drills along Y while G18 is active.",
         "Write G17 before the cycle.",
     ),
+    "home-feed": (
+        "The move to machine home is not a rapid, but the other control always moves there in rapid.",
+        "Write G00 on this line.",
+    ),
     "input-of-lathe": (
         "The line depends on an input of this lathe.",
         "Write this line for the other control by hand.",

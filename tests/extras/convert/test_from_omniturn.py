@@ -68,7 +68,7 @@ def test_program_for_fanuc_has_decimal_points_and_a_program_number() -> None:
     done = convert("G90G94F3000G71G73\nT1\nG96M03S120\nX10Z2(ROUGH)\nG95F.2Z-8\nT0\nG00X0Z0\nM02\n", "fanuc")
     # G73: X is a radius of 10 mm, so the diameter is 20 mm; without G77, the limit of the lathe is 3500 rpm
     assert [each.text for each in done.lines] == [
-        "%", "O0001 (PART.NC)", "G21 G18 G40 G80 G97 G99 G54", "T0101", "G50 S3500",
+        "%", "O0001 (PART.NC)", "G21", "G18 G40 G80 G97 G99 G54", "T0101", "G50 S3500",
         "G96 S120 M03", "(ROUGH)",
         "G00 X20. Z2.", "G01 G99 Z-8. F.2", "G28 U0 W0", "M02", "%",
     ]  # fmt: skip

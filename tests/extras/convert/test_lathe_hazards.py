@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.extras.convert.test_from_omniturn import complete, convert, lines_of
+from tests.extras.convert.test_from_omniturn import BEGIN, complete, convert, error_of, lines_of
 from tests.extras.convert.test_to_sinumerik import convert as convert_to_sinumerik
 
 
@@ -47,6 +47,13 @@ def test_move_without_g00_is_a_rapid_from_100_in_per_minute(first_line: str, mad
 def test_slow_move_to_machine_home_remains_a_move_to_home() -> None:
     text = "G90G94F20G70G72\nT1\nM03S1000\nX1.Z.1\nT0\nX0Z0\nM30\n"
     assert texts_of(text, "linuxcnc")[-3:] == ["G30", "M5", "M30"]
+
+
+def test_move_to_machine_home_at_a_cutting_feed_is_rejected() -> None:
+    """The other control moves home in rapid."""
+    assert error_of("Z0\nT0\nX0Z0") == (3, "home-feed")
+    assert error_of("Z0\nT0\nX0Z0", "fanuc") == (3, "home-feed")
+    assert lines_of("Z0\nT0\nG00X0Z0", "fanuc")[-1] == "G28 U0 W0"
 
 
 @pytest.mark.parametrize(
@@ -141,3 +148,17 @@ def test_fanuc_program_starts_spindle_and_coolant_again_after_a_stop() -> None:
 )
 def test_fanuc_program_does_not_start_what_the_next_lines_stop(body: str, made: list[str]) -> None:
     assert lines_of(body, "fanuc") == made
+
+
+@pytest.mark.parametrize(("seconds", "made"), [("100.3333333", "G04 U100.333"), (".12345", "G04 U.123")])
+def test_dwell_of_fanuc_has_three_decimal_places(seconds: str, made: str) -> None:
+    """A Fanuc control rejects a number with more than eight digits."""
+    assert made in lines_of(f"G04F{seconds}", "fanuc")
+    assert not convert(f"{BEGIN}G04F{seconds}\nM30\n", "linuxcnc").errors
+
+
+@pytest.mark.parametrize(("unit", "word"), [("G70", "G20"), ("G71", "G21")])
+def test_unit_of_fanuc_is_alone_in_its_block(unit: str, word: str) -> None:
+    """The manual of the control requires a block of its own at the beginning."""
+    text = f"G90G94F3000{unit}G72\n" if unit == "G71" else f"G90G94F300{unit}G72\n"
+    assert texts_of(f"{text}T1\nM03S500\nX1.Z.1\nM30\n", "fanuc")[2] == word

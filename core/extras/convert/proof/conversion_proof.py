@@ -20,6 +20,7 @@ EQUAL_TOLERANCE_MM = 1e-6 * 25.4  # mm
 OMNITURN_RESOLUTION_MM = (0.00005 * 25.4, 0.0001)  # of OmniTurn in inches and in mm, of the radius and of Z
 SPEED_RESOLUTION = 0.001  # of a written S in rpm, ft/min or m/min
 _FIXED_POINT = (137.31719, 411.91337)  # mm; machine X as a radius, and machine Z
+_NEAR_DWELL = 0.0005 + 1e-9  # s; half the resolution of a written dwell
 _CLEARANCE = 0.0002 * 25.4  # mm; retract of a thread pass
 _KINDS = {
     StepKind.RAPID: BlockKind.RAPID,
@@ -314,6 +315,9 @@ class PathComparison:
             limit = step.spindle.max_rpm
             if action.surface_speed is not None and limit and not self._has_source_blocks:
                 self._same(step, "the maximum spindle speed", block.modal.max_css_rpm or 0.0, limit, 1e-3)
+            return
+        if isinstance(action, actions.Dwell) and isinstance(wanted, actions.Dwell):
+            self._same(step, "the dwell", action.seconds, wanted.seconds, _NEAR_DWELL)
             return
         if isinstance(action, actions.ProgramStop):
             action = actions.ProgramStop(action.optional)

@@ -104,7 +104,8 @@ class FanucWriter(ProgramWriter):
         """Write the program number and the modes that the program needs."""
         self.append_raw_line("%")
         self.append_raw_line(f"O0001 {self.make_comment(self.form.title)}")
-        self.append_line("G21" if self.form.is_metric else "G20", "G18", "G40", "G80", "G97", "G99", "G54")
+        self.append_line("G21" if self.form.is_metric else "G20")  # must be alone in its block
+        self.append_line("G18", "G40", "G80", "G97", "G99", "G54")
         self.feed = ("G99", "")
 
     def write_ending(self) -> None:
@@ -120,8 +121,8 @@ class FanucWriter(ProgramWriter):
         self.append_line("G28", "U0" if step.x is not None else "", "W0" if step.z is not None else "")
 
     def write_dwell(self, seconds: float) -> None:
-        """Write G04 with U in seconds."""
-        self.append_line("G04", f"U{self.format_number(seconds, 6)}")
+        """Write G04 with U in seconds, to 0.001 s."""
+        self.append_line("G04", f"U{self.format_number(seconds, 3)}")
 
     def write_surface_speed(self, spindle: SpindleState, start: str, *, is_new: bool) -> None:
         """Write the maximum rpm in G50, and then G96."""

@@ -298,6 +298,8 @@ class StepMaker:
         words = {each.upper() for each in _AXIS_WORD.findall(COMMENT.sub("", self.texts[block.line - 1]))}
         x, z = "X" in words, "Z" in words
         is_home = (not x or abs(block.mx) < _NEAR) and (not z or abs(block.mz) < _NEAR)
+        if is_home and words and block.kind is BlockKind.FEED:
+            raise make_error(block.line, 0, "home-feed")
         if block.kind is not BlockKind.RAPID or not is_home or not words:
             raise make_error(block.line, 0, "machine-point")
         self._append(PathStep(StepKind.HOME, block.line, 0.0 if x else None, 0.0 if z else None))
