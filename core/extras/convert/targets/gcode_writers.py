@@ -26,7 +26,7 @@ class LinuxCncWriter(ProgramWriter):
     M6 of LinuxCNC stops the spindle, so that the writer starts it again after a tool change.
     """
 
-    coordinate_places: ClassVar[tuple[int, int]] = (5, 4)
+    coordinate_places: ClassVar[tuple[int, int]] = (6, 5)
     feed_modes: ClassVar[tuple[str, str]] = ("G94", "G95")
     motions: ClassVar[Mapping[StepKind, str]] = {
         StepKind.RAPID: "G0",
