@@ -317,7 +317,8 @@ def test_feed_is_repeated_after_a_fanuc_thread() -> None:
     assert [each for each in per_minute if "F" in each] == [
         "G01 G98 Z.2 F9.", "G32 G99 Z-.3 F.05", "G01 G98 X1.99 F9.",
     ]  # fmt: skip
-    assert lines_of(body, "linuxcnc")[-1] == "G1 X1.99"
+    # LinuxCNC ends the feed per revolution after G33, and starts it again with F
+    assert lines_of(body, "linuxcnc")[-1] == "G1 G95 X1.99 F.01"
 
 
 def test_nose_compensation_starts_and_ends_on_its_moves() -> None:

@@ -69,6 +69,12 @@ class LinuxCncWriter(ProgramWriter):
         most = f"D{self.format_speed(spindle.max_rpm)}"
         self.append_line("G96", most, self.format_surface_speed(spindle), start)
 
+    def get_feed_words(self, step: PathStep) -> tuple[str, str]:
+        """Return the code of the feed mode and F; a thread ends the feed per revolution of LinuxCNC."""
+        if step.kind is StepKind.THREAD:
+            self.feed = None
+        return super().get_feed_words(step)
+
     def format_lead(self, lead_mm: float, dx: float, dz: float) -> Sequence[str]:
         """Return K, which LinuxCNC measures along the path of the tool."""
         return (f"K{self.format_number(lead_mm / self.unit_mm * (hypot(dx, dz) / dz if dz else 1.0), 8)}",)
