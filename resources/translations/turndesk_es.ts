@@ -20550,8 +20550,8 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
-      <source>The arc is shorter than the resolution of the other control.</source>
-      <translation>El arco es más corto que la resolución del otro control.</translation>
+      <source>The arc is too short for the resolution of the other control, which may cut a full circle.</source>
+      <translation>El arco es demasiado corto para la resolución del otro control, que puede cortar un círculo completo.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />

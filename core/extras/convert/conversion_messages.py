@@ -18,7 +18,7 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "Correct the end point or the center.",
     ),
     "arc-short": (
-        "The arc is shorter than the resolution of the other control.",
+        "The arc is too short for the resolution of the other control, which may cut a full circle.",
         "Replace the arc with a straight move.",
     ),
     "arc-too-small": (

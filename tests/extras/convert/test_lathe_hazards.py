@@ -162,3 +162,34 @@ def test_unit_of_fanuc_is_alone_in_its_block(unit: str, word: str) -> None:
     """The manual of the control requires a block of its own at the beginning."""
     text = f"G90G94F3000{unit}G72\n" if unit == "G71" else f"G90G94F300{unit}G72\n"
     assert texts_of(f"{text}T1\nM03S500\nX1.Z.1\nM30\n", "fanuc")[2] == word
+
+
+@pytest.mark.parametrize("target", ["linuxcnc", "fanuc"])
+def test_arc_that_would_become_a_circle_is_rejected(target: str) -> None:
+    """Its ends are at the same angle: radius .2 at its start and .19995 at its end."""
+    assert error_of("G00X1.Z0\nG01\nG02X1.Z-.00005I0K-.2", target) == (3, "arc-short")
+
+
+def test_arc_whose_rounded_ends_are_at_the_same_angle_is_rejected_for_fanuc() -> None:
+    """Z.00005 and Z.0001 become Z.0001, so that only X differs: a sweep of .0001 rad becomes a circle."""
+    body = "G00X1.Z.00005\nG01\nG03X1.0001Z.0001I-.5K0"
+    assert error_of(body, "fanuc") == (3, "arc-short")
+    assert lines_of(body, "linuxcnc")[-1] == "G2 G95 X1.0001 Z.0001 I-.5 K0 F.01"
+
+
+@pytest.mark.parametrize(
+    ("body", "made"),
+    [
+        ("G02X1.Z0I0K-.2", "G3 G95 X1 Z0 I0 K-.2 F.01"),  # a full circle
+        ("G02X.6Z-.2I0K-.2", "G3 G95 X.6 Z-.2 I0 K-.2 F.01"),  # 270 degrees
+        ("G02X1.Z-.00005R.5", "G3 G95 X1 Z-.00005 I-.5 K-.000025 F.01"),
+    ],
+)
+def test_circle_large_arc_and_short_arc_are_converted(body: str, made: str) -> None:
+    """The center of the short arc is half its chord, .000025 in, and almost .5 in from its start."""
+    assert lines_of(f"G00X1.Z0\nG01\n{body}", "linuxcnc")[-1] == made
+
+
+def test_arc_with_a_radius_that_linuxcnc_rejects_is_rejected() -> None:
+    """LinuxCNC reports an arc of radius .00005 in as an arc without a radius."""
+    assert error_of("G00X1.Z0\nG01\nG02X1.0001Z-.00005I0K-.00005") == (3, "arc-short")

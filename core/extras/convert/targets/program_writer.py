@@ -6,7 +6,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import dist
+from math import dist, tau
 from textwrap import wrap
 from typing import ClassVar
 from unicodedata import combining, normalize
@@ -14,6 +14,7 @@ from unicodedata import combining, normalize
 from core.extras.convert.conversion_messages import make_error, make_warning
 from core.extras.convert.omniturn_writer import WrittenLine, number
 from core.extras.convert.path_steps import MOVE_KINDS, PathStep, SpindleState, StepKind, has_same_speed
+from core.geometry.lines_and_arcs import compute_arc_sweep
 from core.interpreter.shared.units import get_surface_speed_unit
 from core.language.diagnostics import Diagnostic
 
@@ -22,6 +23,8 @@ LONGEST_COMMENT = 60
 _UNKNOWN = float("nan")
 _SAME = 1e-9  # mm
 _MAX_FEED_CHANGE = 0.01  # of the feed
+_MIN_ANGLE = 1e-7  # rad; a smaller arc may be taken for a circle
+_MIN_RADIUS_MM = 0.0025  # LinuxCNC rejects arcs with a radius of .00005 in or 0.00127 mm
 
 
 @dataclass(frozen=True, slots=True)
@@ -367,14 +370,25 @@ class ProgramWriter(ABC):
     def _center_words(
         self, step: PathStep, end: tuple[float, float], written: tuple[float, float]
     ) -> Sequence[str]:
-        """Return I and K. Raises ProgramError if the rounded arc has no length, as it would be a circle."""
-        factor = 0.5 if self.form.is_diameter else 1.0
+        """Return I and K.
+
+        Raises ProgramError if the control would not make the same arc of the rounded values. If its ends
+        become equal or exchange their order, it would be a circle.
+        """
+        start, stop = self._convert_to_mm(self.x, self.z), self._convert_to_mm(*written)
+        i, k = self.round_length(step.cx - start[0]), self.round_length(step.cz - start[1])
+        center = start[0] + i * self.unit_mm, start[1] + k * self.unit_mm
+        _, wanted = compute_arc_sweep(*self._point, *end, step.cx, step.cz, step.clockwise)
+        _, made = compute_arc_sweep(*start, *stop, *center, step.clockwise)
         is_circle = dist(end, self._point) < _SAME
-        if not is_circle and dist(written, (self.x, self.z)) == 0.0:
+        is_unclear = not is_circle and not _MIN_ANGLE < abs(made) < tau - _MIN_ANGLE
+        if is_unclear or abs(made - wanted) > 1.0 or dist(start, center) < _MIN_RADIUS_MM:
             raise make_error(step.line, 0, "arc-short")
-        i = self.round_length(step.cx - self.x * factor * self.unit_mm)
-        k = self.round_length(step.cz - self.z * self.unit_mm)
         return self.format_length("I", i), self.format_length("K", k)
+
+    def _convert_to_mm(self, x: float, z: float) -> tuple[float, float]:
+        """Return the point of written coordinates in mm, with X as a radius."""
+        return x * self.unit_mm * (0.5 if self.form.is_diameter else 1.0), z * self.unit_mm
 
 
 def _find_departures(steps: Sequence[PathStep]) -> frozenset[int]:
