@@ -198,7 +198,7 @@ _FANUC = (
     re.compile(r"G28[UWXZ]"),
     re.compile(r"T[0-9]{4}(?![0-9])"),
     re.compile(r"G9[89](?![0-9])"),
-    re.compile(r"G7[0-3].*[UWPQ]|G76P[0-9]{6}"),
+    re.compile(r"G7[0-3](?!.*G7[458]).*[UWPQ]|G76P[0-9]{6}"),  # not modal codes before G74, G75 or G78
     re.compile(r"#[0-9]+|\["),
     re.compile(r"G[0-3](?![0-9])"),
 )
