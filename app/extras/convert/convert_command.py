@@ -105,8 +105,8 @@ def run(args: argparse.Namespace) -> int:
     limits = get_control_limits(machine)
     control: str = _OMNITURN
     if args.to == TargetControl.OMNITURN:
-        control = found = _find_control(args, source)
-        done = convert_program(source.lines, _options(args, found, machine), limits)
+        control = _find_control(args, source)
+        done = convert_program(source.lines, _options(args, SourceControl(control), machine), limits)
     elif args.to == TargetControl.SINUMERIK:
         control, done = _convert_to_sinumerik(args, source, machine, limits)
     else:
@@ -117,12 +117,12 @@ def run(args: argparse.Namespace) -> int:
     return EXIT_ERRORS if done.errors else EXIT_OK
 
 
-def _find_control(args: argparse.Namespace, source: ProgramSource) -> SourceControl:
-    """Return the control of a program that is converted to OmniTurn or SINUMERIK.
+def _find_control(args: argparse.Namespace, source: ProgramSource) -> SourceControl | Dialect:
+    """Return the control of a program, or ``Dialect.OMNITURN``.
 
     Raises CommandError if the control is unknown, or if the program already is a program of the target.
     """
-    from core.extras.convert.recognition import recognize_control
+    from core.extras.convert.recognition import recognize_language
 
     if args.control is None and source.dialect is not Dialect.OMNITURN:
         text = (
@@ -130,16 +130,20 @@ def _find_control(args: argparse.Namespace, source: ProgramSource) -> SourceCont
             "name the control of the program with --from"
         )
         raise CommandError(Message(text, file=args.file, language=source.dialect), "unsupported-source")
+    control: SourceControl | Dialect | None
     if args.control == _OMNITURN:
-        raise CommandError(
-            Message("{file} is an OmniTurn program already; name another control with --to", file=args.file),
-            "same-control",
-        )
-    control = SourceControl(args.control) if args.control else recognize_control(source.lines)
+        control = Dialect.OMNITURN
+    else:
+        control = SourceControl(args.control) if args.control else recognize_language(source.lines)
     if control is None:
         raise CommandError(
             Message("{file} is not recognized; name its control with --from", file=args.file),
             "control-unknown",
+        )
+    if control is Dialect.OMNITURN and args.to == TargetControl.OMNITURN:
+        raise CommandError(
+            Message("{file} is an OmniTurn program already; name another control with --to", file=args.file),
+            "same-control",
         )
     return control
 
@@ -153,13 +157,14 @@ def _convert_to_sinumerik(
     """
     from core.extras.convert.targets.target_conversion import convert_to_sinumerik
 
-    is_omniturn = args.control == _OMNITURN
+    control = _find_control(args, source)
+    is_omniturn = control is Dialect.OMNITURN
     if is_omniturn:
         _reject_idle_options(args)
-    control = SourceControl.LINUXCNC if is_omniturn else _find_control(args, source)
-    options, title = _options(args, control, machine), Path(args.file).name
+    own_control = SourceControl.LINUXCNC if is_omniturn else SourceControl(control)
+    options, title = _options(args, own_control, machine), Path(args.file).name
     done = convert_to_sinumerik(source.lines, options, limits, title, is_omniturn=is_omniturn)
-    return (_OMNITURN if is_omniturn else control), done
+    return control, done
 
 
 def _convert_from_omniturn(
@@ -171,8 +176,8 @@ def _convert_from_omniturn(
     """
     from core.extras.convert.targets.target_conversion import convert_from_omniturn
 
-    is_omniturn = source.dialect is Dialect.OMNITURN if args.control is None else args.control == _OMNITURN
-    if not is_omniturn:
+    is_other_file = args.control is None and source.dialect is not Dialect.OMNITURN
+    if is_other_file or _find_control(args, source) is not Dialect.OMNITURN:
         text = "--to {target} needs an OmniTurn program; convert {file} to OmniTurn first"
         raise CommandError(Message(text, target=args.to, file=args.file), "not-omniturn")
     _reject_idle_options(args)

@@ -88,7 +88,9 @@ def test_omniturn_program_is_written_for_another_control(
     assert (again.status, again.code) == (2, "file-exists")
 
 
-@pytest.mark.parametrize(("name", "words"), [("part.txt", ()), ("part.nc", ("--from", "omniturn"))])
+@pytest.mark.parametrize(
+    ("name", "words"), [("part.txt", ()), ("part.nc", ()), ("part.nc", ("--from", "omniturn"))]
+)
 def test_program_is_written_for_sinumerik(
     turndesk: Turndesk, part: Path, tmp_path: Path, name: str, words: tuple[str, ...]
 ) -> None:
@@ -102,8 +104,9 @@ def test_program_is_written_for_sinumerik(
 @pytest.mark.parametrize(
     ("name", "words", "code"),
     [
-        ("part.nc", ("--to", "sinumerik"), "control-unknown"),
+        ("part.nc", ("--to", "sinumerik", "--unit", "mm"), "option-without-effect"),
         ("part.nc", ("--to", "sinumerik", "--from", "omniturn", "--unit", "mm"), "option-without-effect"),
+        ("part.nc", (), "same-control"),
         ("part.mpf", ("--to", "sinumerik"), "unsupported-source"),
         ("part.nc", ("--to", "omniturn", "--from", "omniturn"), "same-control"),
         ("part.nc", ("--to", "fanuc", "--from", "haas"), "not-omniturn"),
@@ -143,10 +146,22 @@ def test_a_wrong_option_is_rejected(
     assert not code or told.code
 
 
-def test_unrecognized_program_needs_its_control_specified(turndesk: Turndesk, part: Path) -> None:
-    part.write_text("G90\nX1\nM30\n")
-    told = turndesk("convert", part)
+@pytest.mark.parametrize("target", ["omniturn", "sinumerik", "linuxcnc", "fanuc"])
+def test_unrecognized_program_needs_its_control_specified(
+    turndesk: Turndesk, part: Path, target: str
+) -> None:
+    """OmniTurn and LinuxCNC both have these words."""
+    part.write_text("G90G94F10\nG00X1Z1\nG01Z0\nM30\n")
+    told = turndesk("convert", part, "--to", target)
     assert (told.status, told.code) == (2, "control-unknown")
+
+
+@pytest.mark.parametrize("target", ["linuxcnc", "fanuc"])
+def test_program_of_another_control_is_not_read_as_omniturn(
+    turndesk: Turndesk, part: Path, target: str
+) -> None:
+    told = turndesk("convert", part, "--to", target)
+    assert (told.status, told.code) == (2, "not-omniturn")
 
 
 def test_missing_file_is_rejected(turndesk: Turndesk, tmp_path: Path) -> None:
