@@ -193,3 +193,29 @@ def test_circle_large_arc_and_short_arc_are_converted(body: str, made: str) -> N
 def test_arc_with_a_radius_that_linuxcnc_rejects_is_rejected() -> None:
     """LinuxCNC reports an arc of radius .00005 in as an arc without a radius."""
     assert error_of("G00X1.Z0\nG01\nG02X1.0001Z-.00005I0K-.00005") == (3, "arc-short")
+
+
+@pytest.mark.parametrize(
+    ("body", "is_reported"),
+    [
+        ("G00X-.4\nG01X.005", True),  # parting from the far side to a point beyond the spindle axis
+        ("G00X-.4\nG01X0", True),
+        ("G00X-.2\nG01Z-.5\nX-.4", True),
+        ("G00X.4\nG01X-.06", False),  # facing; .03 in = 0.76 mm beyond the spindle axis
+        ("G00X0\nG01Z-.5", False),  # a drill
+        ("G00X-.4\nX.4\nG01X.1", False),  # only a rapid
+    ],
+)
+def test_tool_on_the_far_side_is_reported(body: str, is_reported: bool) -> None:
+    """The holder of a tool on the usual side would pass through the part."""
+    text = f"G90G94F300G70G72\nT1\nM03S1000\nX0Z1.\nG95F.01\n{body}\nM30\n"
+    codes = {each.code for each in convert(text, "fanuc").findings}
+    assert ("far-side-tool" in codes) is is_reported
+
+
+def test_finding_of_a_loop_is_reported_once() -> None:
+    body = "LS3\nT2\nG00X1.Z.2\nG10Z-.1\nT1\nX1.Z.2\nLF"
+    done = convert(complete(body), "linuxcnc")
+    lines = [(each.line, each.code, str(each.message)) for each in done.findings]
+    assert len(lines) == len(set(lines))
+    assert {each[1] for each in lines} >= {"tool-change-place", "spindle-restarted", "shift-contained"}

@@ -49,7 +49,8 @@ class LinuxCncWriter(ProgramWriter):
 
     def report_restart(self) -> None:
         """Report that the spindle is started again."""
-        self.findings.append(make_note(self.line_number, 0, "spindle-restarted", number=self.tool_number))
+        note = make_note(self.line_number, 0, "spindle-restarted", number=self.tool_number)
+        self.findings += [] if note in self.findings else [note]
 
     def write_home(self, step: PathStep) -> None:
         """Write G30, which moves to a stored point; one axis needs G91, so that it moves there directly."""

@@ -25,7 +25,7 @@ from core.language.source import Dialect, ProgramSource
 
 MAX_TOOL_NUMBER = 32
 _NEAR = 1e-6  # mm
-_OTHER_SIDE_MM = 1.0  # minimum travel of a cut beyond the spindle axis
+_OTHER_SIDE_MM = 1.0  # cuts to the spindle axis end at most this far beyond it
 _MIN_RAPID_MM_S = 100.0 * 25.4 / 60.0  # slower moves without G00 may be cuts
 _BLOCK_DELETE = re.compile(r"\s*/")
 _AXIS_WORD = re.compile(r"[XZ](?=\s*[-+.\d(#])", re.IGNORECASE)
@@ -273,8 +273,8 @@ class StepMaker:
             self._note_rapid_rate(block)
         else:
             line, low, high = self._cut_range.get(self.tool_number, (block.line, 0.0, -_OTHER_SIDE_MM))
-            start_x = block.x if is_first else block.x0
-            self._cut_range[self.tool_number] = line, min(low, block.x), max(high, start_x, block.x)
+            ends = block.x if is_first else block.x0, block.x
+            self._cut_range[self.tool_number] = line, min(low, *ends), max(high, *ends)
         per_rev = block.per_rev or block.kind is BlockKind.THREAD
         self._append(
             PathStep(
@@ -322,7 +322,7 @@ class StepMaker:
     def report_far_side_tools(self) -> None:
         """Report the tools that cut only beyond the spindle axis, as on a gang-tool lathe."""
         for tool, (line, low, high) in self._cut_range.items():
-            if low < -_OTHER_SIDE_MM and high <= _NEAR:
+            if low < -_OTHER_SIDE_MM and high <= _OTHER_SIDE_MM:
                 self._warn_once(tool, line, "far-side-tool", number=tool)
 
     # --- actions
@@ -337,7 +337,8 @@ class StepMaker:
         elif isinstance(action, actions.SpindleRun | actions.SpindleStop):
             self._append_spindle(block)
         elif isinstance(action, actions.Preset | actions.WorkShift):
-            self.findings.append(make_note(block.line, 0, "shift-contained"))
+            note = make_note(block.line, 0, "shift-contained")
+            self.findings += [] if note in self.findings else [note]
         elif isinstance(action, actions.CycleRepeatCancel):
             self.findings.append(make_warning(block.line, 0, "left-out", word="M31"))
         elif (step := _make_plain_step(block, action)) is not None:
@@ -381,9 +382,8 @@ class StepMaker:
             return
         last = next((each.kind for each in reversed(self.steps) if each.kind in _PLACES), StepKind.HOME)
         if last is not StepKind.HOME:
-            self.findings.append(
-                make_warning(block.line, 0, "tool-change-place", number=number, before=self.tool_number)
-            )
+            key = block.line, self.tool_number
+            self._warn_once(key, block.line, "tool-change-place", number=number, before=self.tool_number)
         self.tool_number, self._is_tool_new = number, True
         self._append(PathStep(StepKind.TOOL, block.line, number=number))
 
