@@ -242,7 +242,7 @@ class StepMaker:
             rpm = f"{self.limits.max_rpm:g}"
             self._warn_once("G77", self._unlimited_line, "maximum-speed-added", rpm=rpm)
             self._unlimited_line = 0
-        self.steps.append(replace(step, comment=self.comments.take()))
+        self.steps.append(replace(step, comment=self.comments.remove_pending()))
 
     def _warn_once(self, key: object, line: int, code: str, /, **values: object) -> None:
         if (code, key) not in self._reported:
@@ -408,9 +408,9 @@ class StepMaker:
         """
         spindle = self._read_spindle(block)
         if self.spindle.is_css and spindle.max_rpm != self.spindle.max_rpm:
-            comment = self.comments.take()
+            comment = self.comments.remove_pending()
             self._append_spindle(block)
-            self.comments.put_back(comment)
+            self.comments.restore_pending(comment)
             if spindle.direction and not spindle.is_css:
                 speed = block.modal.spindle * block.modal.rpm
                 self._implied_actions[block.n] = (actions.SpindleRun(speed),)

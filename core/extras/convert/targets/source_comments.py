@@ -27,13 +27,13 @@ class SourceComments:
         self._read: set[int] = set()
         self._comments: list[str] = []
 
-    def take(self) -> str:
-        """Return the comments since the last call, separated by line feeds, and forget them."""
+    def remove_pending(self) -> str:
+        """Return the comments that no step has, separated by line feeds, and remove them."""
         comments, self._comments = self._comments, []
         return "\n".join(comments)
 
-    def put_back(self, comment: str) -> None:
-        """Return comments that belong to a later step."""
+    def restore_pending(self, comment: str) -> None:
+        """Restore comments that belong to a later step."""
         self._comments = comment.split("\n") if comment else []
 
     def read_lines_before(self, block: Block) -> Sequence[int]:
