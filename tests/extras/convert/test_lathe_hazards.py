@@ -219,3 +219,27 @@ def test_finding_of_a_loop_is_reported_once() -> None:
     lines = [(each.line, each.code, str(each.message)) for each in done.findings]
     assert len(lines) == len(set(lines))
     assert {each[1] for each in lines} >= {"tool-change-place", "spindle-restarted", "shift-contained"}
+
+
+@pytest.mark.parametrize(
+    ("body", "made"),
+    [
+        # Z-.00005 and Z-.0001 are both Z-.0001
+        ("Z0\nZ-.00005\nZ-.0001\nX1.9", ["G01 G99 Z0. F.01", "Z-.0001", "X1.9"]),
+        # the mode of a move that is left out is written with the next move
+        ("Z0\nZ-.00005\nG00Z-.0001\nX1.9", ["G01 G99 Z0. F.01", "Z-.0001", "G00 X1.9"]),
+        ("Z-.00005\nG94F9.Z-.0001\nG01X1.9", ["G01 G99 Z-.0001 F.01", "G98 X1.9 F9."]),
+        # T2 has another tip, so that its first move is never left out
+        ("Z0\nT2\nG00X2.Z0", ["G01 G99 Z0. F.01", "T0202", "G97 S1000 M03", "G00 X2. Z0."]),
+    ],
+)
+def test_move_below_the_resolution_of_fanuc_is_left_out(body: str, made: list[str]) -> None:
+    """A program with such a move was not converted, because its line was empty."""
+    assert lines_of(body, "fanuc")[: len(made)] == made
+
+
+def test_corner_radius_below_the_resolution_of_fanuc_is_left_out() -> None:
+    """The tangent length is R.tan(a/2) with tan(a) = .001 / .5: .008 * .001 = .000008 in."""
+    body = "G00X1.Z0\nG01Z-.5R.008\nX1.002Z-1."
+    assert lines_of(body, "fanuc")[-2:] == ["G01 G99 Z-.5 F.01", "X1.002 Z-1."]
+    assert any(each.startswith("G2") for each in lines_of(body, "linuxcnc"))

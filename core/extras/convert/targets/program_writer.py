@@ -316,6 +316,10 @@ class ProgramWriter(ABC):
         """Return X as it is written: a diameter or a radius in the unit of the program."""
         return self.round_length(x_mm * 2.0 if self.form.is_diameter else x_mm)
 
+    def round_point(self, x_mm: float, z_mm: float) -> tuple[float, float]:
+        """Return the coordinates of a point as they are written."""
+        return self.round_x(x_mm), self.round_length(z_mm)
+
     def format_length(self, letter: str, value: float) -> str:
         """Return a word with a length in the unit of the program."""
         return letter + self.format_number(value, self.places)

@@ -15,7 +15,11 @@ from core.extras.convert.targets.gcode_writers import FanucWriter, LinuxCncWrite
 from core.extras.convert.targets.omniturn_steps import InterpretedProgram, interpret_source
 from core.extras.convert.targets.program_writer import ProgramForm, ProgramWriter
 from core.extras.convert.targets.read_back_proof import prove_by_reading
-from core.extras.convert.targets.simplified_steps import simplify_steps
+from core.extras.convert.targets.simplified_steps import (
+    drop_short_blocks,
+    drop_short_steps,
+    simplify_steps,
+)
 from core.extras.convert.targets.sinumerik_writer import SinumerikWriter
 from core.interpreter.shared.job_setup import ControlLimits
 from core.language.diagnostics import ProgramError, Severity
@@ -51,6 +55,7 @@ def convert_from_omniturn(
         options.writes_comments,
     )
     writer = make_writer(form)
+    program = _drop_short_moves(program, writer)
     try:
         writer.write_program(program.steps)
     except ProgramError as error:
@@ -84,6 +89,7 @@ def convert_to_sinumerik(
         return Conversion((), tuple(program.findings), Proof())
     form = ProgramForm(title, program.is_metric, program.is_diameter, options.writes_comments)
     writer = SinumerikWriter(form)
+    program = _drop_short_moves(program, writer)
     try:
         writer.write_program(program.steps)
     except ProgramError as error:
@@ -100,6 +106,12 @@ def convert_to_sinumerik(
     )
     findings = sorted((*program.findings, *writer.findings), key=lambda each: each.line)
     return Conversion(lines, (*findings, *proof.errors), proof)
+
+
+def _drop_short_moves(program: InterpretedProgram, writer: ProgramWriter) -> InterpretedProgram:
+    """Return a program without the moves that are too short for the resolution of the writer."""
+    steps = drop_short_steps(program.steps, writer.round_point)
+    return replace(program, steps=steps, blocks=drop_short_blocks(program.blocks, writer.round_point))
 
 
 def _read_source(
