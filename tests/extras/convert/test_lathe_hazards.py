@@ -243,3 +243,15 @@ def test_corner_radius_below_the_resolution_of_fanuc_is_left_out() -> None:
     body = "G00X1.Z0\nG01Z-.5R.008\nX1.002Z-1."
     assert lines_of(body, "fanuc")[-2:] == ["G01 G99 Z-.5 F.01", "X1.002 Z-1."]
     assert any(each.startswith("G2") for each in lines_of(body, "linuxcnc"))
+
+
+@pytest.mark.parametrize(
+    ("feed", "made"),
+    [
+        ("3000", "F118.11024"),  # 3000 / 25.4 = 118.1102362
+        ("300", "F11.811024"),  # 300 / 25.4 = 11.8110236
+    ],
+)
+def test_feed_of_fanuc_has_at_most_eight_digits(feed: str, made: str) -> None:
+    """The feed is in mm/min, and the converted program is in inches."""
+    assert lines_of(f"G71\nG94F{feed}Z0", "fanuc") == [f"G01 G98 Z0. {made}"]

@@ -91,6 +91,9 @@ class LinuxCncWriter(ProgramWriter):
         return super().make_comment(f"* {text}" if _COMMENT_COMMAND.match(text) else text)
 
 
+_MOST_DIGITS = 8  # a Fanuc control rejects a number with more digits
+
+
 class FanucWriter(ProgramWriter):
     """Writer of a program for a Fanuc lathe in G-code system A."""
 
@@ -162,8 +165,9 @@ class FanucWriter(ProgramWriter):
         return ("" if before is not None and before[0] == "G99" else "G99"), ""
 
     def format_number(self, value: float, places: int) -> str:
-        """Return a number with a decimal point, as a Fanuc control needs it for lengths."""
-        text = number(value, places)
+        """Return a number of at most eight digits with a decimal point, which lengths need."""
+        whole_digits = len(f"{abs(value):.0f}")
+        text = number(value, min(places, max(_MOST_DIGITS - whole_digits, 0)))
         return text if "." in text else f"{text}."
 
     def format_speed(self, speed: float) -> str:
