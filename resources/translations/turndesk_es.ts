@@ -20220,6 +20220,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Check that the contour starts more than one nose radius away from the finished part.</source>
+      <translation>Compruebe que el contorno empieza a más de un radio de la punta de la pieza acabada.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>Check that the path from the tool change position to this point is clear.</source>
       <translation>Compruebe que el recorrido desde el cambio de herramienta hasta este punto está libre.</translation>
     </message>
@@ -20412,6 +20417,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>LinuxCNC calculates G02, G03, G41 and G42 in Z and X, whatever side the tool post is on.</source>
       <translation>LinuxCNC calcula G02, G03, G41 y G42 en Z y X, sea cual sea el lado del portaherramientas.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>LinuxCNC does not cut the contour within one nose radius of the end of this approach.</source>
+      <translation>LinuxCNC no corta el contorno a menos de un radio de la punta del final de esta aproximación.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />

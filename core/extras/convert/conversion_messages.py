@@ -272,6 +272,10 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
         "Nose compensation uses D{number}.",
         "Enter the nose radius in secondary offset D{number}.",
     ),
+    "nose-start": (
+        "LinuxCNC does not cut the contour within one nose radius of the end of this approach.",
+        "Check that the contour starts more than one nose radius away from the finished part.",
+    ),
     "nose-table": (
         "T{number} uses nose compensation.",
         "Enter the nose radius and the tip orientation of T{number} on the other control.",

@@ -255,3 +255,22 @@ def test_corner_radius_below_the_resolution_of_fanuc_is_left_out() -> None:
 def test_feed_of_fanuc_has_at_most_eight_digits(feed: str, made: str) -> None:
     """The feed is in mm/min, and the converted program is in inches."""
     assert lines_of(f"G71\nG94F{feed}Z0", "fanuc") == [f"G01 G98 Z0. {made}"]
+
+
+@pytest.mark.parametrize(
+    ("body", "is_reported"),
+    [
+        ("G00X0Z.3\nG41\nG01Z0D1\nX.8\nZ-.5\nG00X1.1\nG40\nZ.3", True),  # faces from X0
+        ("G00X.9Z.2\nG41\nG01X.8D1\nZ-.5\nX1.1\nG00X1.2\nG40\nZ.3", True),  # turns from Z.2
+        ("G00X.8Z.4\nG41\nG01Z.2D1\nZ-.5\nX1.1\nG00X1.2\nG40\nZ.3", False),  # in the line of the approach
+        ("G00X.8Z.3\nG42\nG01Z0D1\nX1.8\nG00Z.5\nG40\nX2.", False),  # turns away from the nose
+        ("G00X0Z.3\nG41\nG01Z0D1\nG02X.8Z-.4I0K-.4\nG01X1.1\nG00X1.2\nG40\nZ.3", True),  # starts along X
+        ("G00X.8Z.4\nG41\nG01Z0D1\nG03X1.2Z-.2I.2K0\nG01X1.4\nG00X1.5\nG40\nZ.3", False),  # along Z
+    ],
+)
+def test_start_of_nose_compensation_of_linuxcnc_is_reported(body: str, is_reported: bool) -> None:
+    """Left of Z- is X+, so with G41 a contour from Z- to X+ turns toward the nose."""
+    done = convert(complete(body), "linuxcnc")
+    assert not done.errors, done.errors
+    assert ("nose-start" in {each.code for each in done.findings}) is is_reported
+    assert "nose-start" not in {each.code for each in convert(complete(body), "fanuc").findings}

@@ -250,6 +250,24 @@ def test_nose_compensation_from_omniturn_is_on_the_same_side_in_linuxcnc(tmp_pat
     assert any((each.x, each.z) == pytest.approx((0.4, -0.5), abs=NEAR) for each in moves)
 
 
+@pytest.mark.parametrize(
+    ("start", "first"),
+    [
+        # the nose touches X0 and Z0, so that the face is cut from X.0156, and not from X0
+        ("X0Z.3", (0.0, 0.0)),
+        # in the line of the face, the center of the nose is at X0 and the tip at X-.0156
+        ("X-.4Z0", (-0.0156, 0.0)),
+    ],
+)
+def test_linuxcnc_does_not_cut_the_first_nose_radius_after_an_approach(
+    start: str, first: tuple[float, float], tmp_path: Path
+) -> None:
+    words = start.replace("X", "G0 X").replace("Z", " Z")
+    text = f"G20 G18 G7 G94 F10\nT1 M6 G43\n{words}\nG42 G1 X0 Z0\nX.8\nZ-.5\nG40 G0 X1.1\nM2\n"
+    moves = canon(text, tmp_path, "T1 P1 D.0312 Q2 X0 Z0")
+    assert (moves[1].x, moves[1].z) == pytest.approx(first, abs=NEAR)
+
+
 def test_comparison_detects_a_difference(tmp_path: Path) -> None:
     wanted = canon(CONTOUR, tmp_path)
     assert abs(ours(CONTOUR.replace("R6", "R6.01"))[2].cx - wanted[2].cx) > NEAR

@@ -10,6 +10,7 @@ from typing import ClassVar
 from core.extras.convert.conversion_messages import make_error, make_note, make_warning
 from core.extras.convert.omniturn_writer import number
 from core.extras.convert.path_steps import PathStep, SpindleState, StepKind
+from core.extras.convert.targets.nose_starts import find_incomplete_starts
 from core.extras.convert.targets.program_writer import ProgramWriter
 
 _COMMENT_COMMAND = re.compile(
@@ -34,6 +35,11 @@ class LinuxCncWriter(ProgramWriter):
         StepKind.THREAD: "G33",
     }
     arcs: ClassVar[tuple[str, str]] = ("G2", "G3")
+
+    def write_program(self, steps: Sequence[PathStep]) -> None:
+        """Write the program, and report the starts of nose compensation that differ from OmniTurn."""
+        super().write_program(steps)
+        self.findings += [make_warning(line, 0, "nose-start") for line in find_incomplete_starts(steps)]
 
     def write_beginning(self) -> None:
         """Write the modes that the program needs. G64 limits the rounding of corners."""
