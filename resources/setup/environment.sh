@@ -99,8 +99,41 @@ fresh_package_lists() {
     apt_get update || say "The package lists could not be renewed; going on with those that are here."
 }
 
+# fedora_name PACKAGE: prints the name of a Debian package on Fedora, and nothing for a part of Fedora's python3.
+fedora_name() {
+    case $1 in
+        libgl1) echo libglvnd-glx ;;
+        libegl1) echo libglvnd-egl ;;
+        libglib2.0-0) echo glib2 ;;
+        libxkbcommon0) echo libxkbcommon ;;
+        libdbus-1-3) echo dbus-libs ;;
+        libfontconfig1) echo fontconfig ;;
+        libgssapi-krb5-2) echo krb5-libs ;;
+        libxcb-cursor0) echo xcb-util-cursor ;;
+        libxkbcommon-x11-0) echo libxkbcommon-x11 ;;
+        libxcb-icccm4) echo xcb-util-wm ;;
+        libxcb-keysyms1) echo xcb-util-keysyms ;;
+        libxcb-shape0) echo libxcb ;;
+        libxi6) echo libXi ;;
+        libwayland-client0 | libwayland-cursor0) echo "${1%0}" ;;
+        libwayland-egl1) echo libwayland-egl ;;
+        python3 | ca-certificates) echo "$1" ;;
+    esac
+}
+
+# name_packages PACKAGES: without apt-get, says which packages of Fedora are missing; the set-up installs none of them.
+name_packages() {
+    command -v dnf >/dev/null || { say "No apt-get here: see README for the libraries that Qt needs."; return; }
+    missing=""
+    for package in "$@"; do
+        name=$(fedora_name "$package")
+        [ -z "$name" ] || rpm -q "$name" >/dev/null 2>&1 || missing="$missing $name"
+    done
+    [ -z "$missing" ] || say "TurnDesk was not tested on Fedora. It needs these packages: sudo dnf install$missing"
+}
+
 system_packages() {
-    command -v apt-get >/dev/null || { say "No apt-get here: see README for the libraries that Qt needs."; return; }
+    command -v apt-get >/dev/null || { name_packages "$@"; return; }
     missing=""
     for package in "$@"; do installed "$package" || missing="$missing $package"; done
     [ -z "$missing" ] && return

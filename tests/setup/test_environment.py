@@ -45,6 +45,44 @@ def python_named(folder: Path, name: str, version: str, *, supported: bool, bare
     executable(folder / name, STUB.format(unsupported=int(not supported), bare=int(bare), version=version))
 
 
+def fedora(folder: Path, *installed: str) -> str:
+    """The PATH of a system with dnf and without apt-get, on which only the named packages are installed."""
+    executable(folder / "dnf", "#!/bin/sh\nexit 1\n")
+    names = "|".join(installed)
+    executable(folder / "rpm", f"#!/bin/sh\ncase $2 in {names}) exit 0 ;; esac\nexit 1\n")
+    return str(folder)
+
+
+ON_FEDORA = "system_packages ca-certificates $QT_LIBRARIES $WINDOW_LIBRARIES $WAYLAND_LIBRARIES python3-venv"
+
+
+def test_missing_packages_have_their_names_on_fedora(tmp_path: Path) -> None:
+    told = tell(ON_FEDORA, PATH=fedora(tmp_path, "ca-certificates", "glib2"))
+    assert (told.returncode, told.stdout) == (0, "")
+    assert told.stderr == (
+        "TurnDesk was not tested on Fedora. It needs these packages: sudo dnf install libglvnd-glx "
+        "libglvnd-egl libxkbcommon dbus-libs fontconfig krb5-libs xcb-util-cursor libxkbcommon-x11 "
+        "xcb-util-wm xcb-util-keysyms libxcb libXi libwayland-client libwayland-cursor libwayland-egl\n"
+    )
+
+
+def test_nothing_is_named_if_fedora_has_all_packages(tmp_path: Path) -> None:
+    assert (
+        tell("system_packages python3 libgl1", PATH=fedora(tmp_path, "python3", "libglvnd-glx")).stderr == ""
+    )
+
+
+def test_system_with_another_package_manager_is_referred_to_the_readme(tmp_path: Path) -> None:
+    assert "see README" in tell("system_packages libgl1", PATH=str(tmp_path)).stderr
+
+
+def test_every_package_of_the_setup_has_a_name_on_fedora() -> None:
+    script = (
+        "for name in $QT_LIBRARIES $WINDOW_LIBRARIES $WAYLAND_LIBRARIES; do fedora_name $name; done | wc -l"
+    )
+    assert int(tell(script).stdout) == 7 + 6 + 3
+
+
 @pytest.mark.parametrize("version", ["3.10", "3.15"])
 def test_unsupported_python_is_reported_in_one_sentence(tmp_path: Path, version: str) -> None:
     python_named(tmp_path, "python3", version, supported=False)
