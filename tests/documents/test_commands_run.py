@@ -15,15 +15,27 @@ from tests.documents.test_pages import WRITTEN, commands_of
 __all__ = ["home", "turndesk"]
 
 NOT_RUN: Mapping[str, str] = {
-    "machine peer": "runs until it is stopped; tests/cli/test_machine_peer.py",
-    "machine check resources/machines/gt75-bench.toml": "needs that peer",
-    "run part.nc --headless --machine resources/machines/gt75-bench.toml": "needs that peer",
-    "serial send": "needs a serial port; tests/cli/test_serial.py",
-    "serial receive": "needs a serial port; tests/cli/test_serial.py",
+    "machine peer": "runs until it is stopped; tests/killed/test_controller.py",
+    "machine check resources/machines/gt75-bench.toml": "needs that peer; tests/cli/test_machine_bus.py",
+    "run part.nc --headless --machine resources/machines/gt75-bench.toml": (
+        "needs that peer; tests/cli/test_machine_bus.py"
+    ),
+    "serial send": "needs a serial port; tests/drivers/transfer/test_commands.py",
+    "serial receive": "needs a serial port; tests/drivers/transfer/test_commands.py",
     "--machine ac-table-mill": "opens the screen; tests/stories",
     "--demo": "opens the screen; tests/stories",
 }
-"""Commands that are not run here, by their first words, and what tests them."""
+"""Commands that are not run here, by their first words, with the reason and with what tests them."""
+OTHER_PROGRAMS: Mapping[str, str] = {
+    "sh app/start.sh": "installs packages and opens the screen; tests/setup/test_environment.py",
+    "sh tests/run.sh": "would run this test; .ci/run",
+    "ip link set can0 up": "needs a CAN interface and the rights of root; tests/drivers/canopen",
+    "sudo TURNDESK_OPERATOR=anna apt install": "changes the system; resources/setup/release_check.py",
+    "sudo sh turndesk-….run": "changes the system; resources/setup/release_check.py",
+    ".venv/bin/python -m resources.setup.bundle": "needs a network; resources/setup/release.py",
+    "groupadd -f machine; usermod": "changes the accounts of the system; resources/setup/debian/postinst",
+}
+"""Commands of other programs, which are not run here, with the reason and with what runs or tests them."""
 STATUS: Mapping[str, int] = {
     "prove resources/programs/bushing.nc": 1,  # the page explains the errors of this program
     "tools import": 2,  # the questions need a terminal; tests/extras/tool_tables
@@ -93,4 +105,34 @@ def _with_files(words: list[str], turndesk: Turndesk, folder: Path) -> list[str]
 def test_commands_excluded_from_the_run_are_still_in_a_page() -> None:
     texts = [" ".join(words) for page in PAGES for _, words in commands_of(page)]
     gone = [each for each in (*NOT_RUN, *STATUS) if not any(text.startswith(each) for text in texts)]
+    others = [command.text for page in WRITTEN for command in page.commands]
+    gone += [each for each in OTHER_PROGRAMS if not any(text.startswith(each) for text in others)]
     assert gone == []
+
+
+def find_unexplained_commands(page: Page) -> list[str]:
+    """Return the commands in the shell blocks of a page that are neither run nor excluded with a reason."""
+    own = {command for command, _ in commands_of(page)}
+    return [
+        f"{page.name}:{command.number}: {command.text}"
+        for command in page.commands
+        if command.complete and command not in own and not command.text.startswith(tuple(OTHER_PROGRAMS))
+    ]
+
+
+def test_each_command_is_run_or_excluded_with_a_reason() -> None:
+    assert [each for page in WRITTEN for each in find_unexplained_commands(page)] == []
+
+
+def test_command_without_a_reason_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tests.documents.pages.ROOT", tmp_path)
+    (tmp_path / "a.md").write_text("```sh\nrm -r x\nturndesk where\nsh app/start.sh --kiosk\n```\n")
+    assert find_unexplained_commands(Page(tmp_path / "a.md")) == ["a.md:2: rm -r x"]
+
+
+def test_reasons_name_existing_tests_and_scripts() -> None:
+    named = {word for reason in (*NOT_RUN.values(), *OTHER_PROGRAMS.values()) for word in reason.split()}
+    paths = [word for word in named if "/" in word]
+    assert len(paths) >= 8
+    assert [path for path in paths if not (ROOT / path).exists()] == []
+    assert [each for each in (*NOT_RUN.values(), *OTHER_PROGRAMS.values()) if "; " not in each] == []
