@@ -90,17 +90,17 @@ def open_store(*, read_only: bool = False) -> Iterator[Store]:
 
 
 @contextmanager
-def _show_pages(description: str) -> Iterator[Callable[[int, int], None]]:
-    """Show the progress of a copy on a terminal. Yield the function that reports the copied pages."""
+def _show_progress(description: str) -> Iterator[Callable[[int, int], None]]:
+    """Show progress on a terminal. Yield the function that reports the finished part and the total."""
     from app.cli.proofs.progress_bar import ProgressBar
 
     with ProgressBar(description) as progress:
 
-        def report_pages(copied: int, total: int) -> None:
+        def report_part(finished: int, total: int) -> None:
             progress.total = total
-            progress.report_progress(copied)
+            progress.report_progress(finished)
 
-        yield report_pages
+        yield report_part
 
 
 # --- Actions ---------------------------------------------------------------------------------------------
@@ -109,7 +109,7 @@ def _show_pages(description: str) -> Iterator[Callable[[int, int], None]]:
 def _backup(args: argparse.Namespace) -> int:
     from core.store import backup
 
-    with convert_store_errors(), _show_pages(f"backing up to {args.path}") as report_pages:
+    with convert_store_errors(), _show_progress(f"backing up to {args.path}") as report_pages:
         backup.back_up_store(find_data_folder(), Path(args.path), report_pages)
     sys.stdout.write(f"{find_data_folder()} was backed up to {args.path}\n")
     return EXIT_OK
@@ -119,7 +119,7 @@ def _restore(args: argparse.Namespace) -> int:
     from core.store import backup
 
     who = get_permitted_user(open_store, args, ProtectedChange.RESTORE)
-    with convert_store_errors(), _show_pages(f"restoring {args.path}") as report_pages:
+    with convert_store_errors(), _show_progress(f"restoring {args.path}") as report_pages:
         kept = backup.restore_store(find_data_folder(), Path(args.path), report_pages)
     saved = Message("; the previous data was saved as {saved}", saved=kept) if kept else ""
     log_user_change(open_store, who, Message("restored from {path}{saved}", path=args.path, saved=saved))
@@ -214,8 +214,8 @@ def _verify(args: argparse.Namespace) -> int:
     from core.store.store_file import STORE_FILE_NAME, has_store
 
     path = find_data_folder() / STORE_FILE_NAME
-    with convert_store_errors():
-        problems = backup.find_all_store_problems(path) if has_store(find_data_folder()) else ()
+    with convert_store_errors(), _show_progress(f"verifying {path}") as report_checks:
+        problems = backup.find_all_store_problems(path, report_checks) if has_store(path.parent) else ()
     if args.json:
         sys.stdout.write(json.dumps({"store": str(path), "problems": problems}) + "\n")
     elif not problems:

@@ -48,7 +48,24 @@ _NEWEST_VERSION_QUERY = (
 Found = dict[tuple[str, object], str]
 ReportPages = Callable[[int, int], None]
 """Function that is called with the number of copied pages and the total number of pages."""
+ReportChecks = Callable[[int, int], None]
+"""Function that is called with the number of finished checks and the total number of checks."""
 _PAGES_PER_STEP = 256  # pages of 4 KB that are copied between two progress reports
+
+
+class _CheckCounter:
+    """Counter of the finished checks of a store: pages, references, program texts and each table."""
+
+    def __init__(self, report_checks: ReportChecks | None) -> None:
+        self._report_checks = report_checks
+        self._total = 3 + len(row_checksums.CHECKSUMMED_TABLES)
+        self._finished = 0
+
+    def count_check(self) -> None:
+        """Count a finished check and report it."""
+        self._finished += 1
+        if self._report_checks is not None:
+            self._report_checks(self._finished, self._total)
 
 
 def find_store_problems(path: Path) -> tuple[str, ...]:
@@ -58,16 +75,19 @@ def find_store_problems(path: Path) -> tuple[str, ...]:
     StoreError if the file cannot be opened, is not a TurnDesk store or has a newer version. Also raises
     StoreError if changes in its write-ahead log are lost.
     """
-    return _looked_through(path, _found)
+    return _looked_through(path, partial(_found, counter=_CheckCounter(None)))
 
 
-def find_all_store_problems(path: Path) -> tuple[str, ...]:
+def find_all_store_problems(path: Path, report_checks: ReportChecks | None = None) -> tuple[str, ...]:
     """Return the problems of a store file, including damaged history entries.
 
     History entries are checked only if ``find_store_problems`` finds no problem. A backup with damaged
     history entries is still usable.
     """
-    return find_store_problems(path) or _looked_through(path, _of_histories)
+    counter = _CheckCounter(report_checks)
+    return _looked_through(path, partial(_found, counter=counter)) or _looked_through(
+        path, partial(_of_histories, counter=counter)
+    )
 
 
 def _looked_through(path: Path, look: Callable[[sqlite3.Connection], tuple[str, ...]]) -> tuple[str, ...]:
@@ -80,13 +100,14 @@ def _looked_through(path: Path, look: Callable[[sqlite3.Connection], tuple[str, 
         return (Message("the file is damaged: {text}", text=error),)
 
 
-def _of_histories(connection: sqlite3.Connection) -> tuple[str, ...]:
+def _of_histories(connection: sqlite3.Connection, counter: _CheckCounter) -> tuple[str, ...]:
     newest = read_store_version(connection) == len(database.load_migrations())
-    return damaged_rows.find_damaged_history(connection) if newest else ()
+    return damaged_rows.find_damaged_history(connection, counter.count_check) if newest else ()
 
 
-def _found(connection: sqlite3.Connection) -> tuple[str, ...]:
+def _found(connection: sqlite3.Connection, counter: _CheckCounter) -> tuple[str, ...]:
     pages = [str(row[0]) for row in connection.execute("PRAGMA integrity_check")]
+    counter.count_check()
     found: list[str] = [
         Message("the file is damaged: {text}", text=" ".join(text.split())) for text in pages if text != "ok"
     ]
@@ -96,13 +117,14 @@ def _found(connection: sqlite3.Connection) -> tuple[str, ...]:
         )
         for table, _, parent, _ in connection.execute("PRAGMA foreign_key_check")
     ]
+    counter.count_check()
     found += [
         Message("{which} does not match its checksum", which=which)
         for which in program_records.find_damaged_versions(connection)
     ]
-    found += damaged_rows.find_damaged_rows(
-        connection, row_checksums.list_tables_with_checksums(read_store_version(connection))
-    )
+    counter.count_check()
+    tables = row_checksums.list_tables_with_checksums(read_store_version(connection))
+    found += damaged_rows.find_damaged_rows(connection, tables, report_table=counter.count_check)
     return tuple(found)
 
 

@@ -7,7 +7,7 @@ reports the damage.
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
 from core.message import Message
 from core.store import row_checksums
@@ -142,12 +142,16 @@ def _shown(value: row_checksums.ColumnValue) -> str:
 
 
 def find_damaged_rows(
-    connection: sqlite3.Connection, tables: Collection[str] = KEY_COLUMNS, settings: Collection[str] = ()
+    connection: sqlite3.Connection,
+    tables: Collection[str] = KEY_COLUMNS,
+    settings: Collection[str] = (),
+    report_table: Callable[[], None] | None = None,
 ) -> tuple[str, ...]:
     """Return a message for each row that does not match its checksum.
 
     Such a row is treated as if it had never been set. ``tables`` are the tables to check. ``settings`` are
-    the setting keys to check if ``tables`` does not include the settings table.
+    the setting keys to check if ``tables`` does not include the settings table. ``report_table`` is called
+    after each checked table.
     """
     looked = [table for table in KEY_COLUMNS if table in tables or (table == "settings" and settings)]
     return tuple(
@@ -158,27 +162,40 @@ def find_damaged_rows(
                 table2=_REMEDY.get(table, _DEFAULT_REMEDY),
             )
         )
-        for table, key in _broken(connection, looked)
+        for table, key in _broken(connection, looked, report_table)
         if table in tables or key in settings
     )
 
 
-def find_damaged_history(connection: sqlite3.Connection) -> tuple[str, ...]:
+def find_damaged_history(
+    connection: sqlite3.Connection, report_table: Callable[[], None] | None = None
+) -> tuple[str, ...]:
     """Return a message for each damaged row of a history table, and one if the schema has changed.
 
     These tables grow for years. They are checked completely only by the command ``verify``.
+    ``report_table`` is called after each checked table.
     """
     tables = () if row_checksums.is_schema_intact(connection) else (SCHEMA_CHANGED_MESSAGE,)
     return tables + tuple(
         Message("{table} was damaged in the data store", table=make_row_label(table, key))
-        for table, key in _broken(connection, HISTORY_KEY_COLUMNS)
+        for table, key in _broken(connection, HISTORY_KEY_COLUMNS, report_table)
     )
 
 
-def _broken(connection: sqlite3.Connection, tables: Collection[str]) -> list[tuple[str, RowKey]]:
+def _broken(
+    connection: sqlite3.Connection, tables: Collection[str], report_table: Callable[[], None] | None = None
+) -> list[tuple[str, RowKey]]:
     order = list(tables)
-    found = row_checksums.find_all_broken_rows(connection, tables)
+    found = row_checksums.find_all_broken_rows(connection, _report_each(tables, report_table))
     return sorted(found, key=lambda row: (order.index(row[0]), isinstance(row[1], str), row[1]))
+
+
+def _report_each(tables: Iterable[str], report_table: Callable[[], None] | None) -> Iterator[str]:
+    """Yield the tables, and report each of them after the caller has checked it."""
+    for table in tables:
+        yield table
+        if report_table is not None:
+            report_table()
 
 
 def make_row_label(name: str, key: row_checksums.RowKey) -> str:

@@ -1,4 +1,4 @@
-"""Progress of a backup and a restore: what is reported, and what is printed on a terminal."""
+"""Progress of a backup, a restore and a check: what is reported, and what is printed on a terminal."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ from core.store import backup
 from core.store.store import Store, StoreError
 from core.store.store_file import STORE_FILE_NAME
 from tests.coded import raises_code
+
+CHECK_COUNT = 31  # pages, references, program texts, 14 tables with values and 14 with a history
 
 
 @pytest.fixture
@@ -106,3 +108,36 @@ def test_command_shows_the_total_only_on_a_terminal(
         shown = capsys.readouterr().err
         assert (text in shown) is is_terminal
         assert (f"of {pages}" in shown) is is_terminal
+    assert main(["store", "verify"]) == 0
+    shown = capsys.readouterr().err
+    assert ("verifying" in shown) is is_terminal
+    assert (f"of {CHECK_COUNT}" in shown) is is_terminal
+
+
+def test_check_of_the_store_reports_each_check(store: Store, folder: Path) -> None:
+    store.offsets.tool_offsets.change_row(1, "x", {"x": 1.0}).result()
+    reports: list[tuple[int, int]] = []
+    backup.find_all_store_problems(
+        folder / STORE_FILE_NAME, lambda done, total: reports.append((done, total))
+    )
+    assert reports == [(number, CHECK_COUNT) for number in range(1, CHECK_COUNT + 1)]
+
+
+def test_check_of_a_damaged_store_ends_before_the_histories(store: Store, folder: Path) -> None:
+    store.offsets.tool_offsets.change_row(1, "x", {"x": 1.0}).result()
+    store.close()
+    with closing(sqlite3.connect(folder / STORE_FILE_NAME)) as connection:
+        connection.execute("UPDATE tool_offsets SET x = 2.0")
+        connection.commit()
+    reports: list[int] = []
+    assert backup.find_all_store_problems(folder / STORE_FILE_NAME, lambda done, _: reports.append(done))
+    assert reports == [*range(1, CHECK_COUNT - 14 + 1)]
+
+
+@pytest.mark.parametrize("name", ["missing.db", "no-store.db"])
+def test_check_that_cannot_start_reports_nothing(name: str, tmp_path: Path) -> None:
+    (tmp_path / "no-store.db").write_bytes(b"G90\r\n" * 100)
+    reports: list[int] = []
+    with pytest.raises(StoreError):
+        backup.find_all_store_problems(tmp_path / name, lambda done, _: reports.append(done))
+    assert reports == []
