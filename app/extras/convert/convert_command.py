@@ -8,11 +8,13 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.cli.change_author import add_author_option, get_permitted_user, log_user_change
 from app.cli.program_options import parse_output_path
+from app.cli.proofs.progress_bar import ProgressBar
 from app.cli.store_command import open_store
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, convert_to_command_error
 from app.extras.convert.conversion_settings import ConversionSettings, make_options
@@ -104,13 +106,16 @@ def run(args: argparse.Namespace) -> int:
         source = load_source(Path(args.file))
     limits = get_control_limits(machine)
     control: str = _OMNITURN
-    if args.to == TargetControl.OMNITURN:
-        control = _find_control(args, source)
-        done = convert_program(source.lines, _options(args, SourceControl(control), machine), limits)
-    elif args.to == TargetControl.SINUMERIK:
-        control, done = _convert_to_sinumerik(args, source, machine, limits)
-    else:
-        done = _convert_from_omniturn(args, source, machine, limits)
+    with ProgressBar(f"converting {args.file}", len(source.lines)) as progress:
+        report = progress.report_progress
+        if args.to == TargetControl.OMNITURN:
+            control = _find_control(args, source)
+            options = _options(args, SourceControl(control), machine)
+            done = convert_program(source.lines, options, limits, report)
+        elif args.to == TargetControl.SINUMERIK:
+            control, done = _convert_to_sinumerik(args, source, machine, limits, report)
+        else:
+            done = _convert_from_omniturn(args, source, machine, limits, report)
     if args.out is not None and not done.errors:
         _write(args, done.text, who)
     _print(args, control, done)
@@ -149,7 +154,11 @@ def _find_control(args: argparse.Namespace, source: ProgramSource) -> SourceCont
 
 
 def _convert_to_sinumerik(
-    args: argparse.Namespace, source: ProgramSource, machine: Machine, limits: ControlLimits
+    args: argparse.Namespace,
+    source: ProgramSource,
+    machine: Machine,
+    limits: ControlLimits,
+    report_line: Callable[[int], None],
 ) -> tuple[str, Conversion]:
     """Convert a program to SINUMERIK; return the control of the source too.
 
@@ -163,12 +172,18 @@ def _convert_to_sinumerik(
         _reject_idle_options(args)
     own_control = SourceControl.LINUXCNC if is_omniturn else SourceControl(control)
     options, title = _options(args, own_control, machine), Path(args.file).name
-    done = convert_to_sinumerik(source.lines, options, limits, title, is_omniturn=is_omniturn)
+    done = convert_to_sinumerik(
+        source.lines, options, limits, title, is_omniturn=is_omniturn, report_line=report_line
+    )
     return control, done
 
 
 def _convert_from_omniturn(
-    args: argparse.Namespace, source: ProgramSource, machine: Machine, limits: ControlLimits
+    args: argparse.Namespace,
+    source: ProgramSource,
+    machine: Machine,
+    limits: ControlLimits,
+    report_line: Callable[[int], None],
 ) -> Conversion:
     """Convert an OmniTurn program to another control.
 
@@ -183,7 +198,7 @@ def _convert_from_omniturn(
     _reject_idle_options(args)
     options = _options(args, SourceControl.LINUXCNC, machine)
     title = Path(args.file).name
-    return convert_from_omniturn(source.lines, TargetControl(args.to), options, limits, title)
+    return convert_from_omniturn(source.lines, TargetControl(args.to), options, limits, title, report_line)
 
 
 def _reject_idle_options(args: argparse.Namespace) -> None:

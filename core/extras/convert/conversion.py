@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from core.extras.convert.conversion_messages import make_error
 from core.extras.convert.omniturn_writer import OmniTurnWriter, WrittenLine
 from core.extras.convert.path_steps import MOVE_KINDS
-from core.extras.convert.proof.conversion_proof import Proof, prove
+from core.extras.convert.proof.conversion_proof import Proof, ReportLine, ignore_line, prove
 from core.extras.convert.source_options import ConversionOptions
 from core.extras.convert.source_reader import read_source
 from core.interpreter.shared.job_setup import ControlLimits
@@ -50,10 +50,16 @@ def group_findings(findings: Sequence[Diagnostic]) -> list[tuple[Diagnostic, str
     return [(each, ", ".join(str(line) for line in lines[1:])) for each, lines in first.values()]
 
 
-def convert_program(texts: Sequence[str], options: ConversionOptions, limits: ControlLimits) -> Conversion:
+def convert_program(
+    texts: Sequence[str],
+    options: ConversionOptions,
+    limits: ControlLimits,
+    report_line: ReportLine = ignore_line,
+) -> Conversion:
     """Convert the lines of a source program to OmniTurn, and prove the result.
 
-    ``limits`` are the limits of the control for which the result is proved.
+    ``limits`` are the limits of the control for which the result is proved. ``report_line`` is called with
+    the number of each line that is proved.
     """
     state, findings = read_source(texts, options)
     if any(each.severity is Severity.ERROR for each in findings):
@@ -73,5 +79,6 @@ def convert_program(texts: Sequence[str], options: ConversionOptions, limits: Co
         state.steps,
         limits,
         is_metric=metric,
+        report_line=report_line,
     )
     return Conversion(lines, (*findings, *writer.warnings, *proof.errors), proof)

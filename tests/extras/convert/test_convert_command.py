@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
 
+from app.cli.main import main
+from app.cli.proofs import progress_bar
 from app.extras.convert import convert_command
 from tests.cli.conftest import Turndesk
 from tests.cli.json_output import declared_alone
@@ -166,3 +169,41 @@ def test_program_of_another_control_is_not_read_as_omniturn(
 
 def test_missing_file_is_rejected(turndesk: Turndesk, tmp_path: Path) -> None:
     assert turndesk("convert", tmp_path / "missing.nc").status == 2
+
+
+OMNITURN_PART = "G90G94F300G70G72\nT1\nX1.Z.1\nG01X.9Z-1.F60\nX1.\nM30\n"
+
+
+@pytest.mark.parametrize("is_terminal", [True, False])
+@pytest.mark.parametrize(
+    ("text", "target", "line_count"),
+    [(PART, "omniturn", 10), (PART, "sinumerik", 10), (OMNITURN_PART, "linuxcnc", 6)],
+)
+def test_progress_has_the_number_of_lines_as_total_only_on_a_terminal(
+    text: str,
+    target: str,
+    line_count: int,
+    is_terminal: bool,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr(progress_bar, "SHOW_DELAY_S", -1.0)
+    monkeypatch.setattr(progress_bar, "REDRAW_INTERVAL_S", 0.0)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: is_terminal)
+    program = tmp_path / ("part.nc" if text is OMNITURN_PART else "part.txt")
+    program.write_text(text)
+    main(["convert", str(program), "--to", target])
+    shown = capsys.readouterr().err
+    assert ("converting" in shown) is is_terminal
+    assert (f"of {line_count}" in shown) is is_terminal
+
+
+def test_rejected_program_has_no_progress(
+    part: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(progress_bar, "SHOW_DELAY_S", -1.0)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    part.write_text(PART.replace("M41", "M77"))
+    assert main(["convert", str(part)]) == 1
+    assert "converting" not in capsys.readouterr().err

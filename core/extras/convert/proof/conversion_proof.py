@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from core.extras.convert.conversion_messages import make_error
@@ -30,6 +30,14 @@ _KINDS = {
 }
 
 
+ReportLine = Callable[[int], None]
+"""Function that is called with the number of a source line when this line is proved."""
+
+
+def ignore_line(_line: int) -> None:
+    """Do nothing with the number of a proved line."""
+
+
 @dataclass(frozen=True, slots=True)
 class Proof:
     """Result of the proof of a conversion: the differences, and the number of compared steps.
@@ -53,11 +61,13 @@ def prove(
     is_metric: bool,
     dialect: Dialect = Dialect.OMNITURN,
     resolution_mm: float = 0.0,
+    report_line: ReportLine = ignore_line,
 ) -> Proof:
     """Interpret the converted program and compare it with the steps of the source.
 
     ``source_line_numbers`` contains the source line of each line of ``text``. ``resolution_mm`` is the
-    resolution of the coordinates; 0 means the resolution of OmniTurn.
+    resolution of the coordinates; 0 means the resolution of OmniTurn. ``report_line`` is called with the
+    source line of each interpreted block.
     """
     # Fixed point 1 replaces machine home; its odd values differ from any programmed position.
     home = _FIXED_POINT if dialect is Dialect.SINUMERIK else (0.0, 0.0)
@@ -70,7 +80,10 @@ def prove(
         ProgramSource("converted", text, dialect),
         InterpreterSetup(tools=tools, secondary=nose, limits=limits),
     )
-    blocks = list(done.generate_blocks())
+    blocks = []
+    for block in done.generate_blocks():
+        blocks.append(block)
+        report_line(source_line_numbers[block.line - 1])
     errors = [each for each in done.diagnostics if each.severity is Severity.ERROR]
     if errors:
         return Proof(tuple(make_target_error(each, text, source_line_numbers) for each in errors))

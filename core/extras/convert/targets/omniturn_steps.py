@@ -14,6 +14,7 @@ from itertools import zip_longest
 
 from core.extras.convert.conversion_messages import make_error, make_note, make_warning
 from core.extras.convert.path_steps import PathStep, SpindleState, StepKind, has_same_speed
+from core.extras.convert.proof.conversion_proof import ReportLine, ignore_line
 from core.extras.convert.source_options import ConversionOptions
 from core.extras.convert.targets.source_comments import COMMENT, SourceComments
 from core.interpreter.dialects import interpret_program
@@ -74,14 +75,19 @@ def make_invented_setup(limits: ControlLimits, variant: int) -> InterpreterSetup
 
 
 def interpret_source(
-    texts: Sequence[str], options: ConversionOptions, limits: ControlLimits
+    texts: Sequence[str],
+    options: ConversionOptions,
+    limits: ControlLimits,
+    report_line: ReportLine = ignore_line,
 ) -> InterpretedProgram:
     """Interpret an OmniTurn program and return its blocks and steps.
 
     The last finding is an error if the program has errors, if it cannot be written for another control, or
-    if a step depends on the tool offsets of this lathe.
+    if a step depends on the tool offsets of this lathe. ``report_line`` is called with the number of each
+    line that is interpreted.
     """
-    first, second = (_interpret_variant(texts, options, limits, variant) for variant in (0, 1))
+    first = _interpret_variant(texts, options, limits, 0, lambda line: report_line(line // 2))
+    second = _interpret_variant(texts, options, limits, 1, lambda line: report_line((len(texts) + line) // 2))
     if any(each.severity is Severity.ERROR for each in first.findings):
         return _find_dependent_preset(first, second) or first
     if any(each.severity is Severity.ERROR for each in second.findings):
@@ -90,12 +96,19 @@ def interpret_source(
 
 
 def _interpret_variant(
-    texts: Sequence[str], options: ConversionOptions, limits: ControlLimits, variant: int
+    texts: Sequence[str],
+    options: ConversionOptions,
+    limits: ControlLimits,
+    variant: int,
+    report_line: ReportLine,
 ) -> InterpretedProgram:
     """Interpret a program with one variant of the assumed setup."""
     source = ProgramSource("source", "".join(f"{each}\n" for each in texts), Dialect.OMNITURN)
     done = interpret_program(source, make_invented_setup(limits, variant))
-    relative = [_relative_to_part_zero(each) for each in done.generate_blocks()]
+    relative = []
+    for block in done.generate_blocks():
+        relative.append(_relative_to_part_zero(block))
+        report_line(block.line)
     blocks = [replace(each, kind=BlockKind.FEED) if _is_slow_rapid(each) else each for each in relative]
     errors = [each for each in done.diagnostics if each.severity is Severity.ERROR]
     if errors:

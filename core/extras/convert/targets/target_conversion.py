@@ -8,7 +8,7 @@ from dataclasses import replace
 from core.extras.convert.conversion import Conversion
 from core.extras.convert.conversion_messages import make_error
 from core.extras.convert.path_steps import MOVE_KINDS
-from core.extras.convert.proof.conversion_proof import Proof, prove
+from core.extras.convert.proof.conversion_proof import Proof, ReportLine, ignore_line, prove
 from core.extras.convert.source_options import ConversionOptions, SourceControl, TargetControl
 from core.extras.convert.source_reader import read_source
 from core.extras.convert.targets.gcode_writers import FanucWriter, LinuxCncWriter
@@ -38,13 +38,15 @@ def convert_from_omniturn(
     options: ConversionOptions,
     limits: ControlLimits,
     title: str,
+    report_line: ReportLine = ignore_line,
 ) -> Conversion:
     """Convert the lines of an OmniTurn program to LinuxCNC or Fanuc, and prove the result.
 
     ``limits`` are the limits of the lathe for which the program was written. ``title`` is the comment in the
     first line. X remains a radius or a diameter, except that a Fanuc program always has diameters.
+    ``report_line`` is called with the number of each line that is interpreted.
     """
-    program = interpret_source(texts, options, limits)
+    program = interpret_source(texts, options, limits, report_line)
     if any(each.severity is Severity.ERROR for each in program.findings):
         return Conversion((), tuple(program.findings), Proof())
     make_writer, reader = _WRITERS[target]
@@ -79,10 +81,12 @@ def convert_to_sinumerik(
     title: str,
     *,
     is_omniturn: bool = False,
+    report_line: ReportLine = ignore_line,
 ) -> Conversion:
     """Convert the lines of a turning program to SINUMERIK, and prove the result with its interpreter.
 
     The source is a program of ``options.control`` or, if ``is_omniturn`` is True, an OmniTurn program.
+    ``report_line`` is called with the number of each line that is proved.
     """
     program = _read_source(texts, options, limits, is_omniturn=is_omniturn)
     if any(each.severity is Severity.ERROR for each in program.findings):
@@ -103,6 +107,7 @@ def convert_to_sinumerik(
         is_metric=program.is_metric,
         dialect=Dialect.SINUMERIK,
         resolution_mm=writer.unit_mm / 10**writer.places,
+        report_line=report_line,
     )
     findings = sorted((*program.findings, *writer.findings), key=lambda each: each.line)
     return Conversion(lines, (*findings, *proof.errors), proof)
