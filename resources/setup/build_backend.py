@@ -1,7 +1,9 @@
 """Build backend of the TurnDesk wheel, which has all source packages in one package ``turndesk``.
 
-Setuptools builds the wheel, and this backend then moves its packages and adds the user's guide. Setuptools
-alone builds editable installs and source distributions, whose package names are those of the repository.
+Setuptools builds the wheel, and this backend then moves its packages, and adds the user's guide.
+Wheels and source distributions get a description for the page of a package index.
+Setuptools alone builds editable installs; these and the source distributions have the package names of the
+repository.
 """
 
 from __future__ import annotations
@@ -13,13 +15,14 @@ from typing import Any
 from setuptools import build_meta
 from setuptools.build_meta import (
     build_editable,
-    build_sdist,
     get_requires_for_build_editable,
     get_requires_for_build_sdist,
     get_requires_for_build_wheel,
     prepare_metadata_for_build_editable,
 )
 
+from resources.setup.index_page import convert_description
+from resources.setup.packages.reproducible_archives import repack_tar_gz
 from resources.setup.wheel_merge import merge_packages, read_guide_files
 
 __all__ = [
@@ -44,3 +47,17 @@ def build_wheel(
     path = Path(wheel_directory) / name
     path.write_bytes(merge_packages(path.read_bytes(), read_guide_files(Path.cwd())))
     return name
+
+
+def build_sdist(sdist_directory: str, config_settings: Mapping[str, Any] | None = None) -> str:
+    """Build the source distribution in a folder, and return its file name.
+
+    Its bytes do not depend on the time and the order of the files.
+    """
+    name = str(build_meta.build_sdist(sdist_directory, dict(config_settings) if config_settings else None))
+    repack_tar_gz(Path(sdist_directory) / name, _convert_metadata)
+    return name
+
+
+def _convert_metadata(name: str, content: bytes) -> bytes:
+    return convert_description(content) if name.endswith("/PKG-INFO") else content

@@ -35,7 +35,7 @@ from resources.setup.licences import LicenseError
 from resources.setup.lock import PROJECT_FOLDER
 from resources.setup.packages.debian_package import TARGETS, write_debian_package
 from resources.setup.packages.environment_folder import make_environment_folder
-from resources.setup.packages.reproducible_archives import repack_tar_gz, set_times, write_tar_gz
+from resources.setup.packages.reproducible_archives import set_times, write_tar_gz
 from resources.setup.sbom import build_sbom
 
 CHECKSUM_FILE_NAME = "SHA256SUMS"
@@ -84,9 +84,8 @@ def _build_artifacts_with_site(
 
 
 def _write_source_distribution(folder: Path) -> None:
-    code = "import sys; from setuptools.build_meta import build_sdist; print(build_sdist(sys.argv[1]))"
-    name = run(sys.executable, "-c", code, folder).strip().splitlines()[-1]
-    repack_tar_gz(folder / name)
+    code = "import sys; from resources.setup.build_backend import build_sdist; build_sdist(sys.argv[1])"
+    run(sys.executable, "-c", code, folder)
     shutil.rmtree(PROJECT_FOLDER / "turndesk.egg-info", ignore_errors=True)
 
 

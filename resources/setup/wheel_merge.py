@@ -15,6 +15,8 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
+from resources.setup.index_page import convert_description
+
 PACKAGES = ("app", "core", "drivers", "resources")
 PACKAGE_NAME = "turndesk"
 GUIDE_FILES = tuple(
@@ -55,6 +57,7 @@ def merge_packages(wheel: bytes, added_files: Mapping[str, bytes] | None = None)
     record = next(name for name in files if name.endswith(".dist-info/RECORD"))
     info = record.removesuffix("RECORD")
     del files[record]
+    files[f"{info}METADATA"] = convert_description(files[f"{info}METADATA"])
     files[f"{info}entry_points.txt"] = _ENTRY_POINTS.encode()
     files[f"{info}top_level.txt"] = f"{PACKAGE_NAME}\n".encode()
     files[f"{PACKAGE_NAME}/__init__.py"] = _LAUNCHER.read_bytes()

@@ -71,9 +71,13 @@ def test_archive_of_other_tool_is_made_reproducible(tmp_path: Path) -> None:
                 member = tarfile.TarInfo(f"p/{name}")
                 member.size, member.mtime, member.uname = 1, 1000 + number, f"user{number}"
                 archive.addfile(member, io.BytesIO(name.encode()))
-        reproducible_archives.repack_tar_gz(path)
+        reproducible_archives.repack_tar_gz(path, lambda name, content: content + name[-1:].encode())
         made.append(path.read_bytes())
     assert made[0] == made[1]
+    with tarfile.open(path) as archive:
+        file = archive.extractfile("p/a")
+        assert file is not None
+        assert file.read() == b"aa"
 
 
 def test_two_folders_are_compared_by_names_and_bytes(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ import gzip
 import io
 import os
 import tarfile
+from collections.abc import Callable
 from pathlib import Path
 
 
@@ -38,8 +39,12 @@ def write_tar_gz(folder: Path, target: Path, name: str) -> None:
         archive.add(folder, name, filter=normalize_member)
 
 
-def repack_tar_gz(path: Path) -> None:
-    """Rewrite a compressed archive, so that its members are sorted and have one owner and one time."""
+def repack_tar_gz(path: Path, convert: Callable[[str, bytes], bytes]) -> None:
+    """Rewrite a compressed archive, so that its members are sorted and have one owner and one time.
+
+    ``convert`` returns the new content of each file; its arguments are the path in the archive and the
+    content.
+    """
     made = io.BytesIO()
     with (
         tarfile.open(path) as old,
@@ -47,10 +52,12 @@ def repack_tar_gz(path: Path) -> None:
         tarfile.open(fileobj=packed, mode="w", format=tarfile.PAX_FORMAT) as new,
     ):
         for member in sorted(old.getmembers(), key=lambda each: each.name):
-            content = old.extractfile(member) if member.isfile() else None
+            file = old.extractfile(member) if member.isfile() else None
+            content = convert(member.name, file.read()) if file else b""
+            member.size = len(content)
             member.mode = 0o755 if member.isdir() or member.mode & 0o100 else 0o644
             member.pax_headers = {}
-            new.addfile(normalize_member(member), content)
+            new.addfile(normalize_member(member), io.BytesIO(content))
     path.write_bytes(made.getvalue())
 
 
