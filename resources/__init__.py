@@ -17,6 +17,11 @@ def get_posts_folder() -> Path:
     return _HERE / "posts"
 
 
+def get_documents_folder() -> Path:
+    """Return the folder of the documentation site, which a clone does not contain."""
+    return _HERE / "documents"
+
+
 def read_machine_file(name: str) -> str:
     """Return the text of a shipped machine file, such as ``gt75.toml``.
 

@@ -48,7 +48,7 @@ def find_file_locations(machine_file: str | None) -> Mapping[str, str]:
     from app.compose.machine.machine_setup import read_machine
     from app.desk.data_folder import BACKUPS_FOLDER_NAME, RECORDS_FOLDER_NAME, find_data_folder
     from core.store.store_file import STORE_FILE_NAME
-    from resources import get_posts_folder
+    from resources import get_documents_folder, get_posts_folder
 
     read_machine(machine_file)
     data = find_data_folder()
@@ -61,5 +61,6 @@ def find_file_locations(machine_file: str | None) -> Mapping[str, str]:
         "scope_records": str(data / RECORDS_FOLDER_NAME),
         "machine_file": str(find_machine_path(machine_file)),
         "posts": str(get_posts_folder()),
+        "documents": str(get_documents_folder()),
         "code": str(package),
     }

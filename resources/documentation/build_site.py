@@ -14,19 +14,42 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from importlib.metadata import PackagePath, files
 from importlib.util import find_spec
 from pathlib import Path
 
 from resources.documentation.site_pages import convert_lists, list_site_files, make_navigation
 
 PROJECT_FOLDER = Path(__file__).parents[2]
+PACKAGE_FOLDER = PROJECT_FOLDER / "resources" / "documents"
+"""Folder of the site in the sources from which the wheel and the source distribution are built."""
 _SETTINGS = Path(__file__).with_name("mkdocs.yml")
 _SCRIPT = Path(__file__).with_name("iframe-worker.js")
 
 
 class SiteError(Exception):
     """Error that prevents the site from being built; the text states the reason."""
+
+
+def has_site_tools() -> bool:
+    """Return whether MkDocs and its theme are installed."""
+    return find_spec("mkdocs") is not None and find_spec("material") is not None
+
+
+@contextmanager
+def build_site_for_packages() -> Iterator[Path]:
+    """Build the site in the sources, so that the packages contain it, and delete it after the block.
+
+    Yield the folder of the site. Raises SiteError as ``build_site`` does.
+    """
+    shutil.rmtree(PACKAGE_FOLDER, ignore_errors=True)  # of a build that was killed
+    try:
+        build_site(PACKAGE_FOLDER)
+        yield PACKAGE_FOLDER
+    finally:
+        shutil.rmtree(PACKAGE_FOLDER, ignore_errors=True)
 
 
 def build_site(folder: Path, project_folder: Path = PROJECT_FOLDER) -> None:
@@ -37,7 +60,7 @@ def build_site(folder: Path, project_folder: Path = PROJECT_FOLDER) -> None:
     """
     if folder.exists():
         raise SiteError(f"{folder} already exists. Specify a new folder.")
-    if find_spec("mkdocs") is None or find_spec("material") is None:
+    if not has_site_tools():
         raise SiteError("MkDocs is not installed. Run sh tests/run.sh once, or pip install -e .[dev].")
     with tempfile.TemporaryDirectory() as work:
         pages = Path(work) / "pages"
@@ -58,6 +81,14 @@ def build_site(folder: Path, project_folder: Path = PROJECT_FOLDER) -> None:
         raise SiteError((done.stderr or done.stdout).strip())
     for source_map in folder.rglob("*.map"):  # only of use to the developers of the theme
         source_map.unlink()
+    _write_theme_license(folder)
+
+
+def _write_theme_license(folder: Path) -> None:
+    """Write the license of the theme next to the theme's files, which are a part of the site."""
+    licenses = (path for path in files("mkdocs-material") or () if path.parts[-2:] == ("licenses", "LICENSE"))
+    license_path: PackagePath = next(licenses)
+    (folder / "assets" / "LICENSE").write_text(license_path.read_text(encoding="utf-8"), encoding="utf-8")
 
 
 def _write_pages(pages: Path, project_folder: Path) -> None:

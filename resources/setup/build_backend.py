@@ -1,7 +1,7 @@
 """Build backend of the TurnDesk wheel, which has all source packages in one package ``turndesk``.
 
-Setuptools builds the wheel, and this backend then moves its packages, and adds the user's guide.
-Wheels and source distributions get a description for the page of a package index.
+Setuptools builds the wheel, and this backend then moves its packages, and adds the user's guide and the
+documentation site. Wheels and source distributions get a description for the page of a package index.
 Setuptools alone builds editable installs; these and the source distributions have the package names of the
 repository.
 """
@@ -23,7 +23,7 @@ from setuptools.build_meta import (
 
 from resources.setup.index_page import convert_description
 from resources.setup.packages.reproducible_archives import repack_tar_gz
-from resources.setup.wheel_merge import merge_packages, read_guide_files
+from resources.setup.wheel_merge import merge_packages, read_guide_files, read_site_files
 
 __all__ = [
     "build_editable",
@@ -45,7 +45,8 @@ def build_wheel(
     settings = dict(config_settings) if config_settings else None
     name = str(build_meta.build_wheel(wheel_directory, settings, metadata_directory))
     path = Path(wheel_directory) / name
-    path.write_bytes(merge_packages(path.read_bytes(), read_guide_files(Path.cwd())))
+    added = read_guide_files(Path.cwd()) | read_site_files(Path.cwd())
+    path.write_bytes(merge_packages(path.read_bytes(), added))
     return name
 
 

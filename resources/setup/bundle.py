@@ -19,9 +19,11 @@ import sys
 import tarfile
 import tempfile
 from collections.abc import Iterator
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 
 from app import VERSION
+from resources.documentation.build_site import SiteError, build_site_for_packages, has_site_tools
 from resources.setup.licences import PAGE_PATH, LicenseError
 from resources.setup.lock import PROJECT_FOLDER, PYTHONS, SETUP_FOLDER, get_locked_file
 from resources.setup.packages.reproducible_archives import normalize_member
@@ -181,6 +183,14 @@ def collect_bundle_files(
         shutil.copy(text, folder / "licences")
 
 
+def _documentation() -> AbstractContextManager[object]:
+    """Return a context in which the documentation site is a part of the sources, if it can be built."""
+    if has_site_tools():
+        return build_site_for_packages()
+    sys.stderr.write("The bundle will not contain the documentation, because MkDocs is not installed.\n")
+    return nullcontext()
+
+
 def _goes_along(name: str) -> bool:
     return name in {"environment.sh", "install.sh", "locked-desk.txt", "locked-installer.txt"}
 
@@ -223,10 +233,10 @@ def main(argv: list[str]) -> int:
     release = f"-{get_system_release()}" if args.system_packages else ""
     target = args.folder / f"turndesk-{get_bundle_version()}-linux-{args.machine}{release}.run"
     try:
-        with tempfile.TemporaryDirectory() as work:
+        with tempfile.TemporaryDirectory() as work, _documentation():
             collect_bundle_files(Path(work), args.machine, system_packages=args.system_packages)
             write_bundle_file(Path(work), target, args.machine)
-    except (BundleError, LicenseError, OSError) as error:
+    except (BundleError, LicenseError, SiteError, OSError) as error:
         sys.stderr.write(f"No bundle: {error}\n")
         return 1
     sys.stdout.write(f"{target}: {target.stat().st_size // 1_000_000} MB\n")

@@ -46,7 +46,9 @@ pip_install $FROM $LOCKED -r "$ROOT/locked-desk.txt" || not_fetched
 pip_install $FROM --no-deps --force-reinstall "$ROOT"/turndesk-*.whl || not_fetched
 cp -R "$ROOT/licences" "$ROOT/licences.md" "$ROOT/sbom.cdx.json" "$PYTHON_ENV/"
 
-SAMPLES=$("$PYTHON_ENV/bin/python" -c 'import os, turndesk; print(os.path.dirname(turndesk.__file__))')/resources/programs
+RESOURCES=$("$PYTHON_ENV/bin/python" -c 'import os, turndesk; print(os.path.dirname(turndesk.__file__))')/resources
+[ ! -d "$RESOURCES/documents" ] || ln -sfn "$RESOURCES/documents" "$PYTHON_ENV/documents"
+SAMPLES=$RESOURCES/programs
 "$PYTHON_ENV/bin/turndesk" prove "$SAMPLES/bushing.nc" --offsets "$SAMPLES/offsets.toml" >/dev/null \
     || { say "TurnDesk is in place and does not prove its sample; $HOUSE/turndesk was left as it was."; exit 1; }
 ln -sfn "$VERSION/bin/turndesk" "$HOUSE/turndesk.new" && mv -f "$HOUSE/turndesk.new" "$HOUSE/turndesk"

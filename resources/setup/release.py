@@ -20,7 +20,7 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from resources.documentation.build_site import SiteError, build_site
+from resources.documentation.build_site import SiteError, build_site_for_packages
 from resources.setup.bundle import (
     GLIBC_MINOR_VERSIONS,
     BundleError,
@@ -47,9 +47,7 @@ def build_artifacts(folder: Path, wheels: Path, machine: str, targets: Sequence[
     Raises BundleError if a step fails, LicenseError if a license does not permit distribution, or SiteError
     if the documentation has an error.
     """
-    with tempfile.TemporaryDirectory() as work:
-        site = Path(work) / "documents"
-        build_site(site)
+    with build_site_for_packages() as site:
         _build_artifacts_with_site(folder, wheels, machine, targets, site)
 
 
@@ -72,7 +70,6 @@ def _build_artifacts_with_site(
         with tempfile.TemporaryDirectory() as work:
             environment = Path(work) / "environment"
             make_environment_folder(environment, wheel, target.python_version, machine, wheels)
-            shutil.copytree(site, environment / site.name)
             set_times(environment)
             stem = f"turndesk-{get_bundle_version()}-linux-{machine}-python{target.python_version}"
             write_tar_gz(environment, folder / f"{stem}.tar.gz", stem)

@@ -44,6 +44,13 @@ def read_guide_files(project_folder: Path) -> dict[str, bytes]:
     return {f"resources/guide/{path.relative_to(docs).as_posix()}": path.read_bytes() for path in paths}
 
 
+def read_site_files(project_folder: Path) -> dict[str, bytes]:
+    """Return the files of the documentation site by their paths, or an empty dict if it was not built."""
+    folder = project_folder / "resources" / "documents"
+    paths = (path for path in folder.rglob("*") if path.is_file())
+    return {path.relative_to(project_folder).as_posix(): path.read_bytes() for path in paths}
+
+
 def merge_packages(wheel: bytes, added_files: Mapping[str, bytes] | None = None) -> bytes:
     """Return a wheel whose packages are parts of ``turndesk``, with ``added_files`` by their old paths.
 

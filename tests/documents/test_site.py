@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -112,6 +113,26 @@ def test_wrong_link_prevents_the_site(tmp_path: Path, link: str) -> None:
     with pytest.raises(SiteError, match="missing"):
         build_site.build_site(tmp_path / "site", project(tmp_path / "project", link))
     assert not (tmp_path / "site").exists()
+
+
+@pytest.mark.long
+def test_site_contains_the_license_of_its_theme(site: Path) -> None:
+    assert "Martin Donath" in (site / "assets" / "LICENSE").read_text("utf-8")
+
+
+@pytest.mark.parametrize("fails", [False, True])
+def test_site_for_packages_replaces_an_old_one_and_is_deleted_afterwards(
+    fails: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "documents"
+    monkeypatch.setattr(build_site, "PACKAGE_FOLDER", folder)
+    monkeypatch.setattr(build_site, "build_site", Path.mkdir)
+    folder.mkdir()
+    (folder / "old.html").touch()
+    with suppress(ZeroDivisionError), build_site.build_site_for_packages() as site:
+        assert list(site.iterdir()) == []
+        1 // int(not fails)
+    assert not folder.exists()
 
 
 def test_an_existing_folder_is_not_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

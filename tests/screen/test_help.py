@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from PySide6.QtGui import QDesktopServices
 from PySide6.QtTest import QTest
 
 from app.desk.pages import guide_text
+from app.desk.pages.guide_text import BlockKind
 from app.screen import page_table
 from app.screen.window import documentation_browser
 from app.screen.window.help_panel import wrap_words
@@ -209,7 +209,7 @@ def opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[QUrl]:
     (site / "docs" / "guide").mkdir(parents=True)
     for name in ("index.html", "docs/guide/screen.html"):
         (site / name).touch()
-    monkeypatch.setattr(sys, "prefix", str(tmp_path))
+    monkeypatch.setattr(documentation_browser, "get_documents_folder", lambda: site)
     monkeypatch.setattr(documentation_browser, "has_browser", lambda: True)
 
     def open_url(url: QUrl) -> bool:
@@ -247,6 +247,23 @@ def test_b_only_closes_the_help_without_an_installed_site(
     hands.type("b")
     assert not is_open(hands)
     assert opened == []
+
+
+def shown_addresses(hands: Hands) -> list[str]:
+    ask(hands)
+    rows = hands.frame.help_panel._rows
+    return [row.text for row in rows if row.kind is BlockKind.ADDRESS]
+
+
+def test_help_in_a_clone_shows_the_address_of_the_page_in_markdown(hands: Hands) -> None:
+    assert shown_addresses(hands) == ["IN THE DOCUMENTATION: docs/guide/screen.md#automatic"]
+
+
+def test_help_shows_no_address_without_site_and_pages(
+    hands: Hands, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(documentation_browser, "_PROJECT_FOLDER", tmp_path)
+    assert shown_addresses(hands) == []
 
 
 def test_the_browser_is_not_opened_while_a_program_is_stopped_in_a_cycle(

@@ -171,3 +171,15 @@ def test_the_guide_is_a_part_of_the_wheel() -> None:
 def test_a_wheel_without_the_guide_is_rejected(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         wheel_merge.read_guide_files(tmp_path)
+
+
+def test_a_built_documentation_site_is_a_part_of_the_wheel(tmp_path: Path) -> None:
+    (tmp_path / "resources/documents/docs").mkdir(parents=True)
+    (tmp_path / "resources/documents/docs/a.html").write_bytes(b"page")
+    site = wheel_merge.read_site_files(tmp_path)
+    made = zipfile.ZipFile(io.BytesIO(merge_packages(wheel(FILES), site)))
+    assert made.read("turndesk/resources/documents/docs/a.html") == b"page"
+
+
+def test_a_wheel_from_a_clone_has_no_documentation_site() -> None:
+    assert wheel_merge.read_site_files(PROJECT_FOLDER) == {}

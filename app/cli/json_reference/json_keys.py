@@ -348,6 +348,7 @@ logs | string | | Folder of the logs and crash files.
 backups | string | | Folder of the daily backups.
 scope_records | string | | Folder of the scope records.
 posts | string | | Folder of the post-processors for CAM programs.
+documents | string | | Folder of the documentation site. A clone does not contain it.
 machine_file | string | | The machine file that is used.
 code | string | | Main file of the installed package.
 """

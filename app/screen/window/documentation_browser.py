@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 import sys
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from PySide6.QtCore import QUrl
 from PySide6.QtGui import QDesktopServices
@@ -13,8 +13,10 @@ from PySide6.QtGui import QDesktopServices
 from app.desk.desk import Desk
 from app.desk.pages.page_entry import MANUAL_STATES
 from app.desk.status.prompt_line import ACTIVE_STATES
+from resources import get_documents_folder
 
 DOCUMENTS_FOLDER_NAME = "documents"
+_PROJECT_FOLDER = Path(__file__).parents[3]
 _LINUX_BROWSERS = (
     "x-www-browser",
     "firefox",
@@ -28,8 +30,21 @@ _LINUX_BROWSERS = (
 
 def find_documents_folder() -> Path | None:
     """Return the folder of the documentation site that a package has installed, or None without a site."""
-    folder = Path(sys.prefix) / DOCUMENTS_FOLDER_NAME
+    folder = get_documents_folder()
     return folder if (folder / "index.html").is_file() else None
+
+
+def find_section_path(address: str) -> str:
+    """Return the path that the help shows for the section at an address of the site.
+
+    The path leads to the installed site or, in a clone, to the page in Markdown. It is empty if neither
+    exists.
+    """
+    if find_documents_folder() is not None:
+        return f"{DOCUMENTS_FOLDER_NAME}/{address}"
+    file, _, anchor = address.partition("#")
+    page = PurePosixPath(file).with_suffix(".md")
+    return f"{page}#{anchor}" if (_PROJECT_FOLDER / page).is_file() else ""
 
 
 def has_browser() -> bool:

@@ -16,7 +16,7 @@ from app.screen.screen_theme import ScreenTheme, ThemedPainter, measure_text
 from app.screen.table_panel import RowPanel
 from app.screen.text_sizes import TextRole
 from app.screen.window.alarm_panels import AlarmNotice
-from app.screen.window.documentation_browser import DOCUMENTS_FOLDER_NAME, DocumentationBrowser
+from app.screen.window.documentation_browser import DocumentationBrowser, find_section_path
 from app.screen.window.key_table import HELP_KEY, MODIFIER_KEYS
 from app.screen.window.part_placement import find_area_left_of
 from app.screen.window_layout import Rect, divide_work_area
@@ -207,8 +207,12 @@ class HelpPanel(RowPanel):
         return [HelpRow(BlockKind.KEY, line, key) for key, line in zip(keys, lines, strict=True)]
 
     def _wrap_address(self, address: str, wide: float, *, has_browser: bool) -> list[HelpRow]:
-        """Return the rows of an address, whose key opens it if the desktop has a browser."""
-        path = f"{DOCUMENTS_FOLDER_NAME}/{address}"
+        """Return the rows of an address, or no rows if this computer does not contain the section.
+
+        The key of the rows opens the address if the desktop has a browser.
+        """
+        if not (path := find_section_path(address)):
+            return []
         pattern = (
             "IN THE DOCUMENTATION: {path} · B: OPEN IN THE BROWSER"
             if has_browser

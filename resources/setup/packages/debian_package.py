@@ -142,7 +142,7 @@ def _copyright() -> str:
         "Files: opt/turndesk/*/lib/*/site-packages/turndesk/resources/fonts/*",
         "Copyright: the B612 project\nLicense: OFL-1.1",
         " The text is in OFL.txt, in the folder of the fonts.\n",
-        "Files: opt/turndesk/*/documents/assets/*",
+        "Files: opt/turndesk/*/lib/*/site-packages/turndesk/resources/documents/assets/*",
         "Copyright: Martin Donath, the authors of Material for MkDocs, and Oliver Nightingale (lunr)",
         f"License: MIT\n{mit}\n",
     ]

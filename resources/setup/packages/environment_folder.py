@@ -53,6 +53,9 @@ def make_environment_folder(
     (commands / "turndesk").write_bytes((DEBIAN_FOLDER / "turndesk").read_bytes())
     (commands / "turndesk").chmod(0o755)
     (folder / "pyvenv.cfg").write_text(f"home = /usr/bin\nversion = {python_version}\n", encoding="utf-8")
+    (folder / "documents").symlink_to(
+        f"lib/python{python_version}/site-packages/turndesk/resources/documents"
+    )
     (folder / "licences").mkdir()
     shutil.copy(PROJECT_FOLDER / "LICENSE", folder / "licences" / "TurnDesk")
     shutil.copy(PAGE_PATH, folder / "licences.md")
