@@ -1,114 +1,96 @@
-"""Test a Debian package in a minimal system: ``python -m resources.setup.release_check PACKAGE``, as root.
+"""Test the artifacts of a release in minimal systems: ``python -m resources.setup.release_check FOLDER``.
 
-The check creates a minimal root file system with ``debootstrap``, with the package sources of this
-computer. It installs an earlier version, upgrades the package, proves and runs a program, removes and
-purges the package, and compares the files before and after. ``lintian`` must not find an error. The check
-requires ``debootstrap``, ``lintian`` and a network for Debian's packages, takes several minutes, and is not
-part of the test command.
+The check installs each artifact in a minimal root file system of each Debian release for which it is made.
+There it makes the first part within five minutes of the start of the installation, runs the commands of a
+user, and removes the artifact. It then installs the previous version, stores data with it, upgrades it, and
+compares all data. A removed Debian package leaves only the data folder. ``lintian`` must not find an error
+in a Debian package. Instead of FOLDER, single files can be named.
+
+The check must be run as root. It needs ``debootstrap``, ``lintian``, 2 GB of free disk space and a network,
+takes several minutes for each artifact, and is not part of the test command.
 """
 
 from __future__ import annotations
 
 import argparse
-import platform
 import re
+import shlex
 import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+import time
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
-from resources.setup.bundle import BundleError, run
-
-_EARLIER = "0.0.0"
-_MOUNTS = ("proc", "sys", "dev")
-_IGNORED = re.compile(
-    r"^/(?:proc|sys|dev|run|tmp|root|var/(?:cache|log|lib/(?:apt|dpkg|systemd)))(?:/|$)"
-    r"|^/etc/(?:group|gshadow|passwd|shadow|subgid|subuid)-$"  # backups of groupadd and groupdel
+from resources.setup.artifact_checks.artifacts import (
+    DEBIAN_RELEASES,
+    Artifact,
+    ArtifactKind,
+    Installation,
+    find_artifacts,
+    identify_artifact,
+    make_installation,
 )
-_PROGRAMS = "lib/python3*/site-packages/turndesk/resources/programs"
-_SAMPLES = f'samples=$(dirname "$(readlink -f /usr/bin/turndesk)")/../{_PROGRAMS}'
-_APT = "DEBIAN_FRONTEND=noninteractive apt-get -qq -y"
+from resources.setup.artifact_checks.earlier_artifact import find_previous_artifact, make_earlier_artifact
+from resources.setup.artifact_checks.minimal_root import make_base_root, open_root_copy, run_in_root
+from resources.setup.artifact_checks.store_data import StoredData, count_rows, list_losses, read_stored_data
+from resources.setup.bundle import BundleError
+
+MAX_FIRST_PART_S = 300.0
+"""Longest permitted time from the artifact to the first part, in seconds."""
+_IGNORED = re.compile(
+    r"^/(?:proc|sys|dev|run|tmp|artifacts|var/(?:cache|log|lib/(?:apt|dpkg|systemd)))(?:/|$)"
+    r"|^/etc/(?:group|gshadow|passwd|shadow|subgid|subuid)-$"  # backups of groupadd and groupdel
+    r"|^/root/\.(?:cache/fontconfig|local/share/turndesk)(?:/|$)"  # of Qt's libraries, and the data folder
+)
+_DATA_FOLDER = "root/.local/share/turndesk"
+_WITH_OFFSETS = "$samples/pin.nc --headless --offsets $samples/offsets.toml"
+FIRST_PART = f"turndesk run {_WITH_OFFSETS} --realtime"
+"""Command that makes and counts a part on the simulated lathe, at the speed of a lathe."""
 TEST_COMMANDS: Sequence[tuple[str, str]] = (
     ("the version", "turndesk --version"),
     ("a proof", "turndesk prove $samples/pin.nc --offsets $samples/offsets.toml"),
     ("proofs of a folder, by several processes", "turndesk prove $samples --offsets $samples/offsets.toml"),
-    ("a run without a screen", "turndesk run $samples/pin.nc --headless --offsets $samples/offsets.toml"),
     (
         "a report as PDF",
-        "turndesk prove $samples/pin.nc --offsets $samples/offsets.toml --report /root/part.pdf",
+        "turndesk prove $samples/pin.nc --offsets $samples/offsets.toml --report /artifacts/part.pdf",
     ),
     ("the screen for 20 s", "QT_QPA_PLATFORM=offscreen timeout 20 turndesk --demo; test $? = 124"),
-    ("the group for real-time priority", "getent group machine"),
 )
-"""Shell commands that are tested after installation and after an upgrade, each with a description."""
+"""Shell commands that are tested after the installation, each with a description."""
+DATA_COMMANDS: Sequence[str] = (
+    FIRST_PART,
+    "turndesk offsets set T1 x=1.25 z=-2.5",
+    "turndesk offsets set T9 kind=drill diameter=.25",
+    "turndesk offsets set T1D2 x=.001",
+    f"mkdir -p /{_DATA_FOLDER}/programs && cp $samples/pin.nc /{_DATA_FOLDER}/programs",
+    "turndesk jobs add pin.nc 12 --note 'order 7'",
+)
+"""Shell commands that store data of several kinds before an upgrade."""
 
 
-def build_earlier_package(package: Path, folder: Path) -> Path:
-    """Return the path of the same package as version 0.0.0, with its files in a different folder."""
-    root = folder / "earlier"
-    run("dpkg-deb", "--raw-extract", package, root)
-    version = next((root / "opt" / "turndesk").iterdir())
-    version.rename(version.with_name(_EARLIER))
-    command = root / "usr" / "bin" / "turndesk"
-    command.unlink()
-    command.symlink_to(f"/opt/turndesk/{_EARLIER}/bin/turndesk")
-    for path in (root / "DEBIAN").iterdir():
-        text = path.read_text(encoding="utf-8").replace(version.name, _EARLIER)
-        path.write_text(
-            re.sub(r"^Version: .*$", f"Version: {_EARLIER}", text, flags=re.MULTILINE), encoding="utf-8"
-        )
-    made = folder / f"turndesk_{_EARLIER}.deb"
-    run("dpkg-deb", "--root-owner-group", "-Znone", "--build", root, made)
-    shutil.rmtree(root)
-    return made
+class ArtifactFiles(NamedTuple):
+    """Paths of the new and the earlier artifact inside the root file system."""
+
+    new: str
+    earlier: str
 
 
-def copy_package_sources(source_folder: Path, target_folder: Path, release: str) -> None:
-    """Copy the package sources of this computer, with ``release`` in place of this computer's release."""
-    (target_folder / "sources.list").unlink(missing_ok=True)
-    own_release = platform.freedesktop_os_release().get("VERSION_CODENAME", release)
-    for part in ("sources.list", "sources.list.d/debian.sources"):
-        if (source_folder / part).is_file():
-            text = (source_folder / part).read_text(encoding="utf-8")
-            (target_folder / part).parent.mkdir(parents=True, exist_ok=True)
-            (target_folder / part).write_text(text.replace(own_release, release), encoding="utf-8")
-    for part in ("apt.conf.d", "trusted.gpg.d"):
-        if (source_folder / part).is_dir():
-            shutil.copytree(source_folder / part, target_folder / part, dirs_exist_ok=True)
+def run_program(root: Path, program: str, command: str) -> str:
+    """Run a shell command that uses ``turndesk`` and the folder ``$samples``, and return its output.
 
-
-@contextmanager
-def create_minimal_root(release: str, folder: Path) -> Iterator[Path]:
-    """Yield a minimal root file system of a Debian release.
-
-    The root file system has its mounts. It uses the package sources of this computer for that release.
+    ``program`` is the path of the command ``turndesk`` in the root file system. Raises BundleError if the
+    command fails.
     """
-    root = folder / "root"
-    run("debootstrap", "--variant=minbase", release, root)
-    copy_package_sources(Path("/etc/apt"), root / "etc" / "apt", release)
-    with suppress(OSError):
-        shutil.copy("/etc/resolv.conf", root / "etc" / "resolv.conf")
-    mounted = []
-    try:
-        for name in _MOUNTS:
-            run("mount", "--bind", f"/{name}", root / name)
-            mounted.append(name)
-        yield root
-    finally:
-        for name in reversed(mounted):
-            run("umount", "--lazy", root / name)
-
-
-def run_in_root(root: Path, command: str) -> str:
-    """Run a shell command in the root file system, and return its output.
-
-    Raises BundleError if the command fails.
-    """
-    lines = f"export HOME=/root LC_ALL=C.UTF-8 TURNDESK_HOME=/root/data; {_SAMPLES}; {command}"
-    return run("chroot", root, "sh", "-c", lines)
+    lines = (
+        f"PATH={Path(program).parent}:$PATH",
+        'code=$(turndesk where --json | sed -n \'s/.*"code": "\\(.*\\)".*/\\1/p\')',
+        'samples=$(dirname "$code")/../resources/programs',
+        command,
+    )
+    return run_in_root(root, "\n".join(lines))
 
 
 def list_files(root: Path) -> set[str]:
@@ -117,39 +99,103 @@ def list_files(root: Path) -> set[str]:
     return {name for name in listed if not _IGNORED.match(name)}
 
 
-def check(package: Path, release: str) -> Iterator[str]:
-    """Yield one line for each successful step of the check.
+def measure_seconds(action: Callable[[], object]) -> float:
+    """Return the duration of an action in seconds, by the monotonic clock."""
+    start = time.monotonic()
+    action()
+    return time.monotonic() - start
 
-    Raises BundleError at the first failure.
+
+def check_first_part_time(seconds: float) -> str:
+    """Return the text of the measured time. Raises BundleError if the time is too long."""
+    if seconds > MAX_FIRST_PART_S:
+        raise BundleError(f"first part after {seconds:.0f} s; {MAX_FIRST_PART_S:.0f} s are permitted")
+    return f"first part {seconds:.0f} s after the start of the installation"
+
+
+def check_removal(root: Path, before: set[str], kind: ArtifactKind) -> str:
+    """Compare the files after a removal with those before the installation, and return the result.
+
+    Raises BundleError if the removal left files outside the data folder, or removed files of others.
     """
-    with (
-        tempfile.TemporaryDirectory(prefix="turndesk-") as work,
-        create_minimal_root(release, Path(work)) as root,
-    ):
-        earlier = build_earlier_package(package, Path(work))
-        shutil.copy(earlier, root / "root" / "earlier.deb")
-        shutil.copy(package, root / "root" / "new.deb")
-        run_in_root(root, f"{_APT} update")
-        depends = run("dpkg-deb", "--field", package, "Depends")
-        names = [re.split(r"[ (|:]", each.strip())[0] for each in depends.split(",")]
-        run_in_root(root, f"{_APT} install --no-install-recommends {' '.join(names)}")
-        before = list_files(root)
-        for name in ("earlier", "new"):
-            run_in_root(root, f"dpkg -i /root/{name}.deb")
-            for what, command in TEST_COMMANDS:
-                run_in_root(root, command)
-                yield f"{name}: {what}"
-        if "/opt/turndesk/0.0.0" in "\n".join(list_files(root)):
-            raise BundleError("the upgrade left files of the earlier version")
-        run_in_root(root, "dpkg --remove turndesk && dpkg --purge turndesk")
-        if left := sorted(list_files(root) - before):
-            raise BundleError(f"purge left: {', '.join(left[:10])}")
-        if gone := sorted(before - list_files(root)):
+    after = list_files(root)
+    if kind is ArtifactKind.DEBIAN_PACKAGE:
+        if gone := sorted(before - after):
             raise BundleError(f"purge removed files of others: {', '.join(gone[:10])}")
         if run_in_root(root, "getent group machine || echo none").strip() != "none":
             raise BundleError("purge left the group machine")
-        run_in_root(root, "test -s /root/data/turndesk.db || test -d /root/data/logs")
-        yield "removed and purged: only the data folder remains"
+    left = sorted(name for name in after - before if is_of_turndesk(name, kind))
+    if left:
+        raise BundleError(f"the removal left: {', '.join(left[:10])}")
+    if not (root / _DATA_FOLDER).is_dir():
+        raise BundleError("the removal deleted the data folder")
+    return "removed: only the data folder remains"
+
+
+def is_of_turndesk(path: str, kind: ArtifactKind) -> bool:
+    """Return whether a new file is a remainder of TurnDesk.
+
+    The packages of the system are installed before a Debian package, but by the other artifacts. For those,
+    only files with ``turndesk`` in their path count.
+    """
+    return kind is ArtifactKind.DEBIAN_PACKAGE or "turndesk" in path
+
+
+def check_artifact(artifact: Artifact, root: Path, files: ArtifactFiles) -> Iterator[str]:
+    """Yield one line for each successful step of the check of an artifact in a root file system.
+
+    Raises BundleError at the first failure.
+    """
+    steps = make_installation(artifact)
+    new, earlier = shlex.quote(files.new), shlex.quote(files.earlier)
+    seconds = measure_seconds(lambda: run_in_root(root, steps.prepare))
+    before = list_files(root)
+    seconds += measure_seconds(lambda: run_in_root(root, steps.install.format(file=new)))
+    yield f"installed in {seconds:.0f} s"
+    seconds += measure_seconds(lambda: run_program(root, steps.program, FIRST_PART))
+    yield check_first_part_time(seconds)
+    for description, command in TEST_COMMANDS:
+        run_program(root, steps.program, command)
+        yield description
+    if artifact.kind is ArtifactKind.DEBIAN_PACKAGE:
+        run_in_root(root, "getent group machine")
+        yield "the group for real-time priority"
+    run_in_root(root, steps.remove)
+    yield check_removal(root, before, artifact.kind)
+    yield from _check_upgrade(root, steps, new, earlier)
+    if artifact.kind is ArtifactKind.DEBIAN_PACKAGE and len([*(root / "opt/turndesk").iterdir()]) > 1:
+        raise BundleError("the upgrade left files of the earlier version")
+    run_in_root(root, steps.remove)
+    yield check_removal(root, before, artifact.kind)
+
+
+def _check_upgrade(root: Path, steps: Installation, new: str, earlier: str) -> Iterator[str]:
+    """Store data with the earlier version, upgrade it, and compare the data.
+
+    No network is available for the upgrade if the artifact contains all packages.
+    """
+    shutil.rmtree(root / _DATA_FOLDER)
+    run_in_root(root, steps.install.format(file=earlier), has_network=steps.needs_network)
+    version = run_program(root, steps.program, "turndesk --version").strip()
+    for command in DATA_COMMANDS:
+        run_program(root, steps.program, command)
+    before = read_stored_data(root / _DATA_FOLDER)
+    run_in_root(root, steps.upgrade.format(file=new), has_network=steps.needs_network)
+    upgraded = run_program(root, steps.program, "turndesk --version").strip()
+    if upgraded == version:
+        raise BundleError(f"{version} is still installed after the upgrade")
+    run_program(root, steps.program, "turndesk store upgrade && turndesk store verify")
+    yield f"{version} upgraded to {upgraded}" + ("" if steps.needs_network else " without a network")
+    yield check_losses(before, read_stored_data(root / _DATA_FOLDER))
+    run_program(root, steps.program, f"turndesk run {_WITH_OFFSETS}")
+    yield "a run with the upgraded version"
+
+
+def check_losses(before: StoredData, after: StoredData) -> str:
+    """Return the number of compared rows and files. Raises BundleError if the upgrade lost any data."""
+    if losses := list_losses(before, after):
+        raise BundleError(f"the upgrade lost or changed: {'; '.join(losses[:10])}")
+    return f"the upgrade changed none of {count_rows(before)} stored rows and {len(before.files)} files"
 
 
 def list_lintian_errors(package: Path) -> list[str]:
@@ -163,23 +209,87 @@ def list_lintian_errors(package: Path) -> list[str]:
     return [line for line in done.stdout.splitlines() if line.startswith("E: ")]
 
 
+def check_release(
+    artifacts: Sequence[Artifact], releases: Sequence[str], previous: Path | None
+) -> Iterator[str]:
+    """Yield one line for each successful step of the check of all artifacts.
+
+    ``previous`` is the folder of the previous release, or None if no release exists. The check of an
+    artifact ends at its first failure. Raises BundleError at the end if an artifact failed.
+    """
+    failures: list[str] = []
+    for artifact in artifacts:
+        if not artifact.releases:
+            yield f"{artifact.path.name}: not checked, because its system is not Debian"
+    with tempfile.TemporaryDirectory(prefix="turndesk-") as work:
+        for release in releases:
+            chosen = [each for each in artifacts if release in each.releases]
+            base = make_base_root(release, Path(work)) if chosen else Path(work)
+            for artifact in chosen:
+                name = f"{artifact.kind} on {release}"
+                try:
+                    with open_root_copy(base) as root:
+                        files = _copy_artifacts(artifact, root, previous)
+                        for line in check_artifact(artifact, root, files):
+                            yield f"{name}: {line}"
+                except BundleError as error:
+                    failures.append(name)
+                    yield f"{name} FAILED: {error}"
+    if failures:
+        raise BundleError(", ".join(failures))
+
+
+def _copy_artifacts(artifact: Artifact, root: Path, previous: Path | None) -> ArtifactFiles:
+    """Copy an artifact and its earlier version to the root file system, and return their paths in it."""
+    new, earlier = root / "artifacts" / "new", root / "artifacts" / "earlier"
+    new.mkdir(parents=True)
+    earlier.mkdir()
+    shutil.copy(artifact.path, new)
+    if previous:
+        shutil.copy(source := find_previous_artifact(artifact, previous), earlier)
+        name = source.name
+    else:
+        name = make_earlier_artifact(artifact, earlier).name
+    return ArtifactFiles(f"/artifacts/new/{artifact.path.name}", f"/artifacts/earlier/{name}")
+
+
 def main(argv: Sequence[str]) -> int:
-    """Check one package and return the exit status."""
+    """Check a release and return the exit status."""
     parser = argparse.ArgumentParser(prog="python -m resources.setup.release_check", description=__doc__)
-    parser.add_argument("package", type=Path)
-    parser.add_argument("--release", default="bookworm", help="Debian release (default: bookworm)")
+    parser.add_argument("paths", nargs="+", type=Path, metavar="FOLDER or FILE")
+    parser.add_argument("--previous", type=Path, metavar="FOLDER", help="folder of the previous release")
+    parser.add_argument(
+        "--release", action="append", choices=DEBIAN_RELEASES, help="Debian release (default: all)"
+    )
     parser.add_argument("--without-lintian", action="store_true")
     args = parser.parse_args(argv)
+    errors: list[str] = []
     try:
-        for line in check(args.package, args.release):
+        artifacts = _list_artifacts(args.paths)
+        for line in check_release(artifacts, args.release or tuple(DEBIAN_RELEASES), args.previous):
             sys.stdout.write(f"{line}\n")
             sys.stdout.flush()
-        errors = [] if args.without_lintian else list_lintian_errors(args.package)
+        for artifact in artifacts:
+            if artifact.kind is ArtifactKind.DEBIAN_PACKAGE and not args.without_lintian:
+                errors += list_lintian_errors(artifact.path)
     except (BundleError, OSError) as error:
-        sys.stderr.write(f"The package failed: {error}\n")
+        sys.stderr.write(f"The check failed: {error}\n")
         return 1
     sys.stderr.write("".join(f"{line}\n" for line in errors))
     return 1 if errors else 0
+
+
+def _list_artifacts(paths: Sequence[Path]) -> list[Artifact]:
+    """Return the artifacts in folders and files. Raises BundleError for a file that is not an artifact."""
+    found: list[Artifact] = []
+    for path in paths:
+        if path.is_dir():
+            found += find_artifacts(path.absolute())
+        elif artifact := identify_artifact(path.absolute()):
+            found.append(artifact)
+        else:
+            raise BundleError(f"{path} is not an artifact of a release")
+    return found
 
 
 if __name__ == "__main__":

@@ -61,23 +61,35 @@ def merge_packages(wheel: bytes, added_files: Mapping[str, bytes] | None = None)
             get_new_path(name): archive.read(name) for name in archive.namelist() if not name.endswith("/")
         }
     files |= {get_new_path(name): data for name, data in (added_files or {}).items()}
-    record = next(name for name in files if name.endswith(".dist-info/RECORD"))
-    info = record.removesuffix("RECORD")
-    del files[record]
+    info = _find_record(files).removesuffix("RECORD")
     files[f"{info}METADATA"] = convert_description(files[f"{info}METADATA"])
     files[f"{info}entry_points.txt"] = _ENTRY_POINTS.encode()
     files[f"{info}top_level.txt"] = f"{PACKAGE_NAME}\n".encode()
     files[f"{PACKAGE_NAME}/__init__.py"] = _LAUNCHER.read_bytes()
     files[f"{PACKAGE_NAME}/__main__.py"] = _MAIN.encode()
-    files[record] = _record(files, record)
+    return write_wheel(files)
+
+
+def write_wheel(files: Mapping[str, bytes]) -> bytes:
+    """Return a wheel with these files, sorted and with one time; its RECORD is calculated again.
+
+    Raises StopIteration if the files do not include a RECORD.
+    """
+    record = _find_record(files)
+    recorded = {name: data for name, data in files.items() if name != record}
+    complete = {**recorded, record: _record(recorded, record)}
     made = io.BytesIO()
     with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name in sorted(files, key=lambda each: (each == record, each)):
+        for name in sorted(complete, key=lambda each: (each == record, each)):
             entry = zipfile.ZipInfo(name, _time())
             entry.external_attr = _MODE << 16
             entry.compress_type = zipfile.ZIP_DEFLATED
-            archive.writestr(entry, files[name])
+            archive.writestr(entry, complete[name])
     return made.getvalue()
+
+
+def _find_record(files: Mapping[str, bytes]) -> str:
+    return next(name for name in files if name.endswith(".dist-info/RECORD"))
 
 
 def get_new_path(name: str) -> str:

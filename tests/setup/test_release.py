@@ -13,7 +13,7 @@ import pytest
 
 from app.cli.actions.desktop_entry import format_desktop_entry
 from app.cli.main import list_commands
-from resources.setup import release, release_check
+from resources.setup import release
 from resources.setup.bundle import BundleError, copy_wheel_sources, run
 from resources.setup.lock import PROJECT_FOLDER, PYTHONS, SETUP_FOLDER
 from resources.setup.packages import debian_package, manual_page, reproducible_archives
@@ -112,38 +112,6 @@ def test_failed_build_step_reports_its_error_above_the_notes_of_pip() -> None:
         run("sh", "-c", script)
 
 
-def test_minimal_root_uses_package_sources_of_its_own_release(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("platform.freedesktop_os_release", lambda: {"VERSION_CODENAME": "bookworm"})
-    own, root = tmp_path / "own", tmp_path / "root"
-    (own / "sources.list.d").mkdir(parents=True)
-    root.mkdir()
-    (root / "sources.list").write_text("deb http://a trixie main\n")  # of debootstrap
-    (own / "sources.list.d" / "debian.sources").write_text("Suites: bookworm bookworm-updates\n")
-    (own / "sources.list.d" / "other.sources").write_text("Suites: nodistro\n")
-    release_check.copy_package_sources(own, root, "trixie")
-    assert (root / "sources.list.d" / "debian.sources").read_text() == "Suites: trixie trixie-updates\n"
-    assert [path.name for path in root.rglob("*") if path.is_file()] == ["debian.sources"]
-
-
-@pytest.mark.parametrize(
-    ("path", "is_compared"),
-    [
-        ("/etc/gshadow-", False),
-        ("/var/lib/dpkg/status", False),
-        ("/etc/gshadow", True),
-        ("/etc/turndesk-", True),
-        ("/opt/turndesk/0.1.0/bin/turndesk", True),
-    ],
-)
-def test_purge_may_only_leave_files_of_the_system(
-    path: str, is_compared: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(release_check, "run_in_root", lambda *_: f"{path}\n")
-    assert (path in release_check.list_files(Path("/unused"))) is is_compared
-
-
 def test_version_with_commit_sorts_before_its_release() -> None:
     target = TARGETS["debian12"]
     assert get_debian_version("0.1.0", target) == "0.1.0+debian12"
@@ -224,14 +192,3 @@ def test_release_sbom_is_reproducible() -> None:
     assert build_sbom("1.2", []) == build_sbom("1.2", [])
     assert build_sbom("1.2", [])["serialNumber"] != build_sbom("1.3", [])["serialNumber"]
     assert build_sbom("1.2", [])["metadata"]["timestamp"] == "2026-12-01T08:30:00+00:00"
-
-
-def test_purge_check_ignores_only_files_that_change_anyway() -> None:
-    ignored = release_check._IGNORED
-    assert [
-        name
-        for name in ("/root/data/x", "/var/cache/x", "/var/lib/dpkg/x", "/tmp/x")
-        if not ignored.match(name)
-    ] == []
-    kept = ("/opt/turndesk/x", "/etc/x", "/usr/x", "/var/lib/turndesk/x", "/rootkit")
-    assert [name for name in kept if ignored.match(name)] == []
