@@ -57,6 +57,10 @@ TEST_COMMANDS: Sequence[tuple[str, str]] = (
         "a report as PDF",
         "turndesk prove $samples/pin.nc --offsets $samples/offsets.toml --report /artifacts/part.pdf",
     ),
+    (
+        "the documentation",
+        "test -s \"$(turndesk where | sed -n 's/^documents *//p')/docs/guide/screen.html\"",
+    ),
     ("the screen for 20 s", "QT_QPA_PLATFORM=offscreen timeout 20 turndesk --demo; test $? = 124"),
 )
 """Shell commands that are tested after the installation, each with a description."""

@@ -253,16 +253,56 @@ def test_purge_may_only_leave_files_of_the_system(
     assert (path in release_check.list_files(Path("/unused"))) is is_compared
 
 
+@pytest.fixture
+def certificate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A file with certificates of this computer, which only one of the variables names."""
+    path = tmp_path / "own.pem"
+    path.write_text("certificate")
+    for name in minimal_root._CERTIFICATE_VARIABLES:
+        monkeypatch.setenv(name, str(tmp_path / "missing.pem"))
+    monkeypatch.setenv("SSL_CERT_FILE", str(path))
+    return path
+
+
+def commands_in_root(root: Path, monkeypatch: pytest.MonkeyPatch, *, has_network: bool = True) -> list[str]:
+    ran: list[str] = []
+
+    def run(*words: object) -> str:
+        ran.extend(map(str, words))
+        return ""
+
+    monkeypatch.setattr(minimal_root, "run", run)
+    minimal_root.run_in_root(root, "pip --version", has_network=has_network)
+    return ran
+
+
+@pytest.mark.usefixtures("certificate")
 def test_root_reaches_the_package_index_as_this_computer_does(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "own.pem").write_text("certificate")
-    monkeypatch.setenv("PIP_CERT", str(tmp_path / "own.pem"))
-    monkeypatch.setenv("SSL_CERT_FILE", str(tmp_path / "missing.pem"))
+    monkeypatch.setenv("PIP_FIND_LINKS", "/only/on/this/computer")
     root = tmp_path / "root"
     minimal_root.copy_index_settings(root)
-    assert (root / str(tmp_path).lstrip("/") / "own.pem").read_text() == "certificate"
-    assert not list(root.rglob("missing.pem"))
+    words = commands_in_root(root, monkeypatch)
+    [named] = {word.partition("=")[2] for word in words if word.startswith(("PIP_CERT=", "SSL_CERT_FILE="))}
+    assert (root / named.lstrip("/")).read_text() == "certificate"
+    assert named != "/etc/ssl/certs/ca-certificates.crt"  # the package ca-certificates writes this file
+    assert not any("/only/on/this/computer" in word for word in words)
+
+
+def test_root_without_own_certificates_uses_those_of_its_system(
+    certificate: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    certificate.unlink()
+    minimal_root.copy_index_settings(tmp_path / "root")
+    assert not any("CERT" in word for word in commands_in_root(tmp_path / "root", monkeypatch))
+
+
+def test_command_without_a_network_runs_in_its_own_network_namespace(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert commands_in_root(tmp_path, monkeypatch, has_network=False)[:2] == ["unshare", "--net"]
+    assert "unshare" not in commands_in_root(tmp_path, monkeypatch)
 
 
 @pytest.fixture

@@ -16,6 +16,9 @@ from resources.setup.bundle import run
 
 _MOUNTS = ("proc", "sys", "dev")
 _CERTIFICATE_VARIABLES = ("PIP_CERT", "SSL_CERT_FILE", "REQUESTS_CA_BUNDLE", "CURL_CA_BUNDLE")
+_NETWORK_FILES = ("/etc/pip.conf", "/etc/resolv.conf")
+_CERTIFICATES = Path("/etc/ssl/certificates-of-host.crt")
+"""Copy of this computer's certificates, which the package ``ca-certificates`` does not overwrite."""
 _NETWORK_VARIABLES = (
     "PIP_DEFAULT_TIMEOUT",
     "PIP_INDEX_URL",
@@ -47,13 +50,15 @@ def copy_package_sources(source_folder: Path, target_folder: Path, release: str)
 
 def copy_index_settings(root: Path) -> None:
     """Copy the settings and certificates with which this computer reaches the Python package index."""
-    named = (os.environ[name] for name in _CERTIFICATE_VARIABLES if os.environ.get(name))
-    for path in {Path("/etc/pip.conf"), Path("/etc/resolv.conf"), *map(Path, named)}:
-        target = root / path.relative_to("/")
+    named = [Path(os.environ[name]) for name in _CERTIFICATE_VARIABLES if os.environ.get(name)]
+    copies = [(Path(name), Path(name)) for name in _NETWORK_FILES]
+    copies += [(path, _CERTIFICATES) for path in named if path.is_file()][:1]
+    for path, place in copies:
+        target = root / place.relative_to("/")
         with suppress(FileNotFoundError):
+            content = path.read_bytes()
             target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_bytes(path.read_bytes())
-            target.chmod(0o644)
+            target.write_bytes(content)
 
 
 def make_base_root(release: str, folder: Path) -> Path:
@@ -91,8 +96,9 @@ def run_in_root(root: Path, command: str, *, has_network: bool = True) -> str:
     The command sees only the environment variables that lead to the network, and no network at all if
     ``has_network`` is false. Raises BundleError if the command fails.
     """
-    names = (*_CERTIFICATE_VARIABLES, *_NETWORK_VARIABLES)
-    passed = [f"{name}={os.environ[name]}" for name in names if os.environ.get(name)]
+    passed = [f"{name}={os.environ[name]}" for name in _NETWORK_VARIABLES if os.environ.get(name)]
+    if (root / _CERTIFICATES.relative_to("/")).is_file():
+        passed += [f"{name}={_CERTIFICATES}" for name in _CERTIFICATE_VARIABLES]
     without_network = () if has_network else ("unshare", "--net")
     words = ("env", "--ignore-environment", *_ENVIRONMENT, *passed, "chroot", root, "sh", "-c", command)
     return run(*without_network, *words)
