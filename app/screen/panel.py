@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Generic, Literal, NamedTuple, TypeVar
 
-from PySide6.QtCore import QEvent, QPointF, QRectF, Qt
+from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, Qt
 from PySide6.QtGui import (
     QEventPoint,
     QFontMetricsF,
@@ -16,7 +16,7 @@ from PySide6.QtGui import (
     QPen,
     QTouchEvent,
 )
-from PySide6.QtWidgets import QWidget
+from PySide6.QtWidgets import QApplication, QWidget
 
 from app.desk.translation import tr
 from app.screen.screen_theme import ALIGN_CENTER, ALIGN_LEFT, ScreenTheme, ThemedPainter, draw_text
@@ -46,6 +46,41 @@ class RedrawingAttribute(Generic[T]):
         if value != self.__get__(panel):
             vars(panel)[self._name] = value
             panel.update()
+
+
+class FocusHolder(QObject):
+    """Holder of the keyboard focus while a panel covers the input fields of a page.
+
+    The window has the focus meanwhile. A covered field that requests the focus, because of Tab or because its
+    text was loaded late, gets it only after the panel is closed, so that no typed text changes it unseen.
+    """
+
+    def __init__(self, panel: QWidget) -> None:
+        super().__init__(panel)
+        self._panel = panel
+        self.covered_field: QWidget | None = None
+        application = QApplication.instance()
+        if isinstance(application, QApplication):
+            application.focusChanged.connect(self._hold_again)
+
+    def hold_focus(self) -> None:
+        """Move the focus from an input field to the window. It stays there while the panel is visible."""
+        self.covered_field = QApplication.focusWidget()
+        self._panel.window().setFocus()
+
+    def return_focus(self) -> None:
+        """Give the focus to the covered input field if it is visible, after the panel was hidden."""
+        field, self.covered_field = self.covered_field, None
+        if field is not None and field.isVisible():
+            field.setFocus()
+
+    def _hold_again(self, _before: QWidget | None, field: QWidget | None) -> None:
+        window = self._panel.window()
+        if field is None or field is window or not self._panel.isVisible():
+            return
+        if window.isAncestorOf(field):
+            self.covered_field = field
+            window.setFocus()
 
 
 def ignore_press() -> None:

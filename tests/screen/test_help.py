@@ -9,9 +9,13 @@ import pytest
 from PySide6.QtCore import QUrl
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
 
 from app.desk.pages import guide_text
 from app.desk.pages.guide_text import BlockKind
+from app.editor.editor_model import EditorStage
+from app.editor.editor_view import EditorPage
 from app.screen import page_table
 from app.screen.window import documentation_browser
 from app.screen.window.help_panel import wrap_words
@@ -149,6 +153,42 @@ def test_help_returns_the_keyboard_to_the_text_field(operator: Operator) -> None
     QTest.keyClick(operator.window, Key.Key_A)
     assert not is_open(operator)
     assert operator.window.has_text_field()
+
+
+@pytest.mark.parametrize("cover", ["help", "alarm log"])
+@pytest.mark.parametrize("late", [False, True], ids=["Tab", "late focus"])
+def test_covered_program_text_does_not_get_the_keyboard(
+    operator: Operator, qtbot: QtBot, cover: str, late: bool
+) -> None:
+    operator.stage.make_ready()
+    assert operator.frame.open_page(page_table.EDITOR)
+    operator.window.activateWindow()
+    page = operator.frame.current_page
+    assert isinstance(page, EditorPage)
+
+    def is_loaded() -> bool:
+        operator.window.refresh()
+        return page.editor.stage is EditorStage.OPEN
+
+    qtbot.waitUntil(is_loaded, timeout=60_000)
+    text = page.text_field.toPlainText()
+    assert text
+    if cover == "help":
+        operator.window.press_key(HELP_KEY)
+    else:
+        operator.frame.toggle_alarm_log()
+    if late:
+        page.text_field.setFocus()
+    else:
+        QTest.keyClick(operator.window.windowHandle(), Key.Key_Tab)
+    assert QApplication.focusWidget() is operator.window
+    if cover == "alarm log":
+        QTest.keyClick(operator.window.windowHandle(), Key.Key_A)
+        assert page.text_field.toPlainText() == text
+        operator.frame.alarm_list.close_list()
+    else:
+        operator.frame.help_panel.close_help()
+    assert QApplication.focusWidget() is page.text_field
 
 
 def test_help_does_not_cover_an_alarm(hands: Hands) -> None:

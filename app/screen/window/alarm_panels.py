@@ -8,14 +8,14 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
+from PySide6.QtWidgets import QLineEdit, QPlainTextEdit, QWidget
 
 from app.desk.pages.table_content import ROW_STEPS
 from app.desk.status.alarm_log import LoggedStop
 from app.desk.status.machine_status import StatusTone
 from app.desk.status.prompt_line import describe_cause
 from app.desk.translation import tr
-from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.panel import FocusHolder, Panel, RedrawingAttribute
 from app.screen.screen_theme import MIN_TEXT_SIZE, ScreenTheme, ThemedPainter, draw_state_symbol
 from app.screen.table_panel import LIST_KEYS, RowPanel
 from core.alarms import CATALOG, AlarmReaction
@@ -172,29 +172,26 @@ class AlarmList(RowPanel):
         super().__init__(theme, parent)
         self._open = open_recording
         self.logged_stops: tuple[LoggedStop, ...] = ()
-        self._previous_focus: QWidget | None = None
+        self._focus = FocusHolder(self)
         self.hide()
 
     def open_list(self) -> None:
         """Show the list over the page, and take the keyboard focus from an input field."""
-        self._previous_focus = QApplication.focusWidget()
-        self.window().setFocus()
+        self._focus.hold_focus()
         self.show()
         self.raise_()
 
     @property
     def covers_focus_field(self) -> bool:
         """Return whether a standard text field had the keyboard focus when the list opened."""
-        return self.isVisible() and isinstance(self._previous_focus, QLineEdit | QPlainTextEdit)
+        return self.isVisible() and isinstance(self._focus.covered_field, QLineEdit | QPlainTextEdit)
 
     def close_list(self) -> None:
         """Hide the list, and return the keyboard focus to the input field that had it."""
         if self.isHidden():
             return
         self.hide()
-        field, self._previous_focus = self._previous_focus, None
-        if field is not None and field.isVisible():
-            field.setFocus()
+        self._focus.return_focus()
 
     def show_entries(self, logged_stops: Sequence[LoggedStop]) -> None:
         """Show the given log entries, and select the newest entry if the list has changed."""

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QFont, QKeyEvent, QMouseEvent, QPixmap, QResizeEvent
-from PySide6.QtWidgets import QApplication, QWidget
+from PySide6.QtWidgets import QWidget
 
 from app.desk.pages.guide_text import BlockKind, GuideBlock
 from app.desk.translation import tr
-from app.screen.panel import RedrawingAttribute
+from app.screen.panel import FocusHolder, RedrawingAttribute
 from app.screen.screen_theme import ScreenTheme, ThemedPainter, measure_text
 from app.screen.table_panel import RowPanel
 from app.screen.text_sizes import TextRole
@@ -63,7 +63,7 @@ class HelpPanel(RowPanel):
         super().__init__(theme, parent)
         self._blocks: tuple[GuideBlock, ...] = ()
         self.browser: DocumentationBrowser | None = None
-        self._previous_focus: QWidget | None = None
+        self._focus = FocusHolder(self)
         self._pictures: dict[str, QPixmap] = {}
         self.hide()
 
@@ -80,8 +80,7 @@ class HelpPanel(RowPanel):
     def open_help(self, blocks: Sequence[GuideBlock]) -> None:
         """Show the given blocks of help, and take the keyboard focus from an input field."""
         self._blocks, self.first_row = tuple(blocks), 0
-        self._previous_focus = QApplication.focusWidget()
-        self.window().setFocus()
+        self._focus.hold_focus()
         self._wrap_blocks()
         self.show()
         self.raise_()
@@ -92,9 +91,7 @@ class HelpPanel(RowPanel):
         if self.isHidden():
             return
         self.hide()
-        field, self._previous_focus = self._previous_focus, None
-        if field is not None and field.isVisible():
-            field.setFocus()
+        self._focus.return_focus()
 
     def place_with_notice(self, area: Rect, notice: AlarmNotice) -> None:
         """Place the notice and the help over the page, next to each other if both are open.
