@@ -111,7 +111,7 @@ class ProgramListModel:
             self.desk.show_refusal,
         )
         self.recent_worker.request_work(
-            lambda _request: list_recent_programs(paths, folders, own, persistence),
+            lambda _request: list_recent_programs(paths, folders, own, persistence, recognize),
             self._receive_recent_programs,
             self.desk.show_refusal,
         )

@@ -6,7 +6,7 @@ import os
 import stat
 from collections import OrderedDict
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from functools import lru_cache, partial
 from pathlib import Path
@@ -73,26 +73,28 @@ def list_programs(
     found = []
     for entry in (*program_folders.list_programs(), *program_folders.list_drawings()):
         if (status := _status(entry.path)) is not None:
-            path, drawing = entry.path, program_folders.is_drawing_name(entry.name)
-            key = "" if drawing else _find_run_row(path, status.st_mtime_ns, status.st_size)
-            run = runs.get(key, RunRow(entry.name))
-            sample = path.parent != own_folder
-            control = ""
-            if recognize_control is not None and not drawing:
-                control = _find_control(path, status.st_mtime_ns, status.st_size, recognize_control)
-            found.append(
-                ListedFile(entry.name, path, status.st_size, status.st_mtime, sample, run, drawing, control)
-            )
+            path, sample = entry.path, entry.path.parent != own_folder
+            if program_folders.is_drawing_name(entry.name):
+                run, size, changed = RunRow(entry.name), status.st_size, status.st_mtime
+                found.append(ListedFile(entry.name, path, size, changed, sample, run, is_drawing=True))
+            else:
+                file = _describe_program(path, status, runs, recognize_control)
+                found.append(replace(file, is_sample=sample))
     return tuple(found)
 
 
 def list_recent_programs(
-    paths: Sequence[Path], program_folders: ProgramFolders, own_folder: Path, persistence: Persistence
+    paths: Sequence[Path],
+    program_folders: ProgramFolders,
+    own_folder: Path,
+    persistence: Persistence,
+    recognize_control: RecognizeControl | None = None,
 ) -> tuple[ListedFile, ...]:
     """Return the programs at the given paths in this order, each with its run record.
 
-    A file that cannot be read is also returned, with the reason. Call this function on a worker. Raise
-    StoreError if the store cannot be read.
+    ``recognize_control`` finds programs of other controls, unless it is None. A file that cannot be read is
+    also returned, with the reason. Call this function on a worker. Raise StoreError if the store
+    cannot be read.
     """
     runs = persistence.runs.read_records_by_text()
     found = []
@@ -107,10 +109,25 @@ def list_recent_programs(
             )
             found.append(missing)
             continue
-        run = runs.get(_find_run_row(path, status.st_mtime_ns, status.st_size), RunRow(path.name))
-        file = ListedFile(path.name, path, status.st_size, status.st_mtime, sample, run, is_outside=outside)
-        found.append(file)
+        file = _describe_program(path, status, runs, recognize_control)
+        found.append(replace(file, is_sample=sample, is_outside=outside))
     return tuple(found)
+
+
+def _describe_program(
+    path: Path,
+    status: os.stat_result,
+    runs: Mapping[str, RunRow],
+    recognize_control: RecognizeControl | None,
+) -> ListedFile:
+    """Return the row of a program with its run record and, if it is recognized, with its control."""
+    run = runs.get(_find_run_row(path, status.st_mtime_ns, status.st_size), RunRow(path.name))
+    control = ""
+    if recognize_control is not None:
+        control = _find_control(path, status.st_mtime_ns, status.st_size, recognize_control)
+    return ListedFile(
+        path.name, path, status.st_size, status.st_mtime, is_sample=False, run_row=run, control_name=control
+    )
 
 
 @lru_cache(maxsize=2 * MAX_PROGRAM_COUNT)

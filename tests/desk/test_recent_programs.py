@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
@@ -110,6 +110,18 @@ def test_a_missing_file_and_a_folder_are_listed_with_the_reason(tmp_path: Path) 
     rows = list_recent_programs(paths, ProgramFolders((own,)), own, Persistence())
     assert [row.missing_reason for row in rows] == ["", "THE FILE NO LONGER EXISTS", "IT IS NOT A FILE"]
     assert [row.is_outside for row in rows] == [False, True, True]
+
+
+def test_recent_programs_of_another_control_are_marked(tmp_path: Path) -> None:
+    (tmp_path / "a.nc").write_text("O1\nM30\n")
+    (tmp_path / "b.nc").write_text("G90\nM30\n")
+
+    def recognize(lines: Sequence[str]) -> str:
+        return "FANUC" if lines[0].startswith("O") else ""
+
+    paths = [tmp_path / "a.nc", tmp_path / "b.nc", tmp_path / "gone.nc"]
+    rows = list_recent_programs(paths, ProgramFolders((tmp_path,)), tmp_path, Persistence(), recognize)
+    assert [row.control_name for row in rows] == ["FANUC", "", ""]
 
 
 def test_a_path_below_a_file_is_not_readable(tmp_path: Path) -> None:
