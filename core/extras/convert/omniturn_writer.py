@@ -17,6 +17,7 @@ from core.language.diagnostics import Diagnostic
 MM_PER_INCH = 25.4
 MIN_DEPTH_MM = (0.00005 * MM_PER_INCH, 0.001)  # mm per side; I of a thread of one pass, in inches and mm
 _LONGEST = 60
+_LONGEST_STOP = 120  # of the text for the operator at M00 or M01
 _NOT_IN_COMMENTS = re.compile(r"[^ -'*-~]")
 
 
@@ -78,7 +79,7 @@ class OmniTurnWriter:
         stop = step.kind is StepKind.M and step.number in {0, 1}
         if not self.options.writes_comments and not (stop and step.comment):
             return ""
-        words = _NOT_IN_COMMENTS.sub(" ", step.comment)[:_LONGEST].strip()
+        words = _NOT_IN_COMMENTS.sub(" ", step.comment)[: _LONGEST_STOP if stop else _LONGEST].strip()
         place = f"L{step.line}" if self.options.writes_comments else ""
         return f"({f'{place} {words}'.strip()})"
 

@@ -91,7 +91,7 @@ class SourceReader:
         """Execute the words of one line. Raises ProgramError if the line cannot be converted."""
         state = self.state
         if statement.comment:
-            state.pending_comment = f"{state.pending_comment} {statement.comment}".strip()
+            state.pending_comment = f"{state.pending_comment}\n{statement.comment}".strip()
         statement = self._without_y(statement)
         if not statement.words:
             return

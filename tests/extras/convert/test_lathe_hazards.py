@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from tests.extras.convert.sources import FANUC, converted
 from tests.extras.convert.test_from_omniturn import BEGIN, complete, convert, error_of, lines_of
 from tests.extras.convert.test_to_sinumerik import convert as convert_to_sinumerik
 
@@ -274,3 +275,9 @@ def test_start_of_nose_compensation_of_linuxcnc_is_reported(body: str, is_report
     assert not done.errors, done.errors
     assert ("nose-start" in {each.code for each in done.findings}) is is_reported
     assert "nose-start" not in {each.code for each in convert(complete(body), "fanuc").findings}
+
+
+def test_long_text_for_the_operator_is_not_cut_for_omniturn() -> None:
+    plain = LONG.replace(";", ",")
+    done = converted(f"{FANUC}G01Z0\nM00({plain})\nM30\n")
+    assert f"M00({plain})" in [each.text for each in done.lines]
