@@ -20875,6 +20875,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Write the offset with the number of the tool; add a second cutting edge (D2) by hand.</source>
+      <translation>Escriba el corrector con el número de la herramienta; añada a mano un segundo filo (D2).</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>Write the positions that apply after this line, and remove the preset and this code.</source>
       <translation>Escriba las posiciones válidas después de esta línea, y elimine el preset y este código.</translation>
     </message>
@@ -21107,6 +21112,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>{word}: the spindle cannot turn at this speed.</source>
       <translation>{word}: el husillo no puede girar a esta velocidad.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: the tool and its offset have different numbers, so that T of the other control would change the tool.</source>
+      <translation>{word}: la herramienta y su corrector tienen números distintos, de modo que T del otro control cambiaría la herramienta.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />

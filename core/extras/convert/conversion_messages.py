@@ -187,6 +187,11 @@ ERRORS: Mapping[str, tuple[str, str]] = {
         "Correct the loop or the cycle, or convert the program in parts.",
     ),
     "too-many-passes": ("{word} makes more than 1000 passes.", "Correct the depth of a pass."),
+    "tool-and-offset": (
+        "{word}: the tool and its offset have different numbers, so that T of the other control would change "
+        "the tool.",
+        "Write the offset with the number of the tool; add a second cutting edge (D2) by hand.",
+    ),
     "tool-number": ("{word}: OmniTurn has the tools T1 to T32.", "Change the tool number."),
     "unit": (
         "The program selects neither inches nor millimeters before this line.",

@@ -126,6 +126,8 @@ def test_omniturn_program_becomes_a_sinumerik_program() -> None:
         ("G54\nG55", "fanuc-a", (2, "work-offset")),
         ("G02X3.Z0R.1", "fanuc-a", (1, "arc-too-small")),
         ("T0202\nG50X5.Z5.", "fanuc-a", (2, "preset-target")),
+        ("G01Z0\nT0111\nG00X2.Z.1", "fanuc-a", (2, "tool-and-offset")),
+        ("T2M6G43H12\nM3G0X2Z.1", "linuxcnc", (1, "tool-and-offset")),
         ("G92Z.3\nT2M6", "linuxcnc", (2, "preset-target")),
         ("G04P4000000", "fanuc-a", (1, "target")),
         ("G00X1.\nG32X1.1Z-1.F.05\nG32X2.Z-1.F.05", "fanuc-a", (3, "target")),
@@ -147,6 +149,25 @@ def test_surface_speed_is_converted_if_the_program_changes_its_unit() -> None:
     body = "G50S2000\nG96S300\nG01Z0\nG28U0W0\nG21\nT0202\nG96S100\nG00X25.Z2.\nG01Z-10.F.1"
     speeds = [each for each in lines_of(body) if "G96" in each]
     assert speeds == ["G96 S91.44 LIMS=2000", "G96 S100 LIMS=2000 M3"]
+
+
+@pytest.mark.parametrize("body", ["G01Z0\nT0100", "G01Z0\nT0100\nG28U0W0\nT0200\nT0202\nG00X1.Z.2"])
+def test_offset_that_is_cancelled_does_not_change_the_tool(body: str) -> None:
+    """T0100 cancels the offset of T1, and T0200 indexes T2 without its offset."""
+    tools = [each for each in lines_of(body) if each.startswith("T")]
+    assert tools == ([] if "T0202" not in body else ["T2 D1"])
+
+
+def test_nose_radius_is_entered_in_the_tool_table() -> None:
+    body = "G00X1.2Z.2\nG42G01Z0\nX1.6\nZ-.5\nG40G00X2."
+    codes = {each.code for each in convert(f"{FANUC}{body}\nM30\n").findings}
+    assert "nose-table" in codes
+    assert "nose-offset" not in codes
+
+
+def test_text_of_a_stop_contains_only_the_comment_of_its_line() -> None:
+    made = lines_of("G01Z0\n(PART OFF)\nM00(TURN IT)\nG01Z-.1")
+    assert made == ["G1 Z0 F0.01", "; PART OFF", 'MSG("TURN IT")', "M0", "MSG()", "Z-0.1"]
 
 
 def test_program_without_moves_is_rejected() -> None:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from core.extras.convert.conversion import Conversion
-from core.extras.convert.conversion_messages import make_error
+from core.extras.convert.conversion_messages import make_error, make_warning
 from core.extras.convert.path_steps import MOVE_KINDS
 from core.extras.convert.proof.conversion_proof import Proof, ReportLine, ignore_line, prove
 from core.extras.convert.source_options import ConversionOptions, SourceControl, TargetControl
@@ -22,8 +22,9 @@ from core.extras.convert.targets.simplified_steps import (
 )
 from core.extras.convert.targets.sinumerik_writer import SinumerikWriter
 from core.interpreter.shared.job_setup import ControlLimits
-from core.language.diagnostics import ProgramError, Severity
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.source import Dialect
+from core.message import Message
 
 _WRITERS: Mapping[TargetControl, tuple[type[ProgramWriter], SourceControl]] = {
     TargetControl.LINUXCNC: (LinuxCncWriter, SourceControl.LINUXCNC),
@@ -119,6 +120,20 @@ def _drop_short_moves(program: InterpretedProgram, writer: ProgramWriter) -> Int
     return replace(program, steps=steps, blocks=drop_short_blocks(program.blocks, writer.round_point))
 
 
+def _adapt_to_sinumerik(finding: Diagnostic) -> Diagnostic:
+    """Return a finding of the reader in the form that applies to a SINUMERIK control.
+
+    A second offset of a tool is an error, because T would index another tool. In OmniTurn, T only selects an
+    offset.
+    """
+    if finding.code not in {"tool-of-offset", "nose-offset"} or not isinstance(finding.message, Message):
+        return finding
+    values = finding.message.values
+    if finding.code == "nose-offset":
+        return make_warning(finding.line, finding.column, "nose-table", number=values["number"])
+    return make_error(finding.line, finding.column, "tool-and-offset", word=values["word"]).diagnostic
+
+
 def _read_source(
     texts: Sequence[str], options: ConversionOptions, limits: ControlLimits, *, is_omniturn: bool
 ) -> InterpretedProgram:
@@ -130,6 +145,7 @@ def _read_source(
         program = interpret_source(texts, options, limits)
     else:
         state, findings = read_source(texts, options)
+        findings = [_adapt_to_sinumerik(each) for each in findings]
         program = InterpretedProgram((), state.steps, findings, bool(state.is_metric))
     if any(each.severity is Severity.ERROR for each in program.findings):
         return program
