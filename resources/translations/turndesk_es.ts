@@ -20525,6 +20525,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Set G54 to this part zero.</source>
+      <translation>Ajuste G54 a este cero de pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>Set the tool offset for part zero and remove this G92, or move to an absolute X and Z before it.</source>
       <translation>Ajuste el corrector de herramienta para el cero de pieza y elimine este G92, o muévase antes a una X y una Z absolutas.</translation>
     </message>
@@ -21077,6 +21082,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>{word}: no speed is programmed for the spindle.</source>
       <translation>{word}: no hay velocidad programada para el husillo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: part zero of the converted program is in G54.</source>
+      <translation>{word}: el cero de pieza del programa convertido está en G54.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />

@@ -356,6 +356,10 @@ NOTES: Mapping[str, tuple[str, str]] = {
         "The tool change stops the spindle, so the converted program starts it again after T{number}.",
         "No action is needed.",
     ),
+    "work-offset-g54": (
+        "{word}: part zero of the converted program is in G54.",
+        "Set G54 to this part zero.",
+    ),
     "work-offset-used": (
         "{word}: part zero of the converted program is in the tool offsets.",
         "Set the tool offsets for this part zero.",

@@ -165,6 +165,14 @@ def test_nose_radius_is_entered_in_the_tool_table() -> None:
     assert "nose-offset" not in codes
 
 
+@pytest.mark.parametrize("word", ["G54", "G55"])
+def test_work_offset_is_set_in_g54(word: str) -> None:
+    """The program has only one work offset, and the converted program begins with G54."""
+    done = convert(f"G20{word}\n{FANUC}G01Z0\nM30\n")
+    assert not done.errors
+    assert (1, "work-offset-g54") in [(each.line, each.code) for each in done.findings]
+
+
 def test_text_of_a_stop_contains_only_the_comment_of_its_line() -> None:
     made = lines_of("G01Z0\n(PART OFF)\nM00(TURN IT)\nG01Z-.1")
     assert made == ["G1 Z0 F0.01", "; PART OFF", 'MSG("TURN IT")', "M0", "MSG()", "Z-0.1"]

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from core.extras.convert.conversion import Conversion
-from core.extras.convert.conversion_messages import make_error, make_warning
+from core.extras.convert.conversion_messages import make_error, make_note, make_warning
 from core.extras.convert.path_steps import MOVE_KINDS
 from core.extras.convert.proof.conversion_proof import Proof, ReportLine, ignore_line, prove
 from core.extras.convert.source_options import ConversionOptions, SourceControl, TargetControl
@@ -126,12 +126,17 @@ def _adapt_to_sinumerik(finding: Diagnostic) -> Diagnostic:
     A second offset of a tool is an error, because T would index another tool. In OmniTurn, T only selects an
     offset.
     """
-    if finding.code not in {"tool-of-offset", "nose-offset"} or not isinstance(finding.message, Message):
+    if not isinstance(finding.message, Message):
         return finding
-    values = finding.message.values
-    if finding.code == "nose-offset":
-        return make_warning(finding.line, finding.column, "nose-table", number=values["number"])
-    return make_error(finding.line, finding.column, "tool-and-offset", word=values["word"]).diagnostic
+    values, place = finding.message.values, (finding.line, finding.column)
+    match finding.code:
+        case "tool-of-offset":
+            return make_error(*place, "tool-and-offset", word=values["word"]).diagnostic
+        case "nose-offset":
+            return make_warning(*place, "nose-table", number=values["number"])
+        case "work-offset-used":
+            return make_note(*place, "work-offset-g54", word=values["word"])
+    return finding
 
 
 def _read_source(
