@@ -1,4 +1,4 @@
-"""Starts of nose compensation that LinuxCNC makes in another way than OmniTurn."""
+"""Starts of nose compensation at which LinuxCNC and OmniTurn position the nose differently."""
 
 from __future__ import annotations
 
