@@ -20505,6 +20505,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Replace these moves with the tapping cycle of the other control, or try them without a part.</source>
+      <translation>Sustituya estos movimientos por el ciclo de roscado con macho del otro control, o pruébelos sin pieza.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>Report this program; the converted program is not written.</source>
       <translation>Comunique este programa; el programa convertido no se escribe.</translation>
     </message>
@@ -20697,6 +20702,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>The program selects neither inches nor millimeters before this line.</source>
       <translation>El programa no selecciona ni pulgadas ni milímetros antes de esta línea.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>The program taps with a reversal of the spindle, which may take longer on the other lathe.</source>
+      <translation>El programa rosca con macho invirtiendo el husillo, lo que puede tardar más en el otro torno.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />

@@ -322,6 +322,10 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
         "S{speed} is rounded to S{whole}.",
         "No action is needed.",
     ),
+    "tapping": (
+        "The program taps with a reversal of the spindle, which may take longer on the other lathe.",
+        "Replace these moves with the tapping cycle of the other control, or try them without a part.",
+    ),
     "thread-pull-out": (
         "The thread's pull-out at an angle is replaced by a pull-out straight in X at the end of the thread.",
         "Check that the thread has a relief groove.",

@@ -281,3 +281,22 @@ def test_long_text_for_the_operator_is_not_cut_for_omniturn() -> None:
     plain = LONG.replace(";", ",")
     done = converted(f"{FANUC}G01Z0\nM00({plain})\nM30\n")
     assert f"M00({plain})" in [each.text for each in done.lines]
+
+
+@pytest.mark.parametrize(
+    ("body", "lines"),
+    [
+        ("G00X0Z.1\nG01G95F.05\nZ-.4\nM04\nG04F.5\nZ.1", [4]),
+        ("G00X0Z.1\nG01G95F.05\nZ-.4\nM05\nM04S800\nZ.1", [5]),
+        ("LS2\nG00X0Z.1\nG01G95F.05\nZ-.4\nM04\nZ.1\nM03\nLF", [5]),
+        ("G00X0Z.1\nG01G95F.05\nZ-.4\nG00Z.1\nM04", []),  # a hole
+        ("G00X1.Z.1\nG01G95F.05\nZ-.4\nM04\nZ-.8", []),  # turns on in the other direction
+        ("G00X1.Z.1\nG01G95F.05\nZ-.4\nM04\nX1.1\nZ.1", []),
+        ("G00X1.Z.1\nG01G95F.05\nZ-.4\nS800\nZ.1", []),  # the same direction
+    ],
+)
+def test_tapping_with_a_reversal_is_reported(body: str, lines: list[int]) -> None:
+    for target in ("linuxcnc", "fanuc"):
+        done = convert(complete(body), target)
+        assert not done.errors, done.errors
+        assert [each.line - 5 for each in done.findings if each.code == "tapping"] == lines

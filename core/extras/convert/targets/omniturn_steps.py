@@ -17,6 +17,7 @@ from core.extras.convert.path_steps import PathStep, SpindleState, StepKind, has
 from core.extras.convert.proof.conversion_proof import ReportLine, ignore_line
 from core.extras.convert.source_options import ConversionOptions
 from core.extras.convert.targets.source_comments import COMMENT, SourceComments
+from core.extras.convert.targets.tapping_moves import find_tapping
 from core.interpreter.dialects import interpret_program
 from core.interpreter.shared import actions
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
@@ -122,6 +123,8 @@ def _interpret_variant(
     except ProgramError as error:
         return InterpretedProgram(blocks, (), [*maker.findings, error.diagnostic])
     maker.report_far_side_tools()
+    if line := find_tapping(maker.steps):
+        maker.findings.append(make_warning(line, 0, "tapping"))
     first = next((each.modal for each in blocks if each.moves), None)
     if first is None:
         return InterpretedProgram((), (), [*maker.findings, make_error(0, 0, "file-empty").diagnostic])
