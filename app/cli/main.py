@@ -15,6 +15,7 @@ import sys
 import threading
 from collections.abc import Mapping, Sequence
 from types import ModuleType
+from typing import TYPE_CHECKING
 
 from app import VERSION
 from app.cli.bug_report.crash_report import (
@@ -37,6 +38,9 @@ from app.desk import command_errors
 from app.desk.command_errors import EXIT_INTERRUPTED, EXIT_OK, EXIT_USAGE, CommandError
 from app.desk.standard_input import reset_standard_input
 from core.message import CodedError, Message
+
+if TYPE_CHECKING:
+    from app.screen.opening_show import OpeningShow
 
 CORE_COMMANDS: Mapping[str, str] = {
     "prove": "prove programs (errors, limits, cycle time) without moving the machine",
@@ -234,13 +238,20 @@ def _dispatch(args: argparse.Namespace) -> int:
 
 
 def _open_demo(args: argparse.Namespace) -> None:
-    """Use the data folder of the demo, and load its program if the user specified no program."""
+    """Use the data folder of the demo, and load its program if the user specified no program.
+
+    If the user specified nothing else, the screen may begin with the show of an optional feature.
+    """
     from app.compose.demo_store import find_demo_program, open_demo_data_folder
 
     machine = getattr(args, "machine", None)
-    open_demo_data_folder(machine)
-    if not args.command:
-        args.program = args.program or find_demo_program(machine)
+    folder = open_demo_data_folder(machine)
+    if args.command:
+        return
+    if not (args.program or machine or args.offsets or args.kiosk):
+        shown = (each.opening_show_class for each in extras().values() if each.begins_with_show(folder))
+        args.opening_show_class = next(shown, "")
+    args.program = args.program or find_demo_program(machine)
 
 
 def _has_display() -> bool:
@@ -253,15 +264,7 @@ def _screen(args: argparse.Namespace) -> int:
     if not _has_display():
         sys.stderr.write(NO_DISPLAY_TEXT)
         return EXIT_USAGE
-    from app.screen.display import find_display_error
-
-    if why := find_display_error():
-        raise CommandError(
-            Message(
-                "the screen cannot be opened: {why}. {without}", why=why, without=SCREENLESS_COMMANDS_TEXT
-            ),
-            "no-screen",
-        )
+    _check_display()
     if args.program and not (args.machine or args.offsets or args.kiosk):
         from app.screen.window.running_screen import hand_over_program
 
@@ -271,8 +274,49 @@ def _screen(args: argparse.Namespace) -> int:
     from app.screen.screen_startup import run_screen
 
     return run_screen(
-        machine=args.machine, program_file=args.program, offsets_file=args.offsets, is_kiosk=args.kiosk
+        machine=args.machine,
+        program_file=args.program,
+        offsets_file=args.offsets,
+        is_kiosk=args.kiosk,
+        opening_show=_create_opening_show(getattr(args, "opening_show_class", ""), opens_desk=True),
     )
+
+
+def run_opening_show(class_name: str) -> int:
+    """Show only an opening show, without the operator screen, and return the exit status.
+
+    ``class_name`` is the dotted name of its class. Raises CommandError if no window can be opened.
+    """
+    _check_display()
+    from app.screen.screen_startup import run_screen
+
+    return run_screen(opening_show=_create_opening_show(class_name, opens_desk=False))
+
+
+def _create_opening_show(class_name: str, *, opens_desk: bool) -> OpeningShow | None:
+    """Return the opening show of this class for the current data folder, or None for an empty name."""
+    from app.desk.data_folder import find_data_folder
+
+    module_name, _, name = class_name.rpartition(".")
+    if not module_name:
+        return None
+    show: OpeningShow = getattr(importlib.import_module(module_name), name)(
+        find_data_folder(), opens_desk=opens_desk
+    )
+    return show
+
+
+def _check_display() -> None:
+    """Raise CommandError with the reason if no window can be opened."""
+    from app.screen.display import find_display_error
+
+    if why := find_display_error():
+        raise CommandError(
+            Message(
+                "the screen cannot be opened: {why}. {without}", why=why, without=SCREENLESS_COMMANDS_TEXT
+            ),
+            "no-screen",
+        )
 
 
 def _make_streams_tolerant() -> None:

@@ -12,6 +12,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 if TYPE_CHECKING:
@@ -64,6 +65,8 @@ class OptionalFeature:
       The program list also shows files with these suffixes.
     - ``editor_panel_class`` is the dotted name of an ``EditorPanel`` subclass. Its panel replaces
       the text area of the editor and writes lines.
+    - ``opening_show_class`` is the dotted name of an ``OpeningShow`` class, which the window can show
+      before the operator screen.
     - ``machine_actions`` are actions of ``turndesk machine``
       (``app.extras.NAME.ACTION_command``).
     - ``machine_tables`` maps each module whose ``DRIVER`` declares machine file tables to the
@@ -79,6 +82,7 @@ class OptionalFeature:
     worker_class_name = ""
     drawing_suffixes: Sequence[str] = ()
     editor_panel_class: str = ""
+    opening_show_class: str = ""
     machine_tables: Mapping[str, tuple[str, ...]] = {}
     preceding_table: str = ""
     own_special_functions: Collection[str] = ()
@@ -117,6 +121,13 @@ class OptionalFeature:
         Each function is paired with the name of the function that precedes it in the list.
         """
         return ()
+
+    def begins_with_show(self, folder: Path) -> bool:
+        """Return whether the show of this feature precedes the screen of the demo.
+
+        ``folder`` is the data folder of the demo.
+        """
+        return False
 
     def extend_model(self, model: object, desk: Desk, machine: Machine) -> None:
         """Extend ``model``, the model of a required feature, when that model is created."""

@@ -9,7 +9,9 @@ import logging
 import signal
 import sys
 from collections.abc import Callable
+from functools import partial
 from types import TracebackType
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
@@ -21,6 +23,10 @@ from app.screen import accessible
 from app.screen.screen_theme import ScreenTheme, find_palette, load_fonts, style_application
 from app.screen.window.main_window import MainWindow
 from core.message import Message
+
+if TYPE_CHECKING:
+    from app.compose.control.control_attachment import MachineAndControl
+    from app.screen.opening_show import OpeningShow
 
 _LISTENS_AFTER = 500  # ms; the first picture does not wait for what few starts need
 BuildModel = Callable[[], Desk]
@@ -37,6 +43,7 @@ def run_screen(
     build_model: BuildModel | None = None,
     *,
     is_kiosk: bool = False,
+    opening_show: OpeningShow | None = None,
 ) -> int:
     """Show the screen until it is closed, and return the exit status.
 
@@ -47,19 +54,24 @@ def run_screen(
     - ``build_model``: function that creates the model. By default, the standard model is built. Its
       exception is raised here after the window has closed.
     - ``is_kiosk``: whether the window fills the screen and cannot be closed by hand.
+    - ``opening_show``: a show with its own model, which the window presents first. The machine of the
+      screen is started after the show.
     """
-    build_model = build_model or _import_builder(machine, offsets_file)
+    if build_model is None and opening_show is None:
+        build_model = _import_builder(machine, offsets_file)
+    elif build_model is None:
+        build_model = partial(_build_model, machine, offsets_file)
     app = _application(theme)
     # Otherwise Qt would post a quit event that remains after this event loop.
     app.setQuitOnLastWindowClosed(False)
     window = MainWindow(ScreenTheme(find_palette(theme)), app.quit)
     window.is_kiosk = is_kiosk
     window.show_on_screen(app.primaryScreen())
-    start = _Startup(window, build_model, program_file)
+    start = _Startup(window, build_model, program_file, opening_show)
     before, sys.excepthook = sys.excepthook, start.handle_exception
     # Use exit and not quit, because a window may refuse to close, and a shutdown cannot wait.
     handlers = [(number, signal.signal(number, lambda *_: app.exit(0))) for number in END_SIGNALS]
-    QTimer.singleShot(0, start.build_and_show_model)
+    QTimer.singleShot(0, start.begin)
     status = app.exec()
     sys.excepthook = before
     for number, handler in handlers:
@@ -73,10 +85,41 @@ def run_screen(
 class _Startup:
     """The steps of the startup that run after the window has been painted for the first time."""
 
-    def __init__(self, window: MainWindow, build: BuildModel, program: str | None) -> None:
-        self._window, self._build, self._program = window, build, program
+    def __init__(
+        self,
+        window: MainWindow,
+        build: BuildModel,
+        program: str | None,
+        show: OpeningShow | None = None,
+    ) -> None:
+        self._window, self._build, self._program, self._show = window, build, program, show
         self._desk: Desk | None = None
         self._trouble: Exception | None = None
+
+    def begin(self) -> None:
+        """Begin the opening show, or build the model if there is no show or the show cannot begin."""
+        show = self._show
+        if show is None:
+            self.build_and_show_model()
+            return
+        try:
+            desk = self._desk = show.build_model()
+            self._window.show_model(desk)
+            show.begin(self._window, self._end_show)
+        except Exception as error:  # noqa: BLE001 - an exception in Qt's loop cannot be caught
+            _log.exception("the opening show cannot begin")
+            if not show.opens_desk:
+                self._trouble = error
+            self._end_show()
+
+    def _end_show(self) -> None:
+        """Close the opening show, and then open the screen or close the window."""
+        show = self._show
+        self._close_model()
+        if show is not None and show.opens_desk:
+            self.build_and_show_model()
+        else:
+            QApplication.exit(0)
 
     def build_and_show_model(self) -> None:
         """Build the model, and open it.
@@ -122,25 +165,33 @@ class _Startup:
 
     def close(self) -> None:
         """Stop the machine, end the threads, and raise the startup error if there was one."""
-        if self._desk is not None:
-            self._desk.close()
+        self._close_model()
         if self._trouble is not None:
             raise self._trouble
+
+    def _close_model(self) -> None:
+        """Close the model of the screen, or the opening show with its model."""
+        desk, self._desk = self._desk, None
+        if desk is not None:
+            desk.close()
+        show, self._show = self._show, None
+        if show is not None:
+            show.close()
 
 
 def _import_builder(machine: str | None, offsets: str | None) -> BuildModel:
     """Start the control in the background, and return the function that builds the model for this control."""
     from app.compose.control.control_attachment import find_or_start_control
 
-    begun = find_or_start_control(machine)
+    return partial(_build_model, machine, offsets, find_or_start_control(machine))
 
-    def build_model() -> Desk:
-        from app.compose.screen_desk import build_desk
-        from app.compose.stored_offsets import make_offsets_reader
 
-        return build_desk(machine, make_offsets_reader(offsets), begun)
+def _build_model(machine: str | None, offsets: str | None, begun: MachineAndControl | None = None) -> Desk:
+    """Return the standard model for the control ``begun``, or for a new control if it is None."""
+    from app.compose.screen_desk import build_desk
+    from app.compose.stored_offsets import make_offsets_reader
 
-    return build_model
+    return build_desk(machine, make_offsets_reader(offsets), begun)
 
 
 def _application(theme: str) -> QApplication:

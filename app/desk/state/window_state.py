@@ -18,6 +18,7 @@ class WindowState:
 
     late_presses: LatePressFilter
     page_name: str = ""  # Name of the current page; empty without a window.
+    is_kiosk: bool = False  # The window fills the screen and cannot be closed.
     _starts_here: bool = True
     _keyboard_away: bool = False
     _has_field: Callable[[], bool] = bool

@@ -27,13 +27,14 @@ class NoticeRow:
     """A notice that remains until the operator acts.
 
     It has a text, values below the text, and labeled keys. ``color_name`` is the name of the background
-    color.
+    color. ``is_caption`` makes the text as large as the prompt line; such a row has no keys.
     """
 
     text: str
     values_text: str = ""
     keys: tuple[tuple[str, str], ...] = ()
     color_name: str = "pause"
+    is_caption: bool = False
 
 
 def make_interrupted_notice(

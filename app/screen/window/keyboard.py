@@ -195,6 +195,10 @@ class KeyboardFilter(QObject):
         """Return whether no other key is down. Modifier keys are ignored."""
         return not {key for code, key in self._down.items() if code != find_scan_code(event)} - MODIFIER_KEYS
 
+    def is_stop_key(self, event: QKeyEvent) -> bool:
+        """Return whether this key stops the machine now."""
+        return self._find_stop(event) is not None
+
     def is_stop_key_held(self) -> bool:
         """Return whether a stop key is still down, so that nothing may start."""
         self._stops &= self._down.keys()

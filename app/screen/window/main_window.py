@@ -88,8 +88,9 @@ class MainWindow(QWidget):
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
 
     def show_model(self, desk: Desk) -> None:
-        """Show the model on the screen, and start polling it."""
-        self.frame = WindowFrame(self.theme, desk, self.press_key, self)
+        """Show the model on the screen, and start polling it. It replaces the model that was shown before."""
+        earlier_frame, self.frame = self.frame, WindowFrame(self.theme, desk, self.press_key, self)
+        desk.window_state.is_kiosk = self.is_kiosk
         self.frame.help_panel.browser = DocumentationBrowser(desk, is_kiosk=self.is_kiosk)
         # It belongs to another window of this model.
         if (earlier := desk.page_registry.find_model(PagePreloader)) is not None:
@@ -113,6 +114,10 @@ class MainWindow(QWidget):
         self.frame.setGeometry(self.rect())
         self.refresh()
         self.frame.show()
+        if earlier_frame is not None:
+            earlier_frame.hide()
+            earlier_frame.deleteLater()
+            self.keyboard_filter.read_pressed_keys()
         self.setFocus()
         self._timer.start(FRAME_MS)
 

@@ -391,6 +391,7 @@ class LampStrip(Panel):
 
 NOTICE_ROW, NOTICE_KEY = 5.0, 17.0  # Units: height of a row, width of a key.
 LOW_NOTICE_HEIGHT = 4.5  # Units: height of a row without keys.
+CAPTION_HEIGHT, CAPTION_TEXT = 8.0, 3.4  # Units: height of a caption row and of its text.
 _THREE_LINE_HEIGHT = 6.0  # Units: height of a row with room for three lines.
 
 
@@ -418,7 +419,7 @@ class NoticeRows(Panel):
         """
         u = self.theme.unit_px
         if not row.keys:
-            return round(LOW_NOTICE_HEIGHT * u)
+            return round((CAPTION_HEIGHT if row.is_caption else LOW_NOTICE_HEIGHT) * u)
         wide = self._find_text_width(row, self.width())
         fits = measure_text(row.values_text, self.theme.fit_font(row.values_text, 1.7, wide)) <= wide
         return max(FINGERTIP_PX + 2, round(NOTICE_ROW * u) if fits else round(_THREE_LINE_HEIGHT * u) + 3)
@@ -453,10 +454,13 @@ class NoticeRows(Panel):
         painter.fill_rect(box, row.color_name)
         wide = self._find_text_width(row, box.width())
         lines = [row.values_text] if row.values_text else []
-        if box.height() > _THREE_LINE_HEIGHT * u:
+        if box.height() > _THREE_LINE_HEIGHT * u and not row.is_caption:
             lines = _wrap_lines(row.values_text, self.theme.fit_font(row.values_text, 1.7, wide), wide)
         upper = QRectF(box.x() + 1.2 * u, box.y(), wide, box.height() * (1.0, 0.52, 0.4)[len(lines)])
-        painter.draw_text_line(upper, row.text, 2.0, "on_state", raw=True)
+        if row.is_caption and lines:
+            upper.setHeight(0.64 * box.height())
+        size, role = (CAPTION_TEXT, TextRole.PROMPT) if row.is_caption else (2.0, TextRole.TABLE)
+        painter.draw_text_line(upper, row.text, size, "on_state", raw=True, role=role)
         high = (box.height() - upper.height()) / max(1, len(lines))
         for number, line in enumerate(lines):
             below = QRectF(upper.x(), upper.bottom() + number * high, wide, high)
