@@ -1,5 +1,6 @@
 #!/bin/sh
 # Starts the operator screen on the simulated lathe with a sample program loaded; does all the set-up it needs.
+# The first start begins with a tour of one minute, which any key ends.
 # Offsets, counts and settings of it are kept beside your own (turndesk --demo).
 # Usage: sh app/start.sh [options of the screen]
 set -eu

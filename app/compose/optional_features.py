@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 FEATURE_NAMES = (
     *("access", "quality", "jobs", "pendant", "mtconnect", "office", "sharing", "analyses", "scheduler"),
-    *("shapes", "drawings", "convert", "tool_tables", "lessons"),
+    *("shapes", "drawings", "convert", "tool_tables", "lessons", "tour"),
 )
 """Names of all optional features, ordered so that each feature follows the features that it needs."""
 

@@ -11254,6 +11254,86 @@
       <translation>--only {part} no es válido; use números de herramienta de 1 a 32, por ejemplo 1,3-6</translation>
     </message>
     <message>
+      <location filename="app/extras/tour/extra.py" />
+      <source>watch a simulated lathe make a part in one minute; any key ends the tour</source>
+      <translation>ver un torno simulado hacer una pieza en un minuto; cualquier tecla termina el recorrido</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tour/tour_director.py" />
+      <source>ANY KEY ENDS THE TOUR</source>
+      <translation>CUALQUIER TECLA TERMINA EL RECORRIDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tour/tour_director.py" />
+      <source>THE TOUR ENDS: FEED HOLD, THEN SPINDLE OFF</source>
+      <translation>EL RECORRIDO TERMINA: RETENCIÓN DE AVANCE, LUEGO HUSILLO PARADO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tour/tour_director.py" />
+      <source>TOUR ON A SIMULATED LATHE: {step} OF {count}</source>
+      <translation>RECORRIDO EN UN TORNO SIMULADO: {step} DE {count}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tour/tour_function.py" />
+      <source>A CRASH FOUND BEFORE IT HAPPENS</source>
+      <translation>UN CHOQUE HALLADO ANTES DE QUE OCURRA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tour/tour_function.py" />
+      <source>A PART IS TURNED, THREADED, MILLED WITH C AND PARTED OFF</source>
+      <translation>UNA PIEZA SE TORNEA, SE ROSCA, SE FRESA CON C Y SE TRONZA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tour/tour_function.py" />
+      <source>A WEAR CORRECTION</source>
+      <translation>UNA CORRECCIÓN DE DESGASTE</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tour/tour_function.py" />
+      <source>ENTER: START THE TOUR. ANY KEY ENDS IT</source>
+      <translation>ENTER: INICIAR EL RECORRIDO. CUALQUIER TECLA LO TERMINA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tour/tour_function.py" />
+      <source>FIRST STOP THE PROGRAM, AND PRESS R</source>
+      <translation>PRIMERO PARE EL PROGRAMA Y PULSE R</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tour/tour_function.py" />
+      <source>IN KIOSK MODE, THE TOUR CANNOT BE STARTED</source>
+      <translation>EN MODO QUIOSCO NO SE PUEDE INICIAR EL RECORRIDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tour/tour_function.py" />
+      <source>THE TOUR IS RUNNING IN ITS OWN WINDOW</source>
+      <translation>EL RECORRIDO YA SE MUESTRA EN SU PROPIA VENTANA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tour/tour_function.py" />
+      <source>THE TOUR NEEDS A SIMULATED MACHINE. START turndesk tour</source>
+      <translation>EL RECORRIDO NECESITA UNA MÁQUINA SIMULADA. INICIE turndesk tour</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tour/tour_function.py" />
+      <source>THE TOUR OPENS IN ITS OWN WINDOW</source>
+      <translation>EL RECORRIDO SE ABRE EN SU PROPIA VENTANA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tour/tour_function.py" />
+      <source>TOUR</source>
+      <translation>RECORRIDO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tour/tour_function.py" />
+      <source>watch a part being made</source>
+      <translation>ver cómo se hace una pieza</translation>
+    </message>
+    <message>
+      <location filename="app/extras/tour/tour_setup.py" />
+      <source>tools of the tour</source>
+      <translation>herramientas del recorrido</translation>
+    </message>
+    <message>
       <location filename="app/jog/held_jog.py" />
       <source>JOG KEY SIGNAL LOST. RELEASE THE KEY, THEN PRESS IT AGAIN</source>
       <translation>SE PERDIÓ LA SEÑAL DE LA TECLA. SUÉLTELA Y PÚLSELA OTRA VEZ</translation>
@@ -23207,6 +23287,76 @@
       <location filename="core/extras/tool_tables/tool_entry.py" />
       <source>{word} {value} is out of range; use {range}, and check the unit of the file</source>
       <translation>{word} {value} está fuera de rango; use {range} y revise la unidad del archivo</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tour/tour_script.py" />
+      <source>A WRONG SIGN: LINE {line} SAYS Z-.05 INSTEAD OF Z.05</source>
+      <translation>UN SIGNO ERRÓNEO: LA LÍNEA {line} DICE Z-.05 EN VEZ DE Z.05</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tour/tour_script.py" />
+      <source>CRASH FOUND BEFORE IT HAPPENS: THE START IS REJECTED</source>
+      <translation>CHOQUE HALLADO ANTES DE QUE OCURRA: EL ARRANQUE SE RECHAZA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tour/tour_script.py" />
+      <source>DRIVES ON. THEN BOTH PALM BUTTONS START THE CYCLE</source>
+      <translation>SERVOS ENCENDIDOS. LUEGO LOS DOS PULSADORES INICIAN EL CICLO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tour/tour_script.py" />
+      <source>EACH DIAMETER BEFORE AND AFTER THE CORRECTION</source>
+      <translation>CADA DIÁMETRO ANTES Y DESPUÉS DE LA CORRECCIÓN</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tour/tour_script.py" />
+      <source>END OF THE TOUR. SEE IT AGAIN WITH F10, TOUR</source>
+      <translation>FIN DEL RECORRIDO. VÉALO DE NUEVO CON F10, RECORRIDO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tour/tour_script.py" />
+      <source>MILLING: THE SPINDLE, NOW THE C AXIS, TURNS A HEXAGON</source>
+      <translation>FRESADO: EL HUSILLO, AHORA EJE C, GIRA Y SALE UN HEXÁGONO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tour/tour_script.py" />
+      <source>PARTING OFF: THE PART FALLS INTO THE CATCHER</source>
+      <translation>TRONZADO: LA PIEZA CAE EN EL RECOGEDOR</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tour/tour_script.py" />
+      <source>THE PART BEFORE AND AFTER THE CORRECTION</source>
+      <translation>LA PIEZA ANTES Y DESPUÉS DE LA CORRECCIÓN</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tour/tour_script.py" />
+      <source>THE PATH BEFORE AND AFTER THE CORRECTION</source>
+      <translation>LA TRAYECTORIA ANTES Y DESPUÉS DE LA CORRECCIÓN</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tour/tour_script.py" />
+      <source>THREADING: EACH PASS STARTS AT THE SAME SPINDLE ANGLE</source>
+      <translation>ROSCADO: CADA PASADA EMPIEZA EN EL MISMO ÁNGULO DEL HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tour/tour_script.py" />
+      <source>TURNDESK PROVES THE PROGRAM BEFORE THE FIRST MOVE</source>
+      <translation>TURNDESK COMPRUEBA EL PROGRAMA ANTES DEL PRIMER MOVIMIENTO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tour/tour_script.py" />
+      <source>TURNING: A BRASS BAR IS FACED, ROUGHED AND FINISHED</source>
+      <translation>TORNEADO: UNA BARRA DE LATÓN SE REFRENTA, DESBASTA Y ACABA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tour/tour_script.py" />
+      <source>WEAR: D1 MAKES THE DIAMETER .0012 IN SMALLER</source>
+      <translation>DESGASTE: D1 REDUCE EL DIÁMETRO .0012 IN</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tour/tour_script.py" />
+      <source>WEAR: THE HEAD MEASURES .8612 IN INSTEAD OF .8600 IN</source>
+      <translation>DESGASTE: LA CABEZA MIDE .8612 IN EN VEZ DE .8600 IN</translation>
     </message>
     <message>
       <location filename="core/geometry/chamfer_and_rounding.py" />

@@ -44,7 +44,7 @@ OF_FEATURES = (
     *("app.extras.quality.shift_page", "app.extras.shapes.shapes_model", "core.extras.shapes.editor_shape"),
     *("app.extras.sharing.sharing_model", "app.extras.pendant.driver.pendant_station"),
     *("app.extras.mtconnect.adapter_setup", "app.extras.office.office_setup"),
-    "core.extras.drawings.profile_program",
+    *("core.extras.drawings.profile_program", "app.extras.tour.tour_view", "app.extras.tour.tour_director"),
 )
 
 

@@ -1,0 +1,1 @@
+"""Tour that shows TurnDesk on a simulated lathe: its store, its director and its input filter."""

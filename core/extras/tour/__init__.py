@@ -1,0 +1,1 @@
+"""Script, program and tools of the tour, which shows TurnDesk on a simulated lathe."""
