@@ -19,6 +19,8 @@ from core.page_contents import make_anchor, make_table_of_contents
 from tests.documents.pages import DOCS, GENERATED, ROOT, TRANSLATED_FOLDER, Command, Page, is_record, pages
 from tests.glossary import AVOIDED, avoided
 
+PICTURE_SUFFIXES = (".png", ".webp")
+
 COLUMNS = 100
 LONG = 120  # lines, from which on a page needs a table of contents
 CHANGELOG = "CHANGELOG.md"  # is ordered by version and kind of change, and read from the top
@@ -92,9 +94,10 @@ def test_every_picture_is_used() -> None:
         (page.path.parent / target).resolve()
         for page in ALL
         for _, target in page.links
-        if target.endswith(".png")
+        if target.endswith(PICTURE_SUFFIXES)
     }
-    assert sorted(str(path) for path in (DOCS / "pictures").rglob("*.png") if path not in used) == []
+    pictures = (path for path in (DOCS / "pictures").rglob("*") if path.suffix in PICTURE_SUFFIXES)
+    assert sorted(str(path) for path in pictures if path not in used) == []
 
 
 @named
