@@ -51,8 +51,9 @@ class RedrawingAttribute(Generic[T]):
 class FocusHolder(QObject):
     """Holder of the keyboard focus while a panel covers the input fields of a page.
 
-    The window has the focus meanwhile. A covered field that requests the focus, because of Tab or because its
-    text was loaded late, gets it only after the panel is closed, so that no typed text changes it unseen.
+    While the panel is visible, the window has the focus. A covered field that requests the focus, because of
+    Tab or because its text was loaded late, gets it only after the panel is closed. No typed text changes it
+    unseen.
     """
 
     def __init__(self, panel: QWidget) -> None:

@@ -24,7 +24,6 @@ NOT_RUN: Mapping[str, str] = {
     "serial receive": "needs a serial port; tests/drivers/transfer/test_commands.py",
     "--machine ac-table-mill": "opens the screen; tests/stories",
     "--demo": "opens the screen; tests/stories",
-    "tour": "opens the screen; tests/extras/tour",
 }
 """Commands that are not run here, by their first words, with the reason and with what tests them."""
 OTHER_PROGRAMS: Mapping[str, str] = {
