@@ -43,7 +43,7 @@ MAX_FIRST_PART_S = 300.0
 _IGNORED = re.compile(
     r"^/(?:proc|sys|dev|run|tmp|artifacts|var/(?:cache|log|lib/(?:apt|dpkg|systemd)))(?:/|$)"
     r"|^/etc/(?:group|gshadow|passwd|shadow|subgid|subuid)-$"  # backups of groupadd and groupdel
-    r"|^/root/\.(?:cache/fontconfig|local/share/turndesk)(?:/|$)"  # of Qt's libraries, and the data folder
+    r"|^/root/\.(?:cache/(?:fontconfig|pip)|local/share/turndesk)(?:/|$)"  # of Qt, of pip, and the data
 )
 _DATA_FOLDER = "root/.local/share/turndesk"
 _WITH_OFFSETS = "$samples/pin.nc --headless --offsets $samples/offsets.toml"
