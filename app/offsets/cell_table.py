@@ -8,7 +8,7 @@ from typing import ClassVar
 
 from app.desk.arithmetic import EXPRESSION_CHARACTERS, InvalidEntryError, evaluate_expression
 from app.desk.desk import Desk
-from app.desk.pages.table_content import ROW_STEPS, apply_edit_key, refused
+from app.desk.pages.table_content import apply_edit_key, refused
 from app.desk.status.machine_status import StatusTone
 from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
@@ -21,7 +21,6 @@ from core.store.store_rows import FIELDS_BY_KIND, FieldType, FieldValue, OffsetR
 
 _ENTRY_KEYS = EXPRESSION_CHARACTERS | {"Back", "Delete", "Enter", "Tab", "Up", "Down", "Left", "Right"}
 _CELL_STEPS = {"Tab": (0, 1), "Right": (0, 1), "Left": (0, -1), "Up": (-1, 0), "Down": (1, 0)}
-_PAGE_STEPS = {key: rows for key, rows in ROW_STEPS.items() if key not in {"Up", "Down"}}
 
 
 class CellTable(OffsetTable):
@@ -192,11 +191,6 @@ class CellTable(OffsetTable):
         if self.is_text_open and (len(key) == 1 or key in {"Back", "Delete"}):
             self.text = apply_edit_key(self.text, key, int(self.selected_field.maximum))
             return True
-        if key in _PAGE_STEPS:
-            self.choose(
-                max(0, min(self.row_index + _PAGE_STEPS[key], len(self.numbers) - 1)), self.column_index
-            )
-            return True
         if key not in _ENTRY_KEYS:
             return False
         self.desk.clear_prompt_line()
@@ -218,6 +212,11 @@ class CellTable(OffsetTable):
             len(self.numbers) * wide
         )
         self.choose(at // wide, at % wide)
+
+    def select_row(self, row: int) -> None:
+        """Select the cell of the same column in a row, without a change of this cell."""
+        if row != self.row_index:
+            self.choose(row, self.column_index)
 
     def choose(self, row: int, column: int) -> None:
         """Select the touched cell.

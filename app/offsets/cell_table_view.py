@@ -5,7 +5,7 @@ These are the zero offsets of a lathe, and the tools and presets of a mill.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 
 from PySide6.QtCore import QRectF
@@ -39,6 +39,7 @@ class CellPanel(RowPanel):
     the columns that fit are shown, including the selected column.
     """
 
+    is_searchable = True
     stored_rows: RedrawingAttribute[Mapping[int, OffsetRow]] = RedrawingAttribute({})
     tool_lives: RedrawingAttribute[Mapping[int, ToolLife]] = RedrawingAttribute(
         {}
@@ -52,6 +53,21 @@ class CellPanel(RowPanel):
         self._kind, self._numbers, self._columns = cell_table.kind, cell_table.numbers, cell_table.columns
         self._choose: Callable[[int, int], None] = cell_table.choose
         self._wide = [_COLUMN_SHARES.get(name, 1.0) for name in cell_table.columns]
+
+    def list_row_texts(self) -> Sequence[str]:
+        """Return the number and the values of each row as they are displayed."""
+        model = self._model
+        fields = [(name, model.field_of(name)) for name in self._columns]
+        return [
+            f"{_ROW_LETTERS[self._kind]}{number} "
+            + " ".join(format_cell(field, model.value_at(number, name)) for name, field in fields)
+            for number in self._numbers
+        ]
+
+    @property
+    def selected_row(self) -> int:
+        """Return the index of the selected row."""
+        return self.selected_cell[0]
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the title, the column headings and the visible rows of the table."""
@@ -150,6 +166,7 @@ class CellTablePage(OffsetPage):
     def __init__(self, host: PageHost, parent: QWidget, model: CellTable) -> None:
         super().__init__(host, parent, model)
         self.content_panel = CellPanel(self.theme, model, self)
+        self.content_panel.on_select = model.select_row
         if not model.page_key:
             # Selects the next cell, even if the pad leaves no room for its column.
             self.number_pad.selected_page_key = ("Tab", "→")

@@ -46,6 +46,7 @@ class OffsetTable(ABC):
     page_key: str = ""  # A letter with a function on this page, for the number pad.
     clear_table_reason: ClassVar[str] = ""  # Reason for the history.
     text: str = ""  # The entered text.
+    is_text_open = False  # A text, such as a remark, is being edited.
 
     def __init__(self, desk: Desk) -> None:
         self.desk = desk
@@ -346,7 +347,6 @@ class ToolFieldTable(OffsetTable):
     """
 
     open_text_hint: ClassVar[str]  # Message for a letter before the text is open.
-    is_text_open = False  # A text is being edited.
 
     @property
     def tool_number(self) -> int:

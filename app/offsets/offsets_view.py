@@ -29,7 +29,7 @@ from app.screen.entry_panel import EntryPanel, EntryTexts, LetterPad, NumberPad
 from app.screen.page_base import KeyActions, ModelPage, PageHost
 from app.screen.panel import Panel, RedrawingAttribute
 from app.screen.screen_theme import ScreenTheme, ThemedPainter
-from app.screen.table_panel import LIST_KEYS, RowPanel, TablePanel
+from app.screen.table_panel import RowPanel, TablePanel
 from app.screen.window_layout import FINGERTIP_PX
 from core.executor.snapshot import Snapshot
 
@@ -74,12 +74,17 @@ class ChangeHistoryList(RowPanel):
     """List of all offset changes, newest first, with two lines for each change."""
 
     title = "HISTORY  ·  NEWEST FIRST"
+    is_searchable = True
 
     history_entries: RedrawingAttribute[tuple[HistoryEntry, ...]] = RedrawingAttribute(())
 
     def __init__(self, theme: ScreenTheme, parent: QWidget) -> None:
         super().__init__(theme, parent)
         self.hide()
+
+    def list_row_texts(self) -> Sequence[str]:
+        """Return the texts of each change."""
+        return [" ".join(map(tr, entry)) for entry in self.history_entries]
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the visible changes, or a message that no offset has been changed."""
@@ -126,7 +131,7 @@ class OffsetPage(ModelPage):
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Show the number pad on a touch of the table, and toggle it on a touch of the entry line."""
-        if event.type() == QEvent.Type.MouseButtonPress:
+        if event.type() == QEvent.Type.MouseButtonPress and not self.is_searching:
             self.set_number_pad_visible(watched is not self.entry_panel or self.number_pad.isHidden())
         return super().eventFilter(watched, event)
 
@@ -200,13 +205,17 @@ class OffsetPage(ModelPage):
 
         While the effect on the path is shown, characters are rejected with a message.
         """
-        if self.history_list.isVisible() and key in LIST_KEYS:
-            self.history_list.scroll_by(self.history_list.find_scroll_rows(key))
-            return True
         if self.effect_display.is_open and len(key) == 1 and self.model.accepts_key(key):
             self.desk.say(tr("TYPE VALUES IN THE TABLE. ESC: SHOW TABLE"))
             return True
         return self.model.handle_key(key)
+
+    def find_list(self) -> RowPanel | None:
+        """Return the history or the table, unless a text is being typed or the effect is shown."""
+        if self.history_list.isVisible():
+            return self.history_list
+        is_hidden = self.effect_display.is_open or self.model.is_text_open
+        return self.content_panel if isinstance(self.content_panel, RowPanel) and not is_hidden else None
 
     def has_text_field(self) -> bool:
         """Return True unless the effect on the path is shown, because values cannot be entered then."""
@@ -290,13 +299,17 @@ class OffsetPage(ModelPage):
             self._lay_out()
 
     def _lay_out(self) -> None:
+        if self.is_searching:
+            self.number_pad.hide()
         u, texts = self.theme.unit_px, not self.letter_pad.isHidden()
-        pad, high, gap = round(PAD * u), round(ASKED * u), max(4, round(0.7 * u))
+        pad, gap = round(PAD * u), max(4, round(0.7 * u))
+        high = -gap if self.is_searching else round(ASKED * u)
         low = self.letter_pad.min_height_px + gap if texts else 0
         wide = self.width() - (0 if self.number_pad.isHidden() or texts else pad + gap)
         table = self.height() - high - gap - low
         for part in (self.content_panel, self.history_list, self.effect_view, self.feature_table):
             part.setGeometry(0, 0, wide, table)
-        self.entry_panel.setGeometry(0, table + gap, wide, high)
+        self.entry_panel.setVisible(not self.is_searching)
+        self.entry_panel.setGeometry(0, table + gap, wide, max(0, high))
         self.number_pad.setGeometry(self.width() - pad, 0, 0 if texts else pad, self.height())
         self.letter_pad.setGeometry(0, self.height() - low + gap, wide, max(0, low - gap))

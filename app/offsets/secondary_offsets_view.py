@@ -22,7 +22,7 @@ from app.screen import page_table
 from app.screen.page_base import PageHost
 from app.screen.panel import RedrawingAttribute
 from app.screen.screen_theme import ALIGN_RIGHT, ScreenTheme, ThemedPainter
-from app.screen.table_panel import LIST_KEYS, RowPanel
+from app.screen.table_panel import RowPanel
 from app.screen.window_layout import FINGERTIP_PX
 from core.executor.snapshot import Snapshot
 from core.message import join_messages
@@ -214,12 +214,9 @@ class SecondaryOffsetsPage(OffsetPage):
             return True
         return super().handle_escape()
 
-    def handle_key(self, key: str) -> bool:
-        """Scroll the table with the page, Home and End keys if no value is being entered."""
-        if key in LIST_KEYS and self.content_panel.isVisible() and not self.model.offset_number:
-            self.content_panel.scroll_by(self.content_panel.find_scroll_rows(key))
-            return True
-        return super().handle_key(key)
+    def find_list(self) -> RowPanel | None:
+        """Return the history or the table, unless a value is being entered."""
+        return None if self.model.offset_number and not self.history_list.isVisible() else super().find_list()
 
     def _lay_out(self) -> None:
         """Arrange the parts. In a low window, enlarged offsets also cover the entry line."""
@@ -229,7 +226,7 @@ class SecondaryOffsetsPage(OffsetPage):
         is_covered = is_low and bool(panel.first_enlarged_number)
         if is_covered:
             panel.setGeometry(0, 0, panel.width(), self.height())
-        self.entry_panel.setVisible(not is_covered)
+        self.entry_panel.setVisible(not is_covered and not self.is_searching)
 
     def try_leave_page(self) -> bool:
         """Leave the enlarged view, discard unfinished entries, and allow the page to close."""

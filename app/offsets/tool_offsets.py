@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from app.desk.arithmetic import InvalidEntryError
 from app.desk.desk import Desk
-from app.desk.pages.table_content import ROW_STEPS
 from app.desk.translation import tr
 from app.offsets.change_rules import CORRECTION_FIELDS
 from app.offsets.offset_changes import describe_effective_time
@@ -20,7 +19,6 @@ from core.store.store_rows import OFFSET_NUMBERS, OffsetKind, replace_fields
 from core.tool_edges import EDGE_NUMBERS, format_edge_suffix, get_tool_number, make_edge_row_number
 
 TABLE_COLUMNS = ("x", "z", "nose_radius", "quadrant", "wear_x", "wear_z", "master", "remark")
-ROWS_PER_PAGE = 5  # Rows that fit on the smallest screen, each as high as a fingertip.
 CUTTING_EDGE_KEY = "D"  # Adds a cutting edge to the tool, in a language with cutting edges.
 _CURSOR_MOVES = {"Up": (-1, 0), "Down": (1, 0), "Left": (0, -1), "Right": (0, 1), "Tab": (0, 1)}
 
@@ -39,7 +37,6 @@ class ToolOffsetTable(ToolFieldTable):
         self.page_key = CUTTING_EDGE_KEY if desk.machine.program_language == "sinumerik" else ""
         self.tool_fields = ToolFieldEditor(self.offset_history)
         self.column_index = 0
-        self.page_rows = ROWS_PER_PAGE  # Rows that fit now, by which Page up and Page down move.
         self.is_relative = False  # X and Z are shown relative to the master.
         self.new_edge = 0  # A new cutting edge whose values are not entered yet.
 
@@ -168,17 +165,17 @@ class ToolOffsetTable(ToolFieldTable):
 
         The arrow keys move the cursor, and Enter saves the entered value.
         """
-        if key in {"Page up", "Page down"}:
-            self._step(self.page_rows if key == "Page down" else -self.page_rows, 0)
-        elif key in {"Home", "End"}:
-            self._step(ROW_STEPS[key], 0)
-        elif key in _CURSOR_MOVES:
+        if key in _CURSOR_MOVES:
             self._step(*_CURSOR_MOVES[key])
         elif self.page_key and key.upper() == self.page_key and not self.is_text_open:
             self.add_cutting_edge()
         else:
             return super().handle_entry_key(key)
         return True
+
+    def select_row(self, row: int) -> None:
+        """Move the cursor to a row by its index, without a change of the column."""
+        self._step(row - self.row_index, 0)
 
     def select_cell(self, number: int, column: int) -> None:
         """Select a touched cell.

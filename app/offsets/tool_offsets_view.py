@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 from PySide6.QtCore import QRectF
@@ -45,12 +45,14 @@ class ToolOffsetPanel(RowPanel):
     """The table of the tool offsets, which is redrawn when the model changes."""
 
     scroll_step = 1
+    is_searchable = True
     _shown: RedrawingAttribute[object] = RedrawingAttribute(())
 
     def __init__(self, theme: ScreenTheme, model: ToolOffsetTable, parent: QWidget) -> None:
         super().__init__(theme, parent)
         self._model = model
-        self.on_select: Callable[[int, int], None] = model.select_cell
+        self.on_cell_touched: Callable[[int, int], None] = model.select_cell
+        self.on_select = model.select_row
         self._heads: dict[str, str] = {}  # Column heads by field.
 
     def update_rows(self) -> None:
@@ -63,10 +65,23 @@ class ToolOffsetPanel(RowPanel):
             tuple(change.number for change in model.offset_history.last_changes),
         )
 
+    def list_row_texts(self) -> Sequence[str]:
+        """Return the number and the values of each row as they are displayed."""
+        model = self._model
+        return [
+            f"T{format_edge_suffix(number)} "
+            + " ".join(model.format_cell(number, name) for name in TABLE_COLUMNS)
+            for number in model.row_numbers
+        ]
+
+    @property
+    def selected_row(self) -> int:
+        """Return the index of the cursor's row."""
+        return self._model.row_index
+
     def scroll_by(self, rows: int) -> None:
         """Move the cursor, and scroll so that it remains visible."""
-        key = ("Up", "Down") if abs(rows) == 1 else ("Page up", "Page down")
-        self._model.handle_key(key[rows > 0])
+        self._model.select_row(self._model.row_index + rows)
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the column heads and the visible rows of the tool offsets.
@@ -88,15 +103,15 @@ class ToolOffsetPanel(RowPanel):
         room = self.inside().adjusted(-0.7 * u, -0.2 * u, 0.7 * u, 0.5 * u)
         body = room.adjusted(0, HEADING_HEIGHT * u, 0, 0)
         count = len(model.row_numbers)
-        model.page_rows = min(
+        fits = min(
             count,
             self.count_fitting_rows(body, self.theme.find_row_height(7.0, 9.0, is_touchable=True), count),
         )
-        body = self.draw_scroll_keys(painter, body, model.page_rows, count, model.row_index)
+        body = self.draw_scroll_keys(painter, body, fits, count, model.row_index)
         head = QRectF(body.x(), room.y(), body.width(), HEADING_HEIGHT * u)
         columns = self._make_columns(head)
         self._head(painter, head, columns)
-        high = body.height() / model.page_rows
+        high = body.height() / fits
         for place, row in self.find_row_boxes(body, high):
             self._row(painter, row, model.row_numbers[place], columns)
 
@@ -139,7 +154,7 @@ class ToolOffsetPanel(RowPanel):
             words = f"{name} {self._heads[field]}"
             self.add_target(
                 spot,
-                partial(self.on_select, number, at),
+                partial(self.on_cell_touched, number, at),
                 words,
                 kind="row",
                 is_on=here and at == model.column_index,

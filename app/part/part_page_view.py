@@ -45,6 +45,7 @@ class PartPage(ListPage):
     def __init__(self, host: PageHost, model: PartPageModel, parent: QWidget) -> None:
         super().__init__(host, model, parent)
         self.table_panel = TablePanel(self.theme, model.handle_row_touch, self)
+        self.table_panel.on_select = model.select_row
         self.path_view = PartPathView(self.theme, self, part_player=make_part_player(host.desk))
         self.number_pad = NumberPad(self.theme, self.handle_touched_key, page_key=None, parent=self)
         self.letter_pad = LetterPad(self.theme, self.handle_touched_key, self)
@@ -84,6 +85,10 @@ class PartPage(ListPage):
             **path.make_view_key_actions(),
             **path.make_playback_key_actions(),
         }
+
+    def find_list(self) -> TablePanel | None:
+        """Return the table, unless a reason or a file name is being typed."""
+        return None if self.model.is_entering_text else self.table_panel
 
     def has_text_field(self) -> bool:
         """Return whether a reason, a file name or a value of the stock can be typed."""

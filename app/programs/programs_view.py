@@ -97,6 +97,9 @@ class PreviewPlaneView(WorkingPlaneView):
     title = "PREVIEW"
 
 
+SEARCH_HINT = "TYPE PART OF A NAME: THIS LIST NEEDS NO CTRL+F"
+
+
 class ProgramsPage(ListPage):
     """The PROGRAMS page, which displays its model and passes key presses to it."""
 
@@ -113,6 +116,8 @@ class ProgramsPage(ListPage):
         self.letter_pad = LetterPad(self.theme, self.handle_touched_key, self, WIDE_NAME_KEYS)
         self._with_letters = False
         self.table_panel.on_entry_touched = self._turn_letters
+        self.table_panel.on_select = self._select_row
+        self.table_panel.search_hint = SEARCH_HINT
 
     def find_disabled_keys(self) -> frozenset[str]:
         """Return the keys that cannot be used now, such as F3 while the editor cannot be opened."""
@@ -183,6 +188,14 @@ class ProgramsPage(ListPage):
             self.handle_key("Enter")
         else:
             model.select_row(row)
+
+    def _select_row(self, row: int) -> None:
+        transfer = self.model.program_transfer
+        (transfer.select_entry if transfer.is_open else self.model.select_row)(row)
+
+    def find_list(self) -> TablePanel | None:
+        """Return the list of programs or the folder chooser, unless a new name is being typed."""
+        return None if self.model.name_question else self.table_panel
 
     def handle_key(self, key: str) -> bool:
         """Handle a key.

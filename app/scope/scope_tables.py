@@ -191,13 +191,17 @@ class ScopeTables:
             self.scope_model.desk.clear_prompt_line()
             return True
         if key in ROW_STEPS and self.row_count:
-            self.input_field.text = ""
-            self._mark(max(0, min(self.row_count - 1, self.selected_row + ROW_STEPS[key])))
+            self.select_row(max(0, min(self.row_count - 1, self.selected_row + ROW_STEPS[key])))
             return True
         if key == "Enter" and self.row_count:
             self.execute_row()
             return True
         return False
+
+    def select_row(self, row: int) -> None:
+        """Select a row, and discard a value that was typed for another row."""
+        self.input_field.text = ""
+        self._mark(row)
 
     def _mark(self, row: int) -> None:
         self.selected_rows[self.scope_model.side_panel] = row

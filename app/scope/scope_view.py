@@ -183,6 +183,7 @@ class ScopePage(ListPage):
         self.curve_area = CurveArea(self.theme, scope, self)
         self.readings = ScopeReadings(self.theme, scope, self._marked, self)
         self.table_panel = TablePanel(self.theme, self.scope_tables.handle_row_touch, self)
+        self.table_panel.on_select = self.scope_tables.select_row
         self.number_pad = NumberPad(self.theme, self.handle_touched_key, page_key=None, parent=self)
         self._laid: object = None
         self._drawn: object = None
@@ -266,6 +267,10 @@ class ScopePage(ListPage):
         return self._undrawn or (
             self.scope_model.is_live and self.scope_model.picture.constant_values is None
         )
+
+    def find_list(self) -> TablePanel | None:
+        """Return the table of curves, triggers or recordings while it is open."""
+        return None if self.table_panel.isHidden() else self.table_panel
 
     def has_text_field(self) -> bool:
         """Return whether the operator has to enter a trigger level or a line number."""

@@ -164,8 +164,22 @@ def draw_entry_text(
         painter.fill_rect(QRectF(area.x(), area.center().y() - high / 2, wide, high), "lit")
     painter.draw_text_line(area, text, height_units, "on_lit" if selected else "text", raw=True, margin=1.0)
     if has_cursor and painter.theme.is_caret_shown:
-        at = area.x() + wide + 0.3 * u
-        painter.fill_rect(QRectF(at, area.center().y() - high / 2, 0.3 * u, high), "accent")
+        _draw_caret(painter, area, wide, high)
+
+
+def draw_text_with_caret(painter: ThemedPainter, area: QRectF, text: str, height_units: float) -> None:
+    """Draw the text of an input field that always has the keyboard focus while it is visible."""
+    u = painter.theme.unit_px
+    painter.setFont(painter.theme.fit_font(text, height_units, area.width() - u, is_bold=True))
+    wide = min(QFontMetricsF(painter.font()).horizontalAdvance(text), area.width() - u)
+    painter.draw_text_line(area, text, height_units, "text", raw=True, margin=1.0)
+    _draw_caret(painter, area, wide, (height_units + 0.2) * u)
+
+
+def _draw_caret(painter: ThemedPainter, area: QRectF, left_px: float, height_px: float) -> None:
+    u = painter.theme.unit_px
+    at = area.x() + left_px + 0.3 * u
+    painter.fill_rect(QRectF(at, area.center().y() - height_px / 2, 0.3 * u, height_px), "accent")
 
 
 def draw_entry_box(painter: ThemedPainter, box: QRectF, text: str, size: float = 2.8) -> None:

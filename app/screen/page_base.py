@@ -27,6 +27,7 @@ first opened. A page may override the following members:
   Down``, ``Page up``, ``Page down``. True means that the page has handled the key. A standard
   widget with the focus handles its keys itself.
 - ``accepts_key(key)``: whether this character is text input. Lamps then do not show it as their key.
+- ``find_list()``: the list that the page keys, Home, End and the search use.
 - ``has_text_field()``: whether an input field has the keyboard focus. Only then is a caret drawn, and
   every character belongs to the field.
 - ``needs_height()``: whether large touch targets are shown, which a low window must have room for.
@@ -66,6 +67,7 @@ from app.desk.pages.editor_panel import EditorPanelModel
 from app.desk.pages.guide_text import GuideBlock
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
+from app.screen.lists.searchable_list import SearchableList
 from app.screen.screen_theme import ScreenTheme
 from core.executor.snapshot import Snapshot
 
@@ -103,6 +105,7 @@ class Page(QWidget):
     NAME: ClassVar[str]
     LABELS: ClassVar[tuple[str, ...]] = ("MENU", "", "", "", "", "", "ALARMS", "", "", "")
     CAN_START_CYCLES: ClassVar[bool] = False
+    is_searching = False  # The search field is open. The page leaves the room of its entries to the list.
 
     def __init__(self, host: PageHost, parent: QWidget) -> None:
         super().__init__(parent)
@@ -188,6 +191,10 @@ class Page(QWidget):
     def has_text_field(self) -> bool:
         """Return whether an input field of the page has the keyboard focus."""
         return False
+
+    def find_list(self) -> SearchableList | None:
+        """Return the list that the page keys, Home, End and the search use, or None without a list."""
+        return None
 
     def continue_preparation(self) -> bool:
         """Prepare one slice of the slow parts before the page is shown.

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from bisect import bisect_left
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Protocol
 
@@ -10,11 +11,13 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QPolygonF, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
-from app.desk.pages.table_content import ROW_STEPS, FunctionKey, TableContent, TableRow
+from app.desk.pages.table_content import FunctionKey, TableContent, TableRow
+from app.desk.translation import tr
 from app.screen import page_table
 from app.screen.entry_panel import draw_entry_box
+from app.screen.lists.searchable_list import SearchableList
 from app.screen.page_base import ModelPage, PageHost, PageModel
-from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.panel import RedrawingAttribute
 from app.screen.screen_theme import ALIGN_LEFT, ALIGN_RIGHT, ScreenTheme, ThemedPainter
 from app.screen.window_layout import FINGERTIP_PX
 
@@ -22,11 +25,7 @@ SCROLL_KEY_SIZE = 5.0  # Units: size of the two scroll keys, at least a fingerti
 NARROW_WIDTH = 50.0  # Units: a narrower list uses its full width for rows.
 
 
-LIST_KEYS = frozenset({"Page up", "Page down", "Home", "End"})
-"""Keys that scroll every list."""
-
-
-class RowPanel(Panel):
+class RowPanel(SearchableList):
     """List of rows of equal height.
 
     A subclass gets the rectangle for its rows from ``draw_scroll_keys``, and the box of each visible row
@@ -43,7 +42,6 @@ class RowPanel(Panel):
     def __init__(self, theme: ScreenTheme, parent: QWidget) -> None:
         super().__init__(theme, parent)
         self.first_row = 0  # Index of the first visible row.
-        self.rows = 1  # Number of rows that fit.
         self._count = 0
         # Selection and number of visible rows when the list last followed the selection.
         self._followed = (-1, 0)
@@ -60,11 +58,6 @@ class RowPanel(Panel):
         self.first_row = self._limited(self.first_row + rows)
         self.update()
 
-    def find_scroll_rows(self, key: str) -> int:
-        """Return the number of rows by which a key of ``LIST_KEYS`` scrolls. Negative is up."""
-        pages = {"Page up": -self.rows, "Page down": self.rows}
-        return pages.get(key, ROW_STEPS[key])
-
     def _limited(self, top: int) -> int:
         return max(0, min(top, self._count - self.rows))
 
@@ -74,8 +67,11 @@ class RowPanel(Panel):
         """Draw scroll keys if ``row_count`` rows do not fit, and return the rectangle for the rows.
 
         ``visible_count`` is the number of rows that fit. ``selected_row`` is the index of the selected row,
-        or -1 if no row is selected.
+        or -1 if no row is selected. During a search, only the found rows count.
         """
+        if (found := self.found_rows) is not None:
+            row_count = bisect_left(found, row_count)  # A row can disappear before the next search.
+            selected_row = found.index(selected_row) if selected_row in found else -1
         self.rows, self._count = visible_count, row_count
         if self.is_centered:
             self.first_row = selected_row - visible_count // 2
@@ -98,7 +94,7 @@ class RowPanel(Panel):
         """
         for number in range(self.first_row, min(self._count, self.first_row + self.rows)):
             yield (
-                number,
+                number if self.found_rows is None else self.found_rows[number],
                 QRectF(
                     area.x(),
                     area.y() + (number - self.first_row) * row_height_px,
@@ -137,16 +133,22 @@ class RowPanel(Panel):
         for keys above each other, they are side by side.
         """
         gap, (wide, high) = 0.6 * self.theme.unit_px, self.scroll_key_size
-        foot = self.is_narrow(area.width())
-        is_side_by_side = foot or area.height() < 2 * high + gap
-        strip = QRectF(area.right() - wide - is_side_by_side * (wide + gap), area.y(), wide, area.height())
+        foot, search, count = self.is_narrow(area.width()), self.on_search_key, 3 if self.on_search_key else 2
+        is_side_by_side = foot or area.height() < count * (high + gap) - gap
+        strip_width = count * (wide + gap) - gap if is_side_by_side else wide
+        strip = QRectF(area.right() - strip_width, area.y(), wide, area.height())
         if foot:
-            wide = (area.width() - gap) / 2
+            wide = (area.width() + gap) / count - gap
             strip = QRectF(area.x(), area.bottom() - high, wide, high)
-        right, down = (wide + gap, 0.0) if is_side_by_side else (0.0, (strip.height() + gap) / 2)
+        scroll_height = strip.height() - (0.0 if search is None else high + gap)
+        right, down = (wide + gap, 0.0) if is_side_by_side else (0.0, (scroll_height + gap) / 2)
         for number, sign in enumerate((-1, 1)):
             box = QRectF(strip.x(), strip.y(), wide, strip.height() if is_side_by_side else down - gap)
             self._scroll_key(painter, box.translated(number * right, number * down), sign)
+        if search is not None:
+            box = strip.translated(2 * right, 0)
+            box.setTop(box.top() if is_side_by_side else box.bottom() - high)
+            self._draw_search_key(painter, box, search)
         left = area.adjusted(0, 0, -2 * gap, -high - gap)
         if not foot:
             left = area.adjusted(0, 0, strip.x() - 2 * gap - area.right(), 0)
@@ -163,6 +165,16 @@ class RowPanel(Panel):
         painter.drawPolygon(QPolygonF([tip, QPointF(at.x() - size, foot), QPointF(at.x() + size, foot)]))
         name = "PREVIOUS ROWS" if sign < 0 else "NEXT ROWS"
         self.add_target(box, partial(self.scroll_by, sign * self.rows), name)
+
+    def _draw_search_key(self, painter: ThemedPainter, box: QRectF, search: Callable[[], None]) -> None:
+        """Draw a magnifying glass on the key that opens the search."""
+        at, size = box.center(), 1.0 * self.theme.unit_px
+        painter.fill_rect(box, "key")
+        painter.setPen(self.theme.make_pen("accent", 0.5))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawEllipse(at - QPointF(0.4 * size, 0.4 * size), size, size)
+        painter.drawLine(at + QPointF(0.3 * size, 0.3 * size), at + QPointF(1.5 * size, 1.5 * size))
+        self.add_target(box, search, "SEARCH")
 
     def _scroll_bar(self, painter: ThemedPainter, track: QRectF) -> None:
         painter.fill_rect(track, "key")
@@ -183,12 +195,26 @@ class TablePanel(RowPanel):
     A touch selects a row. The selected row remains visible.
     """
 
+    is_searchable = True
     table = RedrawingAttribute(TableContent("", (), (), ()))
 
     def __init__(self, theme: ScreenTheme, select_cell: Callable[[int], None], parent: QWidget) -> None:
         super().__init__(theme, parent)
         self._choose = select_cell
         self.on_entry_touched: Callable[[], None] | None = None  # Called for a touch on the entry line.
+
+    def list_row_texts(self) -> Sequence[str]:
+        """Return the cells of each row as one text, in the language of the screen."""
+        raw = self.table.untranslated_columns
+        return [
+            "  ".join(cell if at in raw else tr(cell) for at, cell in enumerate(row.cells))
+            for row in self.table.rows
+        ]
+
+    @property
+    def selected_row(self) -> int:
+        """Return the index of the selected row, or -1 if no row is selected."""
+        return self.table.marked
 
     def show_table(self, table: TableContent) -> None:
         """Show a table, and redraw it if it has changed.

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
-from app.desk.pages.table_content import FunctionKey, InputField, TableContent, TableRow, following
+from app.desk.pages.table_content import FunctionKey, TableContent, TableRow, following
 from app.desk.persistence import Persistence
 from app.desk.status.alarm_log import parse_alarm
 from app.desk.status.formats import format_local_time
 from app.desk.status.machine_file_changes import MachineFileChanges
 from app.desk.status.machine_status import StatusTone
 from app.desk.status.prompt_line import translate_cause
-from app.desk.translation import tr
+from app.desk.translation import mark_untranslated, tr
 from app.special.special_functions import SpecialFunction
 from core.access.access_table import ProtectedChange
 from core.executor.snapshot import MachineState, Snapshot
-from core.message import Message
+from core.message import Message, join_messages
 from core.store.store_rows import EventRow
 
 MAX_EVENTS = 500
@@ -33,7 +33,7 @@ EVENT_FILTERS: Mapping[str, frozenset[str]] = {
 class EventLogFunction(SpecialFunction):
     """Special function for the event log, with the newest event first.
 
-    F4 searches, and F5 filters. While a search is active, all letters are added to the search text.
+    F5 filters the events. The search also finds events that are too old for the list.
     """
 
     name = "EVENT LOG"
@@ -42,8 +42,7 @@ class EventLogFunction(SpecialFunction):
     def __init__(self, desk: Desk, persistence: Persistence, worker: LatestRequestWorker) -> None:
         super().__init__(desk)
         self.persistence, self.worker = persistence, worker
-        self.search_field = InputField(words=True)
-        self.is_searching = False
+        self.search_text = ""
         self.filter_name = "ALL"
         self.found_events: tuple[EventRow, ...] = ()
         self.error_text = ""
@@ -71,14 +70,13 @@ class EventLogFunction(SpecialFunction):
             if self.row_count < MAX_EVENTS
             else Message("THE LAST {value} EVENTS", value=MAX_EVENTS)
         )
+        title = Message("EVENT LOG  ·  {filter}  ·  {value}", filter=self.filter_name, value=found)
         return TableContent(
-            Message("EVENT LOG  ·  {filter}  ·  {value}", filter=self.filter_name, value=found),
+            join_messages("  ·  ", filter(None, (title, mark_untranslated(self.search_text)))),
             ("WHEN", "KIND", "DESCRIPTION", "LINE"),
             (0.25, 0.13, 0.54, 0.08),
             self._rows,
             self.marked,
-            entry_prompt="SEARCH FOR?" if self.is_searching or self.search_field.text else "",
-            text=self.search_field.text,
             notes=(self.error_text,) if self.error_text else (),
             untranslated_columns=frozenset({0}),
             numeric_columns=frozenset({3}),
@@ -89,7 +87,7 @@ class EventLogFunction(SpecialFunction):
 
         The result arrives in a later frame. Only the result of the latest query is used.
         """
-        search, kinds = self.search_field.text.strip(), EVENT_FILTERS[self.filter_name]
+        search, kinds = self.search_text, EVENT_FILTERS[self.filter_name]
         self.worker.request_work(
             lambda _: tuple(self.persistence.events(search, kinds, MAX_EVENTS)), self._found, self._failed
         )
@@ -105,57 +103,39 @@ class EventLogFunction(SpecialFunction):
         self.error_text = why
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function keys for search and filter."""
-        return {"F4": FunctionKey("SEARCH", self._search), "F5": FunctionKey("FILTER", self._filter)}
-
-    def _search(self) -> None:
-        self.is_searching = True
-        self.desk.clear_prompt_line()
+        """Return the function key for the filter."""
+        return {"F5": FunctionKey("FILTER", self._filter)}
 
     def _filter(self) -> None:
         self.filter_name = following(EVENT_FILTERS, self.filter_name)
         self.marked = 0
         self.query_events()
 
-    def accepts_key(self, key: str) -> bool:
-        """Return whether a character can be entered in the search field."""
-        return self.is_searching and self.search_field.accepts_key(key)
+    def find_row_search(self) -> Callable[[str], None]:
+        """Return the search in all events of the store."""
+        return self.search_events
 
-    def handle_key(self, key: str) -> bool:
-        """Handle a key.
-
-        Letters edit the search text, and arrow keys scroll the log.
-        """
-        if self.move_selection(key):
-            return True
-        if not self.is_searching:
-            return False
-        if key == "Enter":
-            self.is_searching = False
-        elif self.search_field.handle_key(key):
-            self.marked = 0
-        else:
-            return False
+    def search_events(self, text: str) -> None:
+        """List only the events that contain a text, or all events if the text is empty."""
+        self.search_text = text
         self.query_events()
-        return True
 
     def prompt_text(self) -> str:
         """Return the prompt for the keys that are available now."""
-        if self.is_searching:
-            return "TYPE THE SEARCH TEXT   ENTER: ACCEPT   ESC: CLEAR"
-        return "F4: SEARCH   F5: FILTER   PAGE UP/DOWN: SCROLL   ESC: BACK"
+        if self.search_text:
+            return tr("CTRL+F: SEARCH   F5: FILTER   ESC: SHOW ALL EVENTS")
+        return tr("CTRL+F: SEARCH   F5: FILTER   PAGE UP/DOWN: SCROLL   ESC: BACK")
 
     def handle_escape(self) -> bool:
-        """Clear the search, or return False if no search is active."""
-        open_before = self.is_searching or bool(self.search_field.text)
-        if open_before:
-            self.is_searching, self.search_field.text, self.marked = False, "", 0
-            self.query_events()
-        return open_before
+        """Show all events, or return False if no search limits the list."""
+        was_limited = bool(self.search_text)
+        if was_limited:
+            self.search_events("")
+        return was_limited
 
     def on_close(self) -> None:
         """Clear the search when the function closes."""
-        self.is_searching, self.search_field.text = False, ""
+        self.search_text = ""
 
 
 def make_event_row(event: EventRow) -> TableRow:

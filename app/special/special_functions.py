@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -86,6 +86,15 @@ class SpecialFunction(ABC):
             self.marked = row
         else:
             self.activate_selected_row()
+
+    def select_row(self, row: int) -> None:
+        """Select a row without executing its action."""
+        self.desk.clear_prompt_line()
+        self.marked = row
+
+    def find_row_search(self) -> Callable[[str], None] | None:
+        """Return the function that searches for a text in more rows than the table has, or None."""
+        return None
 
     @property
     def row_count(self) -> int:

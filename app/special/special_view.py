@@ -39,6 +39,7 @@ class FunctionListPanel(RowPanel):
 
     title = "SPECIAL FUNCTIONS"
     scroll_step = 1
+    is_searchable = True
     mark: RedrawingAttribute[object] = RedrawingAttribute(None)  # present position; a change redraws the list
 
     def __init__(
@@ -55,6 +56,17 @@ class FunctionListPanel(RowPanel):
     def _high(self) -> float:
         """Return the row height in pixels, which is at least one fingertip plus the gap between rows."""
         return max(ROW * self.theme.unit_px, FINGERTIP_PX + GAP * self.theme.unit_px)
+
+    def list_row_texts(self) -> Sequence[str]:
+        """Return the number, name and description of each function."""
+        return [
+            f"{number} {tr(each.name)} {tr(each.use)}" for number, each in enumerate(self.model.functions, 1)
+        ]
+
+    @property
+    def selected_row(self) -> int:
+        """Return the index of the displayed function."""
+        return self.model.at
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the name and description of each visible function, and make each row a touch target."""
@@ -96,6 +108,7 @@ class SpecialFunctionsPage(ListPage):
     def __init__(self, host: PageHost, model: SpecialFunctionsModel, parent: QWidget) -> None:
         super().__init__(host, model, parent)
         self.function_list = FunctionListPanel(self.theme, model, self._enter, self)
+        self.function_list.on_select = model.show_function
         self.table_panel = TablePanel(self.theme, self._chosen, self)
         self.number_pad = NumberPad(self.theme, self.handle_touched_key, page_key=None, parent=self)
         self.letter_pad = LetterPad(self.theme, self.handle_touched_key, self)
@@ -146,6 +159,12 @@ class SpecialFunctionsPage(ListPage):
         keys = self.model.shown_function.make_function_keys()
         return {name: partial(self._do, name) for name in keys}
 
+    def find_list(self) -> RowPanel | None:
+        """Return the table of an open function or the list of functions, unless a text is being typed."""
+        if not self.model.inside:
+            return self.function_list
+        return None if self.model.shown_function.accepts_key("a") else self.table_panel
+
     def has_text_field(self) -> bool:
         """Return whether an open function has a text entry."""
         return self.model.inside and self.model.shown_function.accepts_key("1")
@@ -170,8 +189,11 @@ class SpecialFunctionsPage(ListPage):
         sheet = shown.make_table(snapshot)
         self.function_list.mark = (self.model.at, self.model.inside)
         self.table_panel.show_table(sheet)
-        letters = bool(sheet.entry_prompt) and shown.accepts_key("a")
-        has_number_pad = bool(sheet.entry_prompt) and shown.accepts_key("1") and not letters
+        self.table_panel.on_select = shown.select_row if shown.row_count else None
+        self.table_panel.on_search = shown.find_row_search()
+        is_asking = bool(sheet.entry_prompt) and not self.is_searching
+        letters = is_asking and shown.accepts_key("a")
+        has_number_pad = is_asking and shown.accepts_key("1") and not letters
         if (has_number_pad, letters) != (not self.number_pad.isHidden(), not self.letter_pad.isHidden()):
             self.number_pad.setVisible(has_number_pad)
             self.letter_pad.setVisible(letters)

@@ -14274,6 +14274,11 @@
       <translation>VISTA PREVIA</translation>
     </message>
     <message>
+      <location filename="app/programs/programs_view.py" />
+      <source>TYPE PART OF A NAME: THIS LIST NEEDS NO CTRL+F</source>
+      <translation>ESCRIBA PARTE DE UN NOMBRE: ESTA LISTA NO NECESITA CTRL+F</translation>
+    </message>
+    <message>
       <location filename="app/programs/removable_media.py" />
       <source>LOCATIONS</source>
       <translation>UBICACIONES</translation>
@@ -14944,6 +14949,31 @@
       <translation>ESPACIO</translation>
     </message>
     <message>
+      <location filename="app/screen/lists/list_search.py" />
+      <source>AXES ARE MOVING. WAIT UNTIL THEY STOP BEFORE SEARCHING</source>
+      <translation>LOS EJES SE MUEVEN. ESPERE A QUE PAREN ANTES DE BUSCAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/lists/list_search.py" />
+      <source>NO LIST TO SEARCH HERE</source>
+      <translation>AQUÍ NO HAY LISTA EN LA QUE BUSCAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/lists/list_search.py" />
+      <source>NO ROW CONTAINS THIS TEXT   BACKSPACE: EDIT   ESC: CLOSE</source>
+      <translation>NINGUNA FILA CONTIENE ESTE TEXTO   RETROCESO: EDITAR   ESC: CERRAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/lists/list_search.py" />
+      <source>TYPE THE TEXT TO FIND   ARROWS: ROW   ENTER: KEEP ROW   ESC: CLOSE</source>
+      <translation>ESCRIBA EL TEXTO   FLECHAS: FILA   ENTER: CONSERVAR FILA   ESC: CERRAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/lists/list_search.py" />
+      <source>TYPE THE TEXT TO FIND   PAUSE: FEED HOLD   ENTER: KEEP ROW   ESC: CLOSE</source>
+      <translation>ESCRIBA EL TEXTO   PAUSA: RETENCIÓN DE AVANCE   ENTER: CONSERVAR   ESC: CERRAR</translation>
+    </message>
+    <message>
       <location filename="app/screen/main_menu.py" />
       <source>PRESS A FUNCTION KEY OR TAP A PAGE. ESC: AUTOMATIC</source>
       <translation>PULSE UNA TECLA DE FUNCIÓN O TOQUE UNA PÁGINA. ESC: AUTOMÁTICO</translation>
@@ -15122,6 +15152,11 @@
       <location filename="app/screen/table_panel.py" />
       <source>PREVIOUS ROWS</source>
       <translation>FILAS ANTERIORES</translation>
+    </message>
+    <message>
+      <location filename="app/screen/table_panel.py" />
+      <source>SEARCH</source>
+      <translation>BUSCAR</translation>
     </message>
     <message>
       <location filename="app/screen/window/alarm_panels.py" />
@@ -15312,6 +15347,16 @@
       <location filename="app/screen/window/run_row.py" />
       <source>STOP {number}: {first}</source>
       <translation>PARO {number}: {first}</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/search_bar.py" />
+      <source>KEEP ROW</source>
+      <translation>CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/search_bar.py" />
+      <source>NO ROW CONTAINS THIS TEXT</source>
+      <translation>NINGUNA FILA CONTIENE ESTE TEXTO</translation>
     </message>
     <message>
       <location filename="app/screen/window/station_dock.py" />
@@ -15742,11 +15787,6 @@
       <location filename="app/searchto/searchto_view.py" />
       <source>RETRACT PATH</source>
       <translation>TRAYECTORIA DE RETIRADA</translation>
-    </message>
-    <message>
-      <location filename="app/searchto/searchto_view.py" />
-      <source>SEARCH</source>
-      <translation>BUSCAR</translation>
     </message>
     <message>
       <location filename="app/searchto/searchto_view.py" />
@@ -16340,6 +16380,16 @@
     </message>
     <message>
       <location filename="app/special/machine_records.py" />
+      <source>CTRL+F: SEARCH   F5: FILTER   ESC: SHOW ALL EVENTS</source>
+      <translation>CTRL+F: BUSCAR   F5: FILTRO   ESC: MOSTRAR TODOS LOS EVENTOS</translation>
+    </message>
+    <message>
+      <location filename="app/special/machine_records.py" />
+      <source>CTRL+F: SEARCH   F5: FILTER   PAGE UP/DOWN: SCROLL   ESC: BACK</source>
+      <translation>CTRL+F: BUSCAR   F5: FILTRO   RE PÁG/AV PÁG: DESPLAZAR   ESC: VOLVER</translation>
+    </message>
+    <message>
+      <location filename="app/special/machine_records.py" />
       <source>EVENT LOG</source>
       <translation>BITÁCORA</translation>
     </message>
@@ -16347,11 +16397,6 @@
       <location filename="app/special/machine_records.py" />
       <source>EVENT LOG  ·  {filter}  ·  {value}</source>
       <translation>BITÁCORA  ·  {filter}  ·  {value}</translation>
-    </message>
-    <message>
-      <location filename="app/special/machine_records.py" />
-      <source>F4: SEARCH   F5: FILTER   PAGE UP/DOWN: SCROLL   ESC: BACK</source>
-      <translation>F4: BUSCAR   F5: FILTRO   RE PÁG/AV PÁG: DESPLAZAR   ESC: VOLVER</translation>
     </message>
     <message>
       <location filename="app/special/machine_records.py" />
@@ -16395,11 +16440,6 @@
     </message>
     <message>
       <location filename="app/special/machine_records.py" />
-      <source>SEARCH FOR?</source>
-      <translation>¿BUSCAR?</translation>
-    </message>
-    <message>
-      <location filename="app/special/machine_records.py" />
       <source>THE LAST {value} EVENTS</source>
       <translation>LOS ÚLTIMOS {value} EVENTOS</translation>
     </message>
@@ -16407,11 +16447,6 @@
       <location filename="app/special/machine_records.py" />
       <source>TURN DRIVES OFF BEFORE ACCEPTING THE CHANGED MACHINE FILE</source>
       <translation>APAGUE LOS SERVOS ANTES DE ACEPTAR EL ARCHIVO DE MÁQUINA</translation>
-    </message>
-    <message>
-      <location filename="app/special/machine_records.py" />
-      <source>TYPE THE SEARCH TEXT   ENTER: ACCEPT   ESC: CLEAR</source>
-      <translation>ESCRIBA EL TEXTO DE BÚSQUEDA   ENTER: ACEPTAR   ESC: BORRAR</translation>
     </message>
     <message>
       <location filename="app/special/machine_records.py" />

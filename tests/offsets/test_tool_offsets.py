@@ -164,7 +164,7 @@ def test_cursor_does_not_leave_unfinished_entry(room: Room) -> None:
     assert room.desk.prompt_notice == text("offsets.set-it")
     assert grid.change_description == "−0.50000  →  +1.00000"
     assert grid.handle_escape()
-    grid.handle_key("Page down")
+    grid.select_row(5)
     assert grid.tool_number == 6
     assert not grid.handle_escape()
 

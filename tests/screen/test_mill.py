@@ -17,6 +17,8 @@ from app.compose.program_proving import get_samples_folder
 from app.compose.stored_offsets import read_offsets_file
 from app.editor.editor_view import EditorPage
 from app.jog.jog_view import JogPage
+from app.offsets.cell_table_view import MillToolsPage
+from app.screen import page_table
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme
 from app.screen.window.main_window import MainWindow
@@ -323,3 +325,21 @@ def test_tilted_tool_retracts_along_its_own_axis(qapp: QApplication, tmp_path: P
         assert not page.model.tilted_jog.is_on
     finally:
         mill.close()
+
+
+@pytest.mark.parametrize("name", ["name", "stops"])
+def test_home_in_the_first_row_does_not_open_or_change_its_cell(mill: Mill, name: str) -> None:
+    """A second selection of a cell by touch opens its text or turns its flag over."""
+    mill.goes_on(lambda s: s.state is MachineState.DISABLED)
+    frame = mill.window.frame
+    assert frame is not None
+    assert frame.open_page(page_table.MILL_TOOLS)
+    page = frame.current_page
+    assert isinstance(page, MillToolsPage)
+    page.model.column_index = page.model.columns.index(name)
+    before = page.model.stored_value
+    for key in (Key.Key_Home, Key.Key_PageUp, Key.Key_Home):
+        mill.key(key)
+    assert (page.model.row_index, page.model.is_text_open) == (0, False)
+    assert not mill.desk.offset_book.is_saving
+    assert page.model.stored_value == before

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from PySide6.QtTest import QTest
 
 from app.compose.runs.journal import Journal
 from app.desk.data_folder import find_data_folder
@@ -24,6 +25,7 @@ from core.store.user_records import UserRow
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
 from tests.screen.hands import Hands, Key
+from tests.screen.typist import CTRL
 from tests.screen.yes import yes
 from tests.texts import begins, opening, shows
 from tests.texts import text as wording
@@ -221,16 +223,18 @@ def test_the_log_is_searched_and_filtered(hands: Hands, journal: Journal) -> Non
     hands.sees(lambda: [row.cells[1] for row in page.table_panel.table.rows] == ["alarm"])
     for _ in range(3):
         hands.key(Key.Key_F5)
-    hands.key(Key.Key_F4)
+    QTest.keyClick(hands.window, Key.Key_F, CTRL)
     hands.type("BLOCK h")
     hands.sees(lambda: page.table_panel.table.rows == ())
-    assert page.accepts_key("h")
+    assert hands.frame.accepts_text("h")
     hands.key(Key.Key_Backspace)
     hands.key(Key.Key_Backspace)
     hands.sees(lambda: [row.cells[2] for row in page.table_panel.table.rows] == ["single block on"])
+    hands.key(Key.Key_Return)
+    assert not hands.frame.accepts_text("h")
+    assert len(page.table_panel.table.rows) == 1
     hands.key(Key.Key_Escape)
     hands.sees(lambda: len(page.table_panel.table.rows) == 3)
-    assert not page.accepts_key("h")
 
 
 def test_backup_is_created_and_restored(hands: Hands, journal: Journal) -> None:

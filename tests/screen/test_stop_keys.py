@@ -16,13 +16,17 @@ from app.screen.page_table import list_pages
 from core.executor.snapshot import MachineState
 from tests.screen.day import Day, Key
 from tests.screen.test_every_key import STROKES, day, typists
-from tests.screen.typist import NONE, Stroke, Typist
+from tests.screen.typist import CTRL, NONE, Stroke, Typist
 
 __all__ = ["day", "typists"]
 PAUSE, SCROLL_LOCK = Stroke("Pause", Key.Key_Pause), Stroke("ScrollLock", Key.Key_ScrollLock)
 LETTER = Stroke("x", Key.Key_X, "x")
 NO_OPENING = {"Pause", "ScrollLock", "e", "h", " "}
-OPENING = tuple(each for each in STROKES if each.modifiers is NONE and each.name not in NO_OPENING)
+SEARCH = Stroke("f", Key.Key_F, "", CTRL)
+OPENING = (
+    SEARCH,
+    *(each for each in STROKES if each.modifiers is NONE and each.name not in NO_OPENING),
+)
 ENTRIES = {
     page_table.EDITOR,
     page_table.PROGRAMS,

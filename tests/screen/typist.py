@@ -142,6 +142,7 @@ class Typist:
             page.make_key_labels(),
             mode,
             self.day.frame.alarm_list.isVisible(),
+            self.day.frame.search_bar.is_open,
         )
 
     def opens(self, name: str) -> bool:

@@ -128,6 +128,7 @@ class AnalysesPage(ListPage):
         self.description = DescriptionLine(self.theme, self)
         self.drawing = DrawingArea(self.theme, analyses.worker, self.desk.say, self)
         self.table = TablePanel(self.theme, analyses.select_row, self)
+        self.table.on_select = analyses.select_row
 
     def continue_preparation(self) -> bool:
         """Create one part of the chart in advance, and return whether further parts must be created."""
@@ -167,6 +168,10 @@ class AnalysesPage(ListPage):
             "Zoom in": partial(magnify, 1),
             "Zoom out": partial(magnify, -1),
         }
+
+    def find_list(self) -> TablePanel:
+        """Return the table of the analysis."""
+        return self.table
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Change the magnification with the mouse wheel."""

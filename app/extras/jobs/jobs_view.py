@@ -30,6 +30,7 @@ class JobsPage(ListPage):
     def __init__(self, host: PageHost, model: JobsModel, parent: QWidget) -> None:
         super().__init__(host, model, parent)
         self.table = TablePanel(self.theme, self._chosen, self)
+        self.table.on_select = model.select_row
         self.setup_table = TablePanel(self.theme, lambda _row: None, self)
         self.number_pad = NumberPad(self.theme, self.handle_touched_key, page_key=None, parent=self)
         self.letter_pad = LetterPad(self.theme, self.handle_touched_key, self)
@@ -67,6 +68,10 @@ class JobsPage(ListPage):
     def _chosen(self, row: int) -> None:
         self.model.select_row(row)
 
+    def find_list(self) -> TablePanel | None:
+        """Return the queue, unless the operator is typing a count or a note."""
+        return None if self.model.entry_kind else self.table
+
     def has_text_field(self) -> bool:
         """Return whether the operator is typing a count or a note."""
         return bool(self.model.entry_kind)
@@ -91,7 +96,7 @@ class JobsPage(ListPage):
         self.number_pad.setVisible(self._asked == "count")
         self.letter_pad.setVisible(self._asked == "note")
         low = max(round(LETTERS * u), self.letter_pad.min_height_px)
-        high = round(QUEUE * (self.height() - gap))
+        high = self.height() if self.is_searching else round(QUEUE * (self.height() - gap))
         if self._asked == "note":  # the keyboard covers the setup
             high = min(high, self.height() - low - gap)
         pad = round(PAD * u) + gap if self._asked == "count" else 0

@@ -90,7 +90,7 @@ class MeasuredPartsPage(SpecialFunctionsPage):
         pad = 0 if self.number_pad.isHidden() else round(PAD * u) + gap
         low = 0 if self.letter_pad.isHidden() else round(LETTER_PAD_HEIGHT * u) + gap
         right, room = self.width() - left - gap, self.height() - low
-        drawn = round(self._share * room)
+        drawn = 0 if self.is_searching else round(self._share * room)
         self.function_list.setGeometry(0, 0, left, self.height())
         self.table_panel.setGeometry(left + gap, 0, right - pad, room - drawn)
         self.letter_pad.setGeometry(left + gap, room + gap, right, max(0, low - gap))

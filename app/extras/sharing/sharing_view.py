@@ -29,6 +29,7 @@ class SharedProgramsPage(ListPage):
     def __init__(self, host: PageHost, model: SharingModel, parent: QWidget) -> None:
         super().__init__(host, model, parent)
         self.table = TablePanel(self.theme, self._chosen, self)
+        self.table.on_select = model.select_row
         self.versions = VersionList(self.theme, model.remote_versions, self)
         self.versions.title = "VERSIONS ON OTHER CONTROLS"
         self.versions.show()
@@ -56,6 +57,10 @@ class SharedProgramsPage(ListPage):
     def _chosen(self, row: int) -> None:
         self.model.select_row(row)
 
+    def find_list(self) -> TablePanel:
+        """Return the list of shared programs."""
+        return self.table
+
     def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
         """Update the list of programs and the comparison of versions."""
         self.model.update()
@@ -65,6 +70,6 @@ class SharedProgramsPage(ListPage):
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Arrange the list of programs above the comparison of versions."""
         gap = max(4, round(0.7 * self.theme.unit_px))
-        high = round(LIST_HEIGHT_RATIO * (self.height() - gap))
+        high = self.height() if self.is_searching else round(LIST_HEIGHT_RATIO * (self.height() - gap))
         self.table.setGeometry(0, 0, self.width(), high)
         self.versions.setGeometry(0, high + gap, self.width(), self.height() - high - gap)

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtWidgets import QLineEdit, QPlainTextEdit, QWidget
 
-from app.desk.pages.table_content import ROW_STEPS
 from app.desk.status.alarm_log import LoggedStop
 from app.desk.status.machine_status import StatusTone
 from app.desk.status.prompt_line import describe_cause
 from app.desk.translation import tr
 from app.screen.panel import FocusHolder, Panel, RedrawingAttribute
 from app.screen.screen_theme import MIN_TEXT_SIZE, ScreenTheme, ThemedPainter, draw_state_symbol
-from app.screen.table_panel import LIST_KEYS, RowPanel
+from app.screen.table_panel import RowPanel
 from core.alarms import CATALOG, AlarmReaction
 from core.executor.snapshot import Alarm
 from core.message import Message, join_messages
@@ -161,7 +160,7 @@ class AlarmList(RowPanel):
     """
 
     title = "ALARMS AND STOPS  ·  ESC: CLOSE  ·  CTRL+ARROWS: SELECT  ·  SHIFT+F10: SHOW SCOPE RECORD"
-    scroll_step, has_scroll_keys = 1, False
+    scroll_step, has_scroll_keys, is_searchable = 1, False, True
     marked = RedrawingAttribute(0)
 
     def __init__(self, theme: ScreenTheme, open_recording: Callable[[str], None], parent: QWidget) -> None:
@@ -171,6 +170,7 @@ class AlarmList(RowPanel):
         """
         super().__init__(theme, parent)
         self._open = open_recording
+        self.on_select = self.mark
         self.logged_stops: tuple[LoggedStop, ...] = ()
         self._focus = FocusHolder(self)
         self.hide()
@@ -203,7 +203,9 @@ class AlarmList(RowPanel):
     def scroll_by(self, rows: int) -> None:
         """Scroll to older entries, or to newer entries if the number is negative."""
         super().scroll_by(rows)
-        self.mark(max(self.first_row, min(self.marked, self.first_row + self.rows - 1)))
+        shown = self.shown_rows[self.first_row : self.first_row + self.rows]
+        if shown:
+            self.mark(max(shown[0], min(self.marked, shown[-1])))
 
     def mark(self, index: int) -> None:
         """Select an entry by its index, where index 0 is the newest entry.
@@ -212,20 +214,26 @@ class AlarmList(RowPanel):
         """
         self.marked = max(0, min(index, len(self.logged_stops) - 1))
 
-    def handle_key(self, key: str) -> bool:
-        """Select an entry with the arrow keys, or scroll with the page, Home and End keys.
+    def list_row_texts(self) -> Sequence[str]:
+        """Return the number, text, cause, remedy and time of each entry."""
+        return [
+            f"{each.alarm.number} {tr(each.alarm.text)} {tr(describe_cause(each.alarm))}"
+            f" {tr(each.alarm.remedy)} {each.local_time}"
+            for each in self.logged_stops
+        ]
 
-        Return False for any other key.
-        """
-        if key in {"Up", "Down"}:
-            self.mark(self.marked + ROW_STEPS[key])
-        elif key in LIST_KEYS:
-            self.scroll_by(self.find_scroll_rows(key))
-            if key in {"Home", "End"}:
-                self.mark(ROW_STEPS[key])
-        else:
-            return False
-        return True
+    @property
+    def selected_row(self) -> int:
+        """Return the index of the selected entry."""
+        return self.marked
+
+    def make_key_actions(self) -> Mapping[str, Callable[[], object]]:
+        """Return the actions of the keys that select an entry and open its recording."""
+        return {
+            "Pan up": partial(self.move_selection, "Up"),
+            "Pan down": partial(self.move_selection, "Down"),
+            "Scope": lambda: self._open(self.recording_name),
+        }
 
     @property
     def recording_name(self) -> str:
@@ -292,11 +300,14 @@ class AlarmList(RowPanel):
             painter.draw_text_line(QRectF(left, row.y() + y * u, wide, 2.1 * u), text, 1.8, ink, bold=False)
 
     def _draw_pages(self, painter: ThemedPainter, foot: QRectF) -> None:
-        """Draw touch keys that scroll to newer and to older entries, with the number of these entries.
+        """Draw touch keys that search, and that scroll to newer and to older entries, with their number.
 
         Each key is drawn only if there are entries in its direction.
         """
-        u, older = self.theme.unit_px, len(self.logged_stops) - self.first_row - self.rows
+        u, older = self.theme.unit_px, len(self.shown_rows) - self.first_row - self.rows
+        if self.on_search_key is not None and (self.first_row > 0 or older > 0):
+            box = QRectF(foot.right() - 51 * u, foot.y(), 16 * u, foot.height())
+            self.key(painter, box, "SEARCH", 2.0, self.on_search_key, margin=1.0)
         for number, (label, by, count) in enumerate(
             (("NEWER", -self.rows, self.first_row), ("OLDER", self.rows, older))
         ):

@@ -14,6 +14,7 @@ SHIFT_MODIFIER = Qt.KeyboardModifier.ShiftModifier
 NO_MODIFIER = Qt.KeyboardModifier.NoModifier
 
 HELP_KEY = "?"  # The key that shows the help, by its character, because its place depends on the layout.
+SEARCH_KEY = "Search"  # Ctrl+F, and the search key that a list draws.
 RELOAD_KEY = "Shift+F2"  # Loads the changed file of the loaded program again on the Automatic page.
 MODIFIER_KEYS = frozenset(
     {Key.Key_Shift, Key.Key_Control, Key.Key_Alt, Key.Key_AltGr, Key.Key_Meta, Key.Key_Super_L}
@@ -58,6 +59,7 @@ KEY_NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_Down, CTRL_MODIFIER): "Pan down",
     (Key.Key_PageUp, NO_MODIFIER): "Page up",
     (Key.Key_PageDown, NO_MODIFIER): "Page down",
+    (Key.Key_F, CTRL_MODIFIER): SEARCH_KEY,
     (Key.Key_Home, NO_MODIFIER): "Follow",
     (Key.Key_End, NO_MODIFIER): "End",
     (Key.Key_F10, SHIFT_MODIFIER): "Scope",
@@ -73,6 +75,8 @@ PAGE_FUNCTION_KEYS = frozenset(
     {"F2", "F3", "F4", "F5", "F6", "F8", "F9", "F10", "Codes", RELOAD_KEY, "Shapes", "Calculators"}
 )
 """Function keys of the pages. They close the list of alarms first, so that they do not act unseen."""
+SEARCH_CLOSING_KEYS = PAGE_FUNCTION_KEYS | {"F1", "F7", "Scope", HELP_KEY}
+"""Keys that close the search first, because they show something else or act on the selected row."""
 MENU_KEYS = {"J": "Step back"}
 """Letters of the main menu whose key is named after its function in the part playback, by letter."""
 REPEATING_KEYS = frozenset(

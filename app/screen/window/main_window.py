@@ -38,6 +38,7 @@ from app.screen.window.key_table import (
     PAGE_FUNCTION_KEYS,
     PALM_BUTTON_KEYS,
     REPEATING_KEYS,
+    SEARCH_CLOSING_KEYS,
     find_key_name,
 )
 from app.screen.window.keyboard import KeyboardFilter, find_key_code
@@ -201,6 +202,8 @@ class MainWindow(QWidget):
                 frame.current_page.stop_held_key_actions()
                 if key_name != HELP_KEY:
                     frame.help_panel.close_help()
+                if key_name in SEARCH_CLOSING_KEYS:
+                    frame.search_bar.search.close()
                 if key_name in PAGE_FUNCTION_KEYS:
                     frame.alarm_list.close_list()
                 if key_name != "Esc":  # Esc removes the message itself.

@@ -18,6 +18,7 @@ from app.screen.window.key_table import HELP_KEY
 from app.screen.window_layout import LOW_WINDOW_HEIGHT_PX, Rect
 from core.executor.snapshot import MachineState, Snapshot
 
+_LAYOUT_DELAY_S = 3.0  # Seconds after a manual move before the layout of a page may change.
 GAP_PX = 4  # Pixels below the notice rows, and next to the help.
 
 
@@ -32,10 +33,27 @@ class LayoutNeeds(NamedTuple):
     has_large_position: bool
     has_run_line: bool
     has_alarm_notice: bool
+    search_height_px: int
+
+
+class ManualMotion:
+    """Time of the last manual move of an axis."""
+
+    def __init__(self) -> None:
+        self._moved_at_s: float | None = None
+
+    def is_recent(self, snapshot: Snapshot, now_s: float) -> bool:
+        """Return whether the axes were jogged or homed in the last few seconds.
+
+        The touch targets must then stay at their positions.
+        """
+        if snapshot.state in {MachineState.JOG, MachineState.HOMING}:
+            self._moved_at_s = now_s
+        return self._moved_at_s is not None and now_s - self._moved_at_s < _LAYOUT_DELAY_S
 
 
 def find_layout_needs(
-    page: Page, window_height_px: int, *, has_notices: bool, has_alarm: bool
+    page: Page, window_height_px: int, *, has_notices: bool, has_alarm: bool, search_height_px: int = 0
 ) -> LayoutNeeds:
     """Return the parts that are shown around a page.
 
@@ -45,16 +63,17 @@ def find_layout_needs(
     """
     moves, needs_height, low = (
         page.CAN_START_CYCLES,
-        page.needs_height(),
+        page.needs_height() or search_height_px > 0,
         window_height_px < LOW_WINDOW_HEIGHT_PX,
     )
     is_automatic = page.NAME == page_table.AUTOMATIC
     shows_alarm = is_automatic and has_alarm
     has_automatic_layout = is_automatic and not (low and shows_alarm)
     if not low:
-        return LayoutNeeds(has_automatic_layout, moves, True, shows_alarm)
+        return LayoutNeeds(has_automatic_layout, moves, True, shows_alarm, search_height_px)
     has_large_position = moves and not needs_height and not has_notices
-    return LayoutNeeds(has_automatic_layout, has_large_position, not (moves or needs_height), shows_alarm)
+    has_run_line = not (moves or needs_height)
+    return LayoutNeeds(has_automatic_layout, has_large_position, has_run_line, shows_alarm, search_height_px)
 
 
 def make_lamp_row(desk: Desk, snapshot: Snapshot, status: MachineStatus) -> tuple[Lamp, ...]:

@@ -11,6 +11,7 @@ from app.screen.window.key_table import (
     AUTOMATIC_KEYS,
     NO_KEY,
     REPEATED_WHEN_TYPED,
+    SEARCH_KEY,
     STOP_LETTERS,
     YES_KEY,
     find_key_name,
@@ -68,7 +69,8 @@ class TypedKeyHandler:
 
     def handle_stop_key(self, frame: WindowFrame, event: QKeyEvent) -> bool:
         """Return whether the key stopped something on a page that the alarm log or the help covers."""
-        if event.isAutoRepeat() or not (frame.is_page_covered or frame.help_panel.isVisible()):
+        is_covered = frame.is_page_covered or frame.help_panel.isVisible()
+        if event.isAutoRepeat() or not is_covered or frame.has_text_field():
             return False
         stop = frame.current_page.make_stop_key_actions().get(find_typed_text(event))
         if stop is None:
@@ -84,12 +86,11 @@ class TypedKeyHandler:
         The character then has no other function. For example, Ctrl+H, Ctrl+Space and Ctrl+E do not stop the
         machine while an input field is active.
         """
-        text = event.text()
+        text, name = event.text(), find_key_name(find_key_code(event), event.modifiers())
         if not text.isprintable() or not text or not frame.has_text_field():
-            return (
-                frame.has_text_field()
-                and find_key_name(find_key_code(event), event.modifiers()) in STOP_LETTERS
-            )
+            return frame.has_text_field() and name in STOP_LETTERS
+        if name == SEARCH_KEY:
+            return False
         if not event.isAutoRepeat():
             self._rejected_text = tr(Message("{key} CANNOT BE ENTERED IN THIS FIELD", key=text))
             frame.desk.say(self._rejected_text)
@@ -117,16 +118,18 @@ class TypedKeyHandler:
         line runs unseen.
         """
         key = find_typed_text(event)
+        is_used = bool(key) and (not event.isAutoRepeat() or key in REPEATED_WHEN_TYPED)
+        if frame.search_bar.is_open:
+            if is_used:
+                frame.search_bar.handle_key(key)
+                self._refresh()
+            return bool(key)
         if frame.is_page_covered:
-            if frame.alarm_list.handle_key(key):
+            if frame.alarm_list.move_selection(key):
                 self._refresh()
                 return True
             return key in COVERED_KEYS or self._discard_text(frame, event)
-        if (
-            not key
-            or (event.isAutoRepeat() and key not in REPEATED_WHEN_TYPED)
-            or not frame.current_page.handle_key(key)
-        ):
+        if not is_used or not (frame.search_bar.move_selection(key) or frame.current_page.handle_key(key)):
             return False
         if frame.desk.prompt_notice == self._rejected_text:
             frame.desk.clear_prompt_line()  # The next key was accepted.

@@ -17,6 +17,7 @@ from app.desk.status.machine_status import MachineStatus
 from app.desk.status.state_prompt import make_page_prompt
 from app.desk.translation import tr
 from app.screen import page_table
+from app.screen.lists.searchable_list import SearchableList
 from app.screen.page_base import KeyActions, Page, PageHost
 from app.screen.page_help import make_page_help
 from app.screen.page_table import find_replacement_page, make_page
@@ -24,10 +25,11 @@ from app.screen.panel import Panel
 from app.screen.screen_theme import ScreenTheme
 from app.screen.window.alarm_panels import AlarmList, AlarmNotice
 from app.screen.window.help_panel import HelpPanel
-from app.screen.window.key_table import AUTOMATIC_KEYS, HELP_KEY
+from app.screen.window.key_table import AUTOMATIC_KEYS, HELP_KEY, SEARCH_KEY
 from app.screen.window.notices import make_notices
 from app.screen.window.part_placement import (
     LayoutNeeds,
+    ManualMotion,
     find_area_below,
     find_layout_needs,
     make_lamp_row,
@@ -44,6 +46,7 @@ from app.screen.window.readout_panels import (
     ToolPanel,
 )
 from app.screen.window.run_row import RunStatusRow
+from app.screen.window.search_bar import SearchBar
 from app.screen.window.station_dock import StationDock
 from app.screen.window.window_bars import FunctionKeyBar, LampStrip, NoticeRows, PromptLine, TitleLine
 from app.screen.window_layout import (
@@ -59,10 +62,9 @@ from core.message import Message
 
 _REST_STATES = frozenset({MachineState.ESTOP, MachineState.DISABLED, MachineState.IDLE, MachineState.FAULT})
 MAX_REFRESH_AGE_S = 0.45  # Seconds after which everything is refreshed even without a visible change.
-_LAYOUT_DELAY_S = 3.0  # Seconds after a manual move before the layout of a page may change.
 
 
-ScreenContext = tuple[str, bool, bool, bool, str]
+ScreenContext = tuple[str, bool, bool, bool, bool, str]
 
 
 class WindowFrame(QWidget):
@@ -95,13 +97,14 @@ class WindowFrame(QWidget):
         self.alarm_notice = AlarmNotice(theme, self)
         self.alarm_list = AlarmList(theme, self.open_recording, self)
         self.help_panel = HelpPanel(theme, self)
+        self.search_bar = SearchBar(theme, desk, press, self._find_list, self)
         self._page_area = Rect(0, 0, 0, 0)
         self._docked = True
         self._placed_needs: LayoutNeeds | None = None
         host = PageHost(theme, desk, press, self.open_page, self.alarm_list.close_list)
         self._host = host
         self._before_scope = page_table.AUTOMATIC
-        self._moved_at: float | None = None  # Time of the last manual move.
+        self._manual_motion = ManualMotion()
         self.automatic_page = AutomaticPage(host, self)
         self._pages: dict[str, Page] = {page_table.AUTOMATIC: self.automatic_page}
         self.current_page: Page = self.automatic_page
@@ -138,7 +141,10 @@ class WindowFrame(QWidget):
         return page
 
     def open_recording(self, recording_name: str) -> None:
-        """Open the recording of an alarm in the scope."""
+        """Open the recording of an alarm in the scope, or show that the alarm has no recording."""
+        if not recording_name:
+            self.desk.say(tr("NO SCOPE RECORD: ONLY ALARMS AND E-STOPS ARE RECORDED"))
+            return
         before = self.current_page.NAME
         if before == page_table.SCOPE or self.open_page(page_table.SCOPE):
             self._before_scope = self._before_scope if before == page_table.SCOPE else before
@@ -157,6 +163,7 @@ class WindowFrame(QWidget):
     def _front(self) -> None:
         page = self.current_page
         self.help_panel.close_help()
+        self.search_bar.search.close()
         self.desk.window_state.set_page_properties(
             can_start=page.CAN_START_CYCLES, has_field=self._blocks_letters, page_name=page.NAME
         )
@@ -182,6 +189,7 @@ class WindowFrame(QWidget):
             "F7": self.toggle_alarm_log,
             "Scope": self.toggle_scope,
             HELP_KEY: self.show_help,
+            SEARCH_KEY: self.search_bar.open_search,
             **{
                 page.shortcut_key: partial(self.open_page, page.name)
                 for page in page_table.ALL_PAGES
@@ -189,30 +197,16 @@ class WindowFrame(QWidget):
             },
             CLOSE_KEY: self.desk.close_card,
             **self.current_page.make_key_actions(),
-            **(self._make_log_keys() if self.alarm_list.isVisible() else {}),
+            **(self.alarm_list.make_key_actions() if self.alarm_list.isVisible() else {}),
         }
 
-    def _make_log_keys(self) -> KeyActions:
-        """Return the actions of the keys that scroll the alarm log while it covers the page."""
-        log = self.alarm_list
-        return {
-            "Pan up": lambda: log.mark(log.marked - 1),
-            "Pan down": lambda: log.mark(log.marked + 1),
-            "Scope": self._open_selected_recording,
-        }
-
-    def _open_selected_recording(self) -> None:
-        """Open the recording of the selected log entry, or show that the entry has no recording."""
-        name = self.alarm_list.recording_name
-        if name:
-            self.open_recording(name)
-        else:
-            self.desk.say(tr("NO SCOPE RECORD: ONLY ALARMS AND E-STOPS ARE RECORDED"))
+    def _find_list(self) -> SearchableList | None:
+        return self.alarm_list if self.alarm_list.isVisible() else self.current_page.find_list()
 
     @property
     def is_page_covered(self) -> bool:
-        """Return whether the alarm log covers the page, which then receives no keys."""
-        return self.alarm_list.isVisible()
+        """Return whether the alarm log or the search receives the keys instead of the page."""
+        return self.alarm_list.isVisible() or self.search_bar.is_open
 
     @property
     def covers_text_field(self) -> bool:
@@ -222,7 +216,8 @@ class WindowFrame(QWidget):
         )
 
     def uncover_page(self) -> None:
-        """Close the help, the alarm log and the file prompt."""
+        """Close the help, the search, the alarm log and the file prompt."""
+        self.search_bar.search.close()
         self.help_panel.close_help()
         self.alarm_list.close_list()
         self.automatic_page.file_prompt.close_prompt()
@@ -255,7 +250,9 @@ class WindowFrame(QWidget):
             self.desk.say(tr("THE GUIDE IS NOT INSTALLED"))
 
     def handle_escape(self) -> bool:
-        """Close the alarm log or an open part of the page, and return whether one was open."""
+        """Close the search, the alarm log or an open part of the page, and return whether one was open."""
+        if self.search_bar.handle_escape():
+            return True
         if self.alarm_list.isVisible():
             self.alarm_list.close_list()
             return True
@@ -268,7 +265,7 @@ class WindowFrame(QWidget):
         """
         return (
             not self.desk.confirmation_key
-            and not self.alarm_list.isVisible()
+            and not self.is_page_covered
             and self.current_page.is_esc_stop_key()
         )
 
@@ -283,6 +280,7 @@ class WindowFrame(QWidget):
             self.alarm_list.isVisible(),
             self.help_panel.isVisible(),
             self.automatic_page.file_prompt.isVisible(),
+            self.search_bar.is_open,
             self.desk.confirmation_key,
         )
 
@@ -324,6 +322,8 @@ class WindowFrame(QWidget):
         self._docked = with_dock
         work = find_work_area(at) if large else low.work_area
         most = work.h // (4 if needs.has_alarm_notice else 2)
+        work = self.search_bar.place_below(work)
+        self.current_page.is_searching = self.search_bar.is_open
         rows = Rect(work.x, work.y, work.w, min(self.notice_rows.apply_needed_height(), most))
         work = find_area_below(work, rows)
         place_widget(self.notice_rows, rows)
@@ -353,6 +353,7 @@ class WindowFrame(QWidget):
             self.height(),
             has_notices=bool(self.notice_rows.notice_rows),
             has_alarm=bool(self._shown and self._shown[0].alarms),
+            search_height_px=self.search_bar.height_px,
         )
 
     @property
@@ -372,16 +373,6 @@ class WindowFrame(QWidget):
         for part, rect in parts:
             place_widget(part, rect)
             part.setVisible(large)
-
-    def _is_manual_motion(self, snapshot: Snapshot) -> bool:
-        """Return whether the axes were jogged or homed in the last few seconds.
-
-        The touch targets must then stay at their positions.
-        """
-        now = self.desk.station_controls.clock()
-        if snapshot.state in {MachineState.JOG, MachineState.HOMING}:
-            self._moved_at = now
-        return self._moved_at is not None and now - self._moved_at < _LAYOUT_DELAY_S
 
     # --- display -------------------------------------------------------------------------------------
 
@@ -408,7 +399,7 @@ class WindowFrame(QWidget):
         self.notice_rows.notice_rows = make_notices(
             self.desk, snapshot, loaded, here=self.current_page is self.automatic_page
         )
-        by_hand = self._is_manual_motion(snapshot)
+        by_hand = self._manual_motion.is_recent(snapshot, self.desk.station_controls.clock())
         is_new_height = self.notice_rows.needs_new_height or self._placed_needs != self._layout_needs
         if self._has_dock_changed or (is_new_height and not by_hand):
             self.arrange_parts()
@@ -432,6 +423,7 @@ class WindowFrame(QWidget):
             self.station_dock.show_state(snapshot)
             self.station_dock.hidden_keys = self._find_dead_keys("AHU,")
         self.current_page.refresh(snapshot, view, loaded)
+        self.search_bar.refresh(snapshot)
         self._update_caret()
         self.key_bar.key_labels, self.key_bar.disabled_keys = (
             self.current_page.make_key_labels(),
@@ -440,7 +432,7 @@ class WindowFrame(QWidget):
 
     def _update_caret(self) -> None:
         """Show the caret of the page's input field only while typed characters go to this field."""
-        has_field = self.current_page.has_text_field()
+        has_field = self.current_page.has_text_field() and not self.search_bar.is_open
         if has_field is not self.theme.is_caret_shown:
             self.theme.is_caret_shown = has_field
             for panel in self.current_page.findChildren(Panel):
@@ -459,10 +451,14 @@ class WindowFrame(QWidget):
 
     def accepts_text(self, key: str) -> bool:
         """Return whether a character goes to an input field of the page or to a standard text field."""
+        if self.search_bar.is_open:
+            return len(key) == 1 and self.help_panel.isHidden()
         return self._is_field_reachable() and (self.current_page.accepts_key(key) or self._stock_field())
 
     def has_text_field(self) -> bool:
         """Return whether an input field has the keyboard focus, so that characters are text."""
+        if self.search_bar.is_open:
+            return self.help_panel.isHidden()
         return self._is_field_reachable() and (self.current_page.has_text_field() or self._stock_field())
 
     def _blocks_letters(self) -> bool:
@@ -484,7 +480,9 @@ class WindowFrame(QWidget):
         self.title_line.show_texts(
             name, view.state_text, view.state_tone, desk.machine.name, desk.clock.format_local_time()
         )
-        state = make_page_prompt(desk, snapshot, loaded, self.current_page.prompt_text())
+        search = self.search_bar.search
+        page_prompt = search.prompt_text(snapshot) if search.is_open else self.current_page.prompt_text()
+        state = make_page_prompt(desk, snapshot, loaded, page_prompt)
         self.prompt_line.show_state(state, prompt_line.reason(view) or prompt_line.find_remedy(loaded, state))
         self.prompt_line.show_question(
             desk.prompt_line.question_text or self.current_page.find_pending_question(), desk.confirmation_key

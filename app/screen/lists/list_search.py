@@ -1,0 +1,130 @@
+"""Search for a text in the rows of one list at a time."""
+
+from __future__ import annotations
+
+from app.desk.pages.page_entry import MANUAL_STATES
+from app.desk.pages.table_content import ROW_STEPS, InputField
+from app.desk.status.prompt_line import ACTIVE_STATES
+from app.desk.translation import tr
+from app.screen.lists.searchable_list import SearchableList
+from core.executor.snapshot import MachineState, Snapshot
+
+_STOPPED_STATES = frozenset({MachineState.ESTOP, MachineState.FAULT})
+
+
+class ListSearch:
+    """Search that shows only the rows of a list that contain the typed text.
+
+    While the search is open, all characters are text. The first found row is selected, unless the selected
+    row is also found.
+    """
+
+    def __init__(self) -> None:
+        self.searched_list: SearchableList | None = None
+        self.input_field = InputField(words=True)
+        self.is_row_missing = False  # No row contains the text.
+        self._former_row = -1
+        self._texts: tuple[str, ...] = ()
+        self._alarm_count = 0
+        self._was_stopped = False  # The machine was in one of the states of _STOPPED_STATES.
+
+    @property
+    def is_open(self) -> bool:
+        """Return whether a search is open."""
+        return self.searched_list is not None
+
+    def find_refusal(self, searched_list: SearchableList | None, snapshot: Snapshot) -> str:
+        """Return the reason why a search cannot be opened now, or an empty string if it can."""
+        if snapshot.state in MANUAL_STATES:
+            return tr("AXES ARE MOVING. WAIT UNTIL THEY STOP BEFORE SEARCHING")
+        if searched_list and searched_list.search_hint:
+            return tr(searched_list.search_hint)
+        if not (searched_list and searched_list.can_be_searched and searched_list.list_row_texts()):
+            return tr("NO LIST TO SEARCH HERE")
+        return ""
+
+    def open(self, searched_list: SearchableList, snapshot: Snapshot) -> None:
+        """Open the search in a list."""
+        self.searched_list, self.input_field.text = searched_list, ""
+        self.is_row_missing, self._texts = False, ()
+        if searched_list.on_search is not None:
+            searched_list.on_search("")
+        self._former_row, self._alarm_count = searched_list.selected_row, len(snapshot.alarms)
+        self._was_stopped = snapshot.state in _STOPPED_STATES
+
+    def handle_key(self, key: str) -> bool:
+        """Handle a key, and return False if it is Enter but no row contains the text."""
+        rows = self.searched_list
+        if rows is None:
+            return False
+        if key == "Enter":
+            if self.is_row_missing:
+                return False
+            self.close()
+        elif key in ROW_STEPS:
+            rows.move_selection(key)
+        elif self.input_field.handle_key(key):
+            self._texts = ()
+            if rows.on_search is not None:
+                rows.on_search(self.input_field.text.strip())
+            self._find_rows()
+        return True
+
+    def update(self, snapshot: Snapshot) -> None:
+        """Search again if the rows have changed.
+
+        Manual motion, a new alarm and an E-stop close the search, so that letters are commands again. This is
+        called once a frame.
+        """
+        rows = self.searched_list
+        if rows is None:
+            return
+        is_stopped = snapshot.state in _STOPPED_STATES
+        has_stopped = is_stopped and not self._was_stopped
+        if snapshot.state in MANUAL_STATES or len(snapshot.alarms) > self._alarm_count or has_stopped:
+            self.close()
+        elif not rows.isVisible():
+            self.cancel()
+        else:
+            self._alarm_count, self._was_stopped = len(snapshot.alarms), is_stopped
+            self._find_rows()
+
+    def _find_rows(self) -> None:
+        """Show only the rows that contain the text, and select the first one if necessary."""
+        rows = self.searched_list
+        if rows is None:
+            return
+        texts = tuple(rows.list_row_texts())
+        if texts == self._texts:
+            return
+        self._texts = texts
+        text = "" if rows.on_search is not None else self.input_field.text.strip().casefold()
+        found = tuple(number for number, each in enumerate(texts) if text in each.casefold())
+        rows.found_rows, self.is_row_missing = found, not found
+        if found and rows.on_select is not None and rows.selected_row not in found:
+            rows.on_select(found[0])
+
+    def close(self) -> None:
+        """Close the search, show all rows, and keep the selected row."""
+        if self.searched_list is not None:
+            self.searched_list.found_rows = None
+        self.searched_list = None
+
+    def cancel(self) -> None:
+        """Close the search, show all rows, and select the former row."""
+        rows = self.searched_list
+        self.close()
+        if rows is None:
+            return
+        if rows.on_search is not None:
+            rows.on_search("")
+        if rows.on_select is not None and 0 <= self._former_row < len(rows.list_row_texts()):
+            rows.on_select(self._former_row)
+
+    def prompt_text(self, snapshot: Snapshot) -> str:
+        """Return the prompt while the search is open."""
+        if self.is_row_missing:
+            return tr("NO ROW CONTAINS THIS TEXT   BACKSPACE: EDIT   ESC: CLOSE")
+        if snapshot.state in ACTIVE_STATES:
+            return tr("TYPE THE TEXT TO FIND   PAUSE: FEED HOLD   ENTER: KEEP ROW   ESC: CLOSE")
+        return tr("TYPE THE TEXT TO FIND   ARROWS: ROW   ENTER: KEEP ROW   ESC: CLOSE")

@@ -1,0 +1,165 @@
+"""The search field for all lists, which the window frame shows below the page."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from PySide6.QtCore import QRectF
+from PySide6.QtWidgets import QWidget
+
+from app.desk.desk import Desk
+from app.desk.translation import tr
+from app.screen.entry_panel import WIDE_NAME_KEYS, LetterPad, draw_text_with_caret
+from app.screen.lists.list_search import ListSearch
+from app.screen.lists.searchable_list import LIST_KEYS, SearchableList
+from app.screen.panel import Panel
+from app.screen.screen_theme import ScreenTheme, ThemedPainter
+from app.screen.window.key_table import SEARCH_KEY
+from app.screen.window.part_placement import GAP_PX
+from app.screen.window_layout import FINGERTIP_PX, Rect
+from core.executor.snapshot import Snapshot
+from core.message import Message
+
+_BAR_HEIGHT, _KEY_WIDTH, _LABEL_WIDTH = 5.6, 15.0, 14.0  # Units.
+
+
+class SearchBar(Panel):
+    """Search field with keys that keep the found row or close the search.
+
+    A touch on the field shows or hides the touch keyboard, which also opens with a touch on the search key of
+    a list.
+    """
+
+    accessible_name = "SEARCH"
+    background_color = "panel"
+
+    def __init__(
+        self,
+        theme: ScreenTheme,
+        desk: Desk,
+        press: Callable[[str], None],
+        find_list: Callable[[], SearchableList | None],
+        parent: QWidget,
+    ) -> None:
+        """Create the bar.
+
+        ``press`` presses a key of the window. ``find_list`` returns the list that uses the keys now.
+        """
+        super().__init__(theme, parent)
+        self._desk, self._press, self._find_list = desk, press, find_list
+        self.search = ListSearch()
+        self.letter_pad = LetterPad(theme, self._handle_touched_key, parent, WIDE_NAME_KEYS)
+        self.has_letters = False
+        self._drawn: object = None
+        self.hide()
+
+    @property
+    def is_open(self) -> bool:
+        """Return whether a search is open."""
+        return self.search.is_open
+
+    @property
+    def height_px(self) -> int:
+        """Return the height that the field and the touch keyboard need, which is 0 if no search is open."""
+        if not self.is_open:
+            return 0
+        return self._bar_height_px + (self.letter_pad.min_height_px + GAP_PX if self.has_letters else 0)
+
+    @property
+    def _bar_height_px(self) -> int:
+        return max(FINGERTIP_PX, round(_BAR_HEIGHT * self.theme.unit_px))
+
+    def move_selection(self, key: str) -> bool:
+        """Move the selection with a page key, Home or End, and return whether a list used the key."""
+        rows = self._find_list() if key in LIST_KEYS else None
+        return rows is not None and rows.isVisible() and rows.move_selection(key)
+
+    def _open_by_touch(self) -> None:
+        self.has_letters = True
+        self._press(SEARCH_KEY)
+
+    def open_search(self) -> None:
+        """Open the search in the list that uses the keys, or show the reason why this is not possible."""
+        has_letters, self.has_letters = self.has_letters and not self.is_open, False
+        searched_list, snapshot = self._find_list(), self._desk.read_snapshot()
+        if self.is_open:
+            return
+        refusal = self.search.find_refusal(searched_list, snapshot)
+        if refusal or searched_list is None:
+            self._desk.say(refusal)
+            return
+        self.has_letters = has_letters
+        self.search.open(searched_list, snapshot)
+
+    def handle_key(self, key: str) -> None:
+        """Handle a key as text, as Enter, or as a key that selects a found row."""
+        if self.search.handle_key(key):
+            self._desk.clear_prompt_line()
+        else:
+            self._desk.say(tr("NO ROW CONTAINS THIS TEXT"))
+
+    def handle_escape(self) -> bool:
+        """Close an open search and select the former row. Return False if no search is open."""
+        was_open = self.is_open
+        self.search.cancel()
+        return was_open
+
+    def refresh(self, snapshot: Snapshot) -> None:
+        """Update the search and the search key of the list, and redraw the field if it has changed."""
+        self.search.update(snapshot)
+        rows = self._find_list()
+        if rows is not None:
+            rows.on_search_key = self._open_by_touch if rows.can_be_searched else None
+        shown = self.search.input_field.text, self._count_text, self.is_open
+        if shown != self._drawn:
+            self._drawn = shown
+            self.update()
+
+    def place_below(self, area: Rect) -> Rect:
+        """Place the field and the touch keyboard in an area, and return the area above them."""
+        high, bar = self.height_px, self._bar_height_px
+        self.setVisible(self.is_open)
+        self.letter_pad.setVisible(self.is_open and self.has_letters)
+        if not high:
+            return area
+        top = area.y + area.h - high
+        self.setGeometry(area.x, top, area.w, bar)
+        self.letter_pad.setGeometry(area.x, top + bar + GAP_PX, area.w, self.letter_pad.min_height_px)
+        return area._replace(h=max(0, area.h - high - GAP_PX))
+
+    def draw(self, painter: ThemedPainter) -> None:
+        """Draw the field with the typed text, the number of found rows and the two keys."""
+        if not self.is_open:
+            return
+        u, room = self.theme.unit_px, self.find_full_area()
+        wide = max(float(FINGERTIP_PX), _KEY_WIDTH * u)
+        label = QRectF(room.x() + u, room.y(), _LABEL_WIDTH * u, room.height())
+        painter.draw_text_line(label, "SEARCH", 2.2, "text")
+        count = QRectF(room.right() - 2 * (wide + 0.5 * u) - wide, room.y(), wide, room.height())
+        painter.draw_text_line(count, self._count_text, 1.8, "soft", bold=False, raw=True, margin=0.4)
+        box = QRectF(label.right(), room.y(), count.x() - 0.5 * u - label.right(), room.height())
+        painter.draw_box(box.adjusted(0, 0.2 * u, 0, -0.2 * u), "accent", 0.2, "ground")
+        draw_text_with_caret(painter, box.adjusted(u, 0, -u, 0), self.search.input_field.text, 2.6)
+        self.add_target(box, self._toggle_letters, "KEYBOARD")
+        for number, (name, key) in enumerate((("KEEP ROW", "Enter"), ("CLOSE", "Esc"))):
+            at = room.right() - (2 - number) * (wide + 0.5 * u) + 0.5 * u
+            target = QRectF(at, room.y(), wide, room.height())
+            self.key(painter, target, name, 2.0, partial(self._handle_touched_key, key), margin=0.6)
+
+    @property
+    def _count_text(self) -> str:
+        rows = self.search.searched_list
+        if rows is None or rows.found_rows is None or not self.search.input_field.text:
+            return ""
+        count = len(rows.found_rows)
+        return tr(Message("{count} FOUND", count=count))
+
+    def _toggle_letters(self) -> None:
+        self.has_letters = not self.has_letters
+
+    def _handle_touched_key(self, key: str) -> None:
+        if key == "Esc":
+            self._press(key)
+        else:
+            self.handle_key(key)
