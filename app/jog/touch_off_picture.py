@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from app.desk.arithmetic import InvalidEntryError
 from app.desk.status.formats import format_length
-from app.desk.stored_shapes import find_shape_row_mistakes, make_tool_shape
+from app.desk.stored_shapes import find_shape_row_mistakes, is_quadrant_for_other_side, make_tool_shape
 from app.desk.translation import tr
 from app.jog.tool_setting import ToolSetting
 from app.jog.tool_touch_off import TOUCH_FIELDS
@@ -22,7 +22,7 @@ from app.offsets.offset_changes import ConfirmedOffsetChanges, describe_suspicio
 from app.offsets.offset_values import UnitMode, describe_missing_offset, format_signed_length
 from core.part.tool_shape import ToolKind, ToolShape
 from core.store.store_rows import ToolOffsetRow
-from core.tool_edges import TIP_DIRECTIONS, get_tool_number
+from core.tool_edges import TIP_DIRECTIONS, format_edge_name, get_tool_number
 
 MISSING_VALUE = "?"
 
@@ -35,7 +35,8 @@ class TouchOffPicture:
     - ``size_texts`` are the lines of the dimension: the entered size, and the radius if the machine uses
       radii.
     - ``warning_text`` is the reason why the entry must be confirmed, or an empty string.
-    - ``note_text`` explains how the tool is drawn, or is an empty string.
+    - ``note_text`` explains how the tool is drawn, states that its tip quadrant is wrong, or is an empty
+      string.
     """
 
     scene: TouchOffScene
@@ -106,8 +107,18 @@ class TouchOffPictures:
             _format_dimension(name, new, mode),
             _format_difference(name, old, new, mode),
             self._find_warning(new),
-            tr("EXAMPLE TOOL. SHAPE: F8, F8") if is_example else "",
+            self._make_note(new if name == "x" else None, is_example=is_example),
         )
+
+    def _make_note(self, new_x_mm: float | None, *, is_example: bool) -> str:
+        """Return a note about the shape or the tip quadrant of the tool, or an empty string."""
+        if is_example:
+            return tr("EXAMPLE TOOL. SHAPE: F8, F8")
+        tool = self.tool_setting
+        shape, row = tool.offset_book.tool_shapes[get_tool_number(tool.tool_number)], tool.tool_row
+        if row is None or new_x_mm is None or not is_quadrant_for_other_side(shape, row, new_x_mm):
+            return ""
+        return tr("WRONG TIP FOR THIS SIDE. CHANGE: Q")
 
     def _find_new_position(self, mode: UnitMode) -> float | None:
         """Return the entered size as the position of the tip in mm, or None if it is not a valid number."""
@@ -141,7 +152,13 @@ class TouchOffPictures:
         found = ConfirmedOffsetChanges(tool.offset_history).find_suspicious_touch_changes(
             tool.tool_number, position, tip_x_mm
         )
-        return next((describe_suspicion(each.kind) for each in found if each.name == touch.field_name), "")
+        first = next((each for each in found if each.name == touch.field_name), None)
+        if first is None:
+            return ""
+        reason = describe_suspicion(first.kind)
+        if first.row_number == tool.tool_number:
+            return reason
+        return f"{format_edge_name(first.row_number)}: {reason}"  # A tool that follows the master tool.
 
 
 def make_example_shape(row: ToolOffsetRow, old_x_mm: float | None) -> ToolShape:

@@ -42,7 +42,6 @@ class SuspicionReason(StrEnum):
 
     OUTSIDE_TRAVEL = "travel"  # The tip cannot reach part zero.
     WRONG_SIDE = "side"  # The tool would cut on the other side of the part.
-    TIP_QUADRANT = "quadrant"  # The tip quadrant is for the other side of the part.
     RADIUS_ENTERED = "radius"  # The entered diameter is half of the previous one.
     DOUBLE_DIAMETER = "double"  # The entered diameter is twice the previous one.
     LARGE_CHANGE = "large"  # The value differs much from the value in use.
@@ -128,8 +127,13 @@ def find_suspicious_changes(
         found = list(_check_corrections(number, before, new, ("x", "z"), doubled="x"))
     elif isinstance(new, MillToolRow):
         found = list(_of_mill(number, old if isinstance(old, MillToolRow) else MillToolRow(), new))
+    return sort_by_seriousness(found)
+
+
+def sort_by_seriousness(changes: Iterable[SuspiciousChange]) -> tuple[SuspiciousChange, ...]:
+    """Return suspicious changes in the order of ``SuspicionReason``, the most serious first."""
     order = list(SuspicionReason)
-    return tuple(sorted(found, key=lambda each: order.index(each.kind)))
+    return tuple(sorted(changes, key=lambda each: order.index(each.kind)))
 
 
 def _of_tool(

@@ -14,7 +14,6 @@ from functools import partial
 from app.desk.desk import Desk
 from app.desk.status.formats import format_local_time
 from app.desk.status.prompt_line import ACTIVE_STATES
-from app.desk.stored_shapes import is_quadrant_for_other_side
 from app.desk.translation import tr
 from app.offsets.change_rules import (
     LARGE_CHANGE_MM,
@@ -29,6 +28,7 @@ from app.offsets.change_rules import (
     find_suspicious_follower_changes,
     find_suspicious_table_changes,
     find_travel_limits,
+    sort_by_seriousness,
 )
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_values import (
@@ -275,27 +275,22 @@ class ConfirmedOffsetChanges:
     def find_suspicious_touch_changes(
         self, tool_number: int, touch: TouchPosition, tip_x_mm: float | None = None
     ) -> tuple[SuspiciousChange, ...]:
-        """Return the suspicious fields of a touch-off."""
+        """Return the suspicious fields of a touch-off, the most serious first."""
         tools, travel = self.offset_history.offset_book.tool_offsets, self._travel()
         old, new = tools.get(tool_number), apply_touch_off(tools, tool_number, touch)
         found = find_suspicious_changes(tool_number, old, new, travel)
         if old is not None and old.master and not touch.applies_to_this_tool_only:
             found += find_suspicious_follower_changes(tools, tool_number, new, travel)
         if tip_x_mm is not None and (reason := self._find_position_suspicion(tool_number, tip_x_mm, new.x)):
-            found = (SuspiciousChange(reason, tool_number, "x", old.x if old else None, new.x), *found)
-        return found
+            found += (SuspiciousChange(reason, tool_number, "x", old.x if old else None, new.x),)
+        return sort_by_seriousness(found)
 
     def _find_position_suspicion(self, number: int, tip_x_mm: float, new_x: float) -> SuspicionReason | None:
         """Return why the position of a tip after a touch-off in X is suspicious, or None."""
         old = self.offset_history.offset_book.tool_offsets.get(number)
         if self._is_other_side(number, tip_x_mm, new_x):
             return SuspicionReason.WRONG_SIDE
-        if old is None:
-            return None
-        shape = self.offset_history.offset_book.tool_shapes.get(get_tool_number(number))
-        if shape is not None and is_quadrant_for_other_side(shape, old, tip_x_mm):
-            return SuspicionReason.TIP_QUADRANT
-        return find_factor_suspicion(tip_x_mm + new_x - old.offset[0], tip_x_mm)
+        return None if old is None else find_factor_suspicion(tip_x_mm + new_x - old.offset[0], tip_x_mm)
 
     def _describe_followers(self, number: int, touch: TouchPosition) -> str:
         """Return the names of the tools that follow a touch-off of the master tool.
@@ -309,7 +304,7 @@ class ConfirmedOffsetChanges:
     def _is_other_side(self, number: int, tip: float, new_x: float) -> bool:
         """Return whether the tool would cut on the opposite side of the part after a touch-off."""
         book = self.offset_history.offset_book
-        old, shape = book.tool_offsets.get(number), book.tool_shapes.get(number)
+        old, shape = book.tool_offsets.get(number), book.tool_shapes.get(get_tool_number(number))
         if old is not None:
             return tip * (tip + new_x - old.offset[0]) < 0.0
         return tip > 0.0 if shape is not None and shape.rear else tip < 0.0
@@ -450,7 +445,6 @@ def describe_suspicion(reason: SuspicionReason) -> str:
     words = {
         SuspicionReason.OUTSIDE_TRAVEL: tr("OUTSIDE AXIS TRAVEL"),
         SuspicionReason.WRONG_SIDE: tr("CUTS ON THE OPPOSITE SIDE OF THE PART"),
-        SuspicionReason.TIP_QUADRANT: tr("TIP QUADRANT IS FOR THE OPPOSITE SIDE OF THE PART"),
         SuspicionReason.RADIUS_ENTERED: tr("HALF OF THE OLD DIAMETER. RADIUS ENTERED?"),
         SuspicionReason.DOUBLE_DIAMETER: tr("TWICE THE OLD DIAMETER"),
         SuspicionReason.LARGE_CHANGE: tr("LARGE CHANGE"),

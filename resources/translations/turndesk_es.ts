@@ -12214,6 +12214,11 @@
       <translation>HERRAMIENTA EN EL CENTRO</translation>
     </message>
     <message>
+      <location filename="app/jog/touch_off_picture.py" />
+      <source>WRONG TIP FOR THIS SIDE. CHANGE: Q</source>
+      <translation>PUNTA INCORRECTA PARA ESTE LADO. CAMBIAR: Q</translation>
+    </message>
+    <message>
       <location filename="app/jog/touch_off_scene_view.py" />
       <source>NEW</source>
       <translation>NUEVA</translation>
@@ -12512,11 +12517,6 @@
       <location filename="app/offsets/offset_changes.py" />
       <source>THIS TABLE</source>
       <translation>ESTA TABLA</translation>
-    </message>
-    <message>
-      <location filename="app/offsets/offset_changes.py" />
-      <source>TIP QUADRANT IS FOR THE OPPOSITE SIDE OF THE PART</source>
-      <translation>EL CUADRANTE DE PUNTA ES PARA EL LADO OPUESTO DE LA PIEZA</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_changes.py" />

@@ -28,6 +28,7 @@ SHAPES: dict[str, tuple[Values, Values]] = {
     "drill": ({"quadrant": 7}, {"kind": "drill", "diameter": 8.0}),
     "cutoff": ({"quadrant": 4}, {"kind": "parting", "width": 3.0}),
     "rear": ({"quadrant": 2}, {"kind": "turning", "rear": True}),
+    "wrong tip": ({"quadrant": 3}, {"kind": "boring", "diameter": 12.0}),  # points to the axis at X+
 }
 
 
@@ -147,7 +148,10 @@ def test_skim_cut_shows_the_cut_surface_at_the_size_question(jog: JogBench) -> N
         ("turning", "2.404", "offsets.doubt-double"),
         ("turning", "1.1", "offsets.doubt-large"),  # .0505 in on the radius
         ("boring", "-1.2", "offsets.doubt-side"),
-        ("rear", "1.2", "offsets.doubt-quadrant"),
+        ("wrong tip", ".6", "offsets.doubt-radius"),
+        ("wrong tip", "2.2", "offsets.doubt-large"),  # .499 in on the radius
+        ("wrong tip", "12", "offsets.doubt-travel"),  # part zero at X -6, and X- ends at -4
+        ("wrong tip", "20", "offsets.doubt-travel"),
     ],
 )
 def test_wrong_entry_is_shown_and_asked_before_it_is_saved(
@@ -167,6 +171,39 @@ def test_wrong_entry_is_shown_and_asked_before_it_is_saved(
     jog.saved()
     assert not has_picture(jog)
     assert jog.store.offsets.tool_offsets.read_rows() == before
+
+
+@pytest.mark.parametrize("entry", ["1.202", "1.2"])
+def test_wrong_tip_quadrant_is_noted_and_not_asked(jog: JogBench, entry: str) -> None:
+    shaped(jog, "wrong tip")
+    jog.type(f"x{entry}")
+    assert picture(jog).warning_text == ""
+    assert picture(jog).note_text == text("jog.wrong-tip")
+    jog.key(Key.Key_Return)
+    jog.saved()
+    assert not jog.desk.confirmation_key
+    assert jog.store.offsets.tool_offsets.read_rows()[1].x == pytest.approx(-float(entry) / 2 * INCH)
+
+
+def test_largest_error_is_asked_first(jog: JogBench) -> None:
+    """Ø 12 is twice the old Ø 6, but part zero would be at X -6 in, and the travel ends at -4 in."""
+    shaped(jog, "turning", x=-3.0 * INCH)
+    jog.type("x12")
+    assert picture(jog).warning_text == text("offsets.doubt-travel")
+    jog.key(Key.Key_Return)
+    jog.saved()
+    assert shows(jog.prompt, "offsets.doubt-travel")
+    assert not shows(jog.prompt, "offsets.doubt-double")
+
+
+def test_warning_names_the_following_tool_that_leaves_the_travel(jog: JogBench) -> None:
+    """T2 at X -3.99 in follows T1 by .014 in. Its travel ends at -4 in."""
+    given(jog)
+    jog.store.offsets.tool_offsets.change_row(2, "set", {"x": -3.99 * INCH})
+    jog.store.offsets.tool_offsets.set_master_tool(1, "master").result(60)
+    jog.desk.offset_book.read_store()
+    jog.type("x1.23")
+    assert picture(jog).warning_text == f"T2: {text('offsets.doubt-travel')}"
 
 
 def test_new_tool_at_wrong_side_is_shown_at_once(jog: JogBench) -> None:
