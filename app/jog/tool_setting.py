@@ -50,6 +50,7 @@ class ToolSetting:
     tool_number: int = 0
     question_name: str = ""  # The open question: a touch, "tool", a field, or empty.
     text: str = ""
+    confirmation_text: str = ""  # The question about the last suspicious touch-off.
     _active: int = -1  # The active tool at the last update.
 
     def __post_init__(self) -> None:
@@ -67,6 +68,12 @@ class ToolSetting:
     def is_master_touch_off(self) -> bool:
         """Return whether the touch-off that is in progress is for the master tool."""
         return self.question_name in TOUCH_FIELDS and self.tool_row is not None and self.tool_row.master
+
+    @property
+    def is_touch_off_confirmation_open(self) -> bool:
+        """Return whether the prompt line asks the operator to confirm the last touch-off."""
+        question = self.desk.prompt_line.question_text
+        return bool(self.desk.confirmation_key) and question == self.confirmation_text
 
     @property
     def is_tool_setter_result(self) -> bool:
@@ -339,6 +346,7 @@ class ToolSetting:
         )
         if not why:
             self.close_question()
+            self.confirmation_text = self.desk.prompt_line.question_text
         return why or self.make_note_text()
 
     def _field(self) -> str:

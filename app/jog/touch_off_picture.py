@@ -70,7 +70,7 @@ class TouchOffPictures:
             inputs = self._list_inputs()
             if self.picture is None or inputs != self._inputs:
                 self.picture, self._inputs = self._make_picture(), inputs
-        elif not tool.desk.confirmation_key:
+        elif not tool.is_touch_off_confirmation_open:
             self.picture = None
 
     def _list_inputs(self) -> Hashable:

@@ -206,6 +206,17 @@ def test_warning_names_the_following_tool_that_leaves_the_travel(jog: JogBench) 
     assert picture(jog).warning_text == f"T2: {text('offsets.doubt-travel')}"
 
 
+@pytest.mark.parametrize("key", [Key.Key_F4, Key.Key_M])
+def test_other_question_removes_the_picture(jog: JogBench, key: Key) -> None:
+    given(jog)
+    jog.type("x-1.2")
+    jog.key(Key.Key_Return)
+    assert has_picture(jog)
+    jog.key(key)
+    assert jog.desk.confirmation_key
+    assert not has_picture(jog)
+
+
 def test_new_tool_at_wrong_side_is_shown_at_once(jog: JogBench) -> None:
     choose(jog, 5)
     jog.type("x-.5")
