@@ -371,6 +371,8 @@ class JogModel:
             return True
         if self.homing_question.cancel() or self.manual_functions.handle_cancel_key():
             return True
+        if self.tool_setting.is_touch_off_confirmation_open:
+            return False  # Esc means N, and an axis of a new tool that is already known remains.
         return (
             self.skim_cut.handle_escape()
             or self.tool_setting.handle_escape()

@@ -156,10 +156,7 @@ class ToolSetting:
                     or tr("no tools"),
                 )
             )
-        if new.tool_number and new.tool_number == number:
-            text = tr("T{number} IS NOT SET YET. TOUCH OFF {axis} TOO")
-            return tr(Message(text, number=format_edge_suffix(number), axis=new.missing_axis.upper()))
-        return ""
+        return new.describe_missing_axis() if new.tool_number == number else ""
 
     def describe_change(self) -> str:
         """Return a description of the change that the current entry would make.
@@ -317,10 +314,9 @@ class ToolSetting:
             self.desk.say(why)
 
     def _save_answer(self) -> str:
-        """Process the entered answer, and return the message to show, or else an empty string.
+        """Process the entered answer, and return the reason why it is rejected, or else an empty string.
 
-        The message is the reason why the answer is rejected or, after a touch-off, the note that the
-        operator must read. Raises InvalidEntryError if the entered text is invalid.
+        Raises InvalidEntryError if the entered text is invalid.
         """
         if self.question_name == TOOL_QUESTION:
             return self._tool()
@@ -347,7 +343,7 @@ class ToolSetting:
         if not why:
             self.close_question()
             self.confirmation_text = self.desk.prompt_line.question_text
-        return why or self.make_note_text()
+        return why
 
     def _field(self) -> str:
         name, text = self.question_name, self.text

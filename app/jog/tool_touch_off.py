@@ -122,34 +122,20 @@ class TouchOff:
     ) -> str:
         """Save the touch-off. Return an empty string, or the reason if the touch-off is rejected.
 
-        X and Z of a new tool are saved together. Raises InvalidEntryError if the entry is invalid.
+        X and Z of a new tool are saved together. A suspicious value must be confirmed first. Raises
+        InvalidEntryError if the entry is invalid.
         """
-        place, book, ask = (
-            self.find_zero_position(text, history.unit_mode),
-            history.offset_book,
-            ConfirmedOffsetChanges(history),
-        )
-        if tool_number in book.tool_offsets:
-            return ask.touch_off(
-                tool_number,
-                self.make_touch_position(place),
-                self._make_reason(text, history.unit_mode),
-                self._find_tip_x(place),
-            )
-        values = new_tool.add_value(tool_number, self.field_name, place)
-        new_tool.tip_x_mm = self._find_tip_x(place) if self.field_name == "x" else new_tool.tip_x_mm
-        if len(values) < 2:
-            return ""
-        x, z = (float(values[name]) for name in ("x", "z"))
-        why = ask.touch_off(
+        place, ask = self.find_zero_position(text, history.unit_mode), ConfirmedOffsetChanges(history)
+        touch, tip_x_mm = self.make_touch_position(place), self._find_tip_x(place)
+        if tool_number in history.offset_book.tool_offsets:
+            return ask.touch_off(tool_number, touch, self._make_reason(text, history.unit_mode), tip_x_mm)
+        reason = self.change_reason or tr("touch-off of a new tool")
+        return ask.touch_off_new_tool(
             tool_number,
-            TouchPosition(x, z),
-            self.change_reason or tr("touch-off of a new tool"),
-            new_tool.tip_x_mm,
+            touch,
+            lambda: _add_to_new_tool(new_tool, tool_number, touch, tip_x_mm, reason, history),
+            tip_x_mm,
         )
-        if not why:
-            new_tool.discard_values()
-        return why
 
     def make_touch_position(self, zero_position_mm: float) -> TouchPosition:
         """Return the result of the touch-off for the offset table.
@@ -195,3 +181,28 @@ class TouchOff:
         )
         what = names[self.measured_quantity != TOUCH_X]
         return f"{unit}{what} {text.strip()}{tr(', this tool only') if self.moves_only_this_tool else ''}"
+
+
+def _add_to_new_tool(
+    new_tool: IncompleteTool,
+    tool_number: int,
+    touch: TouchPosition,
+    tip_x_mm: float | None,
+    reason: str,
+    history: OffsetHistory,
+) -> str:
+    """Add one axis to a new tool, and save the tool if both axes are known.
+
+    Returns an empty string, or the reason if the tool is rejected.
+    """
+    name, place = ("x", touch.x) if touch.x is not None else ("z", touch.z)
+    values = new_tool.add_value(tool_number, name, float(place or 0.0))
+    new_tool.tip_x_mm = tip_x_mm if name == "x" else new_tool.tip_x_mm
+    if len(values) < 2:
+        history.desk.say(new_tool.describe_missing_axis())
+        return ""
+    whole = TouchPosition(float(values["x"]), float(values["z"]))
+    why = history.offset_book.touch_off(tool_number, whole, reason)
+    if not why:
+        new_tool.discard_values()
+    return why

@@ -272,6 +272,22 @@ class ConfirmedOffsetChanges:
             self._describe_followers(tool_number, touch),
         )
 
+    def touch_off_new_tool(
+        self, tool_number: int, touch: TouchPosition, save: Callable[[], str], tip_x_mm: float | None = None
+    ) -> str:
+        """Touch off one axis of a new tool, after confirmation if the result is suspicious.
+
+        ``save`` stores the result. ``tip_x_mm`` has the same meaning as for ``touch_off``.
+        """
+        found = self.find_suspicious_touch_changes(tool_number, touch, tip_x_mm)
+        return self._ask_if_intended(
+            OffsetKind.TOOL,
+            tuple(each for each in found if getattr(touch, each.name, None) is not None),
+            ProtectedChange.TOOLS,
+            save,
+            lambda: tool_number not in self.offset_history.offset_book.tool_offsets,
+        )
+
     def find_suspicious_touch_changes(
         self, tool_number: int, touch: TouchPosition, tip_x_mm: float | None = None
     ) -> tuple[SuspiciousChange, ...]:

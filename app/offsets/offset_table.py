@@ -255,6 +255,14 @@ class IncompleteTool:
         """Discard the values that were entered."""
         self.tool_number, self.known_values, self.tip_x_mm = 0, {}, None
 
+    def describe_missing_axis(self) -> str:
+        """Return the note that an axis must still be touched off, or an empty string without a new tool."""
+        if not self.tool_number:
+            return ""
+        text = tr("T{number} IS NOT SET YET. TOUCH OFF {axis} TOO")
+        number = format_edge_suffix(self.tool_number)
+        return tr(Message(text, number=number, axis=self.missing_axis.upper()))
+
     @property
     def missing_axis(self) -> str:
         """Return the axis whose value has not been entered yet, x or z."""

@@ -12015,11 +12015,6 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
-      <source>T{number} IS NOT SET YET. TOUCH OFF {axis} TOO</source>
-      <translation>T{number} AÚN SIN DEFINIR. TOQUE TAMBIÉN {axis}</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
       <source>T{number} IS NOT SET. TOUCH OFF X AND Z FIRST</source>
       <translation>T{number} ESTÁ SIN DEFINIR. TOQUE PRIMERO X Y Z</translation>
     </message>
@@ -12672,6 +12667,11 @@
       <location filename="app/offsets/offset_table.py" />
       <source>PAGE UP, PAGE DOWN: SCROLL   F5 OR ESC: CLOSE HISTORY</source>
       <translation>RE PÁG, AV PÁG: DESPLAZAR   F5 O ESC: CERRAR HISTORIAL</translation>
+    </message>
+    <message>
+      <location filename="app/offsets/offset_table.py" />
+      <source>T{number} IS NOT SET YET. TOUCH OFF {axis} TOO</source>
+      <translation>T{number} AÚN SIN DEFINIR. TOQUE TAMBIÉN {axis}</translation>
     </message>
     <message>
       <location filename="app/offsets/offset_table.py" />

@@ -77,13 +77,36 @@ def test_a_new_tool_that_touches_at_x_negative_is_questioned(jog: JogBench) -> N
     jog.enter("5")
     jog.type("x")
     jog.enter("-.5")
+    jog.saved()
+    change = f"T5 X R not set → +0.25000 ({text('offsets.doubt-side')})"
+    assert jog.prompt == text("offsets.suspicious", changes=change)
+    jog.confirm()
+    assert jog.prompt == text("jog.touched-one-of-two", number=5, axis="Z")
     jog.type("z")
     jog.enter("0")
     jog.saved()
-    assert shows(jog.prompt, "offsets.doubt-side")
-    assert jog.store.offsets.tool_offsets.read_rows() == {}
-    jog.confirm()
+    assert not jog.desk.confirmation_key  # X was confirmed already
     assert jog.store.offsets.tool_offsets.read_rows()[5].x == pytest.approx(0.25 * INCH)
+
+
+@pytest.mark.parametrize("key", [Key.Key_N, Key.Key_Escape])
+def test_no_discards_only_the_suspicious_axis_of_a_new_tool(jog: JogBench, key: Key) -> None:
+    jog.type("t")
+    jog.enter("5")
+    jog.type("x")
+    jog.enter(".5")
+    jog.type("z")
+    jog.enter("40")  # part zero at Z -40 in, and the travel ends at -6 in
+    jog.saved()
+    assert shows(jog.prompt, "offsets.doubt-travel")
+    jog.key(key)
+    jog.saved()
+    assert jog.store.offsets.tool_offsets.read_rows() == {}
+    jog.type("z")
+    jog.enter("0")
+    jog.saved()
+    assert jog.store.offsets.tool_offsets.read_rows()[5].x == pytest.approx(-0.25 * INCH)
+    assert jog.store.offsets.tool_offsets.read_rows()[5].z == pytest.approx(0.0)
 
 
 def test_a_touch_beyond_the_travel_is_questioned(jog: JogBench) -> None:
