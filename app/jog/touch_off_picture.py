@@ -15,13 +15,14 @@ from app.jog.touch_off_scene import (
     ToolAtPart,
     TouchedSurface,
     TouchOffScene,
+    assume_working_side,
     find_working_side,
     make_touch_off_scene,
 )
 from app.offsets.offset_changes import ConfirmedOffsetChanges, describe_suspicion
 from app.offsets.offset_values import UnitMode, describe_missing_offset, format_signed_length
 from core.part.tool_shape import ToolKind, ToolShape
-from core.store.store_rows import ToolOffsetRow
+from core.store.store_rows import ToolOffsetRow, ToolShapeRow
 from core.tool_edges import TIP_DIRECTIONS, format_edge_name, get_tool_number
 
 MISSING_VALUE = "?"
@@ -92,31 +93,45 @@ class TouchOffPictures:
         mode, row, name = tool.offset_history.unit_mode, tool.tool_row, touch.field_name
         old = None if row is None else touch.touch_position_mm - row.offset["xz".index(name)]
         new = self._find_new_position(mode)
-        shape, is_example = self._find_shape(old if name == "x" else self._find_old_x(row))
-        side, is_internal = find_working_side(
-            shape, old if name == "x" else self._find_old_x(row), is_shape_known=not is_example
-        )
+        new_x = new if name == "x" else None
+        shape, side, is_internal = self._find_shape(old if name == "x" else self._find_old_x(row), new_x)
         scene = make_touch_off_scene(
             ToolAtPart(shape, side, is_internal, name == "x", new, old, touch.is_skim_cut)
         )
         return TouchOffPicture(
             scene,
-            _name_surface(scene.surface),
+            self._make_title(scene.surface),
             _format_size(name, old, mode) if old is not None else describe_missing_offset(),
             _format_size(name, new, mode),
             _format_dimension(name, new, mode),
             _format_difference(name, old, new, mode),
             self._find_warning(new),
-            self._make_note(new if name == "x" else None, is_example=is_example),
+            self._make_note(new_x),
         )
 
-    def _make_note(self, new_x_mm: float | None, *, is_example: bool) -> str:
-        """Return a note about the shape or the tip quadrant of the tool, or an empty string."""
-        if is_example:
-            return tr("EXAMPLE TOOL. SHAPE: F8, F8")
+    def _find_stored_shape(self) -> ToolShapeRow | None:
+        """Return the stored shape of the tool, or None if it is missing or cannot be drawn."""
         tool = self.tool_setting
-        shape, row = tool.offset_book.tool_shapes[get_tool_number(tool.tool_number)], tool.tool_row
-        if row is None or new_x_mm is None or not is_quadrant_for_other_side(shape, row, new_x_mm):
+        stored = tool.offset_book.tool_shapes.get(get_tool_number(tool.tool_number))
+        return None if stored is None or find_shape_row_mistakes(stored, tool.tool_row) else stored
+
+    def _make_title(self, surface: TouchedSurface) -> str:
+        """Return the name of the touched surface, or DIAMETER if the tool may work inside or outside."""
+        row = self.tool_setting.tool_row or ToolOffsetRow()
+        is_unknown = self._find_stored_shape() is None and TIP_DIRECTIONS[row.quadrant][1] == 0
+        if is_unknown and surface in {TouchedSurface.OUTSIDE_DIAMETER, TouchedSurface.BORE}:
+            return tr("DIAMETER")
+        return _name_surface(surface)
+
+    def _make_note(self, new_x_mm: float | None) -> str:
+        """Return a note about the tip quadrant or the shape of the tool, or an empty string."""
+        shape, row = self._find_stored_shape(), self.tool_setting.tool_row or ToolOffsetRow()
+        is_rotating = shape is not None and make_tool_shape(shape, row).is_rotating
+        if row.quadrant == 0 and not is_rotating:
+            return tr("TIP NOT SET (Q)")
+        if shape is None:
+            return tr("EXAMPLE TOOL. SHAPE: F8, F8")
+        if new_x_mm is None or not is_quadrant_for_other_side(shape, row, new_x_mm):
             return ""
         return tr("WRONG TIP FOR THIS SIDE. CHANGE: Q")
 
@@ -134,13 +149,17 @@ class TouchOffPictures:
             return self.tool_setting.tool_fields.incomplete_tool.tip_x_mm
         return self.tool_setting.desk.read_snapshot().tip[0] - row.offset[0]
 
-    def _find_shape(self, old_x_mm: float | None) -> tuple[ToolShape, bool]:
-        """Return the stored shape of the tool, or else an example shape, and whether it is an example."""
-        tool = self.tool_setting
-        stored = tool.offset_book.tool_shapes.get(get_tool_number(tool.tool_number))
-        if stored is None or find_shape_row_mistakes(stored, tool.tool_row):
-            return make_example_shape(tool.tool_row or ToolOffsetRow(), old_x_mm), True
-        return _add_tip_quadrant(make_tool_shape(stored, tool.tool_row)), False
+    def _find_shape(self, old_x_mm: float | None, new_x_mm: float | None) -> tuple[ToolShape, int, bool]:
+        """Return the shape of the tool, the side on which it works and whether it works in a bore.
+
+        The shape is an example if none is stored.
+        """
+        stored, row = self._find_stored_shape(), self.tool_setting.tool_row or ToolOffsetRow()
+        if stored is not None:
+            shape = _add_tip_quadrant(make_tool_shape(stored, row))
+            return shape, *find_working_side(shape, old_x_mm, new_x_mm)
+        side, is_internal = assume_working_side(row.quadrant, old_x_mm, new_x_mm)
+        return make_example_shape(row, side, is_internal=is_internal), side, is_internal
 
     def _find_warning(self, new_position_mm: float | None) -> str:
         """Return the most serious reason why the entry must be confirmed, or an empty string."""
@@ -161,15 +180,10 @@ class TouchOffPictures:
         return f"{format_edge_name(first.row_number)}: {reason}"  # A tool that follows the master tool.
 
 
-def make_example_shape(row: ToolOffsetRow, old_x_mm: float | None) -> ToolShape:
-    """Return an example of a tool without a stored shape.
-
-    It is a boring bar if the tip quadrant points away from the axis, and otherwise a turning tool.
-    """
-    is_rear = old_x_mm is not None and old_x_mm < 0.0
-    shape = ToolShape(ToolKind.TURNING, tip=row.quadrant, nose_radius=row.nose_radius, rear=is_rear)
-    _side, is_internal = find_working_side(shape, old_x_mm, is_shape_known=False)
-    return _add_tip_quadrant(replace(shape, kind=ToolKind.BORING) if is_internal else shape)
+def make_example_shape(row: ToolOffsetRow, side: int, *, is_internal: bool) -> ToolShape:
+    """Return an example of a tool without a stored shape: a boring bar or a turning tool."""
+    kind = ToolKind.BORING if is_internal else ToolKind.TURNING
+    return _add_tip_quadrant(ToolShape(kind, tip=row.quadrant, nose_radius=row.nose_radius, rear=side < 0))
 
 
 def _add_tip_quadrant(shape: ToolShape) -> ToolShape:
@@ -187,7 +201,8 @@ def _name_surface(surface: TouchedSurface) -> str:
         TouchedSurface.OUTSIDE_DIAMETER: tr("OUTSIDE DIAMETER"),
         TouchedSurface.BORE: tr("BORE DIAMETER"),
         TouchedSurface.FACE: tr("FACE OF THE PART"),
-        TouchedSurface.NONE: tr("TOOL ON CENTER"),
+        TouchedSurface.CENTERLINE: tr("TOOL ON CENTER"),
+        TouchedSurface.NONE: tr("NO DIAMETER TOUCHED"),
     }
     return words[surface]
 

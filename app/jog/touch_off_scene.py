@@ -19,6 +19,7 @@ import numpy as np
 from core.part.tool_outline import ToolOutline, make_tool_outline
 from core.part.tool_shape import ToolShape
 from core.sketch import Point
+from core.tool_edges import TIP_DIRECTIONS
 
 Polygon = tuple[Point, ...]
 Bounds = tuple[float, float, float, float]  # Lowest and highest Z, then lowest and highest X.
@@ -26,6 +27,7 @@ _FAR_MM = 2000.0  # mm: the example part continues to the edge of the picture.
 _MIN_SIZE_MM, _MAX_SIZE_MM = 4.0, 20.0  # mm: limits of the size that the picture is based on.
 _NEAR = 5.0  # Sizes: distance up to which the picture contains the zero point of the dimension.
 _TOUCH_TOLERANCE_MM = 1e-6
+_CENTER_TOLERANCE_MM = 0.01  # Largest distance of a tool that is on the spindle centerline.
 
 
 class TouchedSurface(Enum):
@@ -34,7 +36,8 @@ class TouchedSurface(Enum):
     OUTSIDE_DIAMETER = auto()
     BORE = auto()
     FACE = auto()
-    NONE = auto()  # The tool is on the spindle centerline.
+    CENTERLINE = auto()  # The control point of the tool is on the spindle centerline.
+    NONE = auto()  # A part of the tool is on the centerline, so the tool cannot touch a diameter.
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,18 +79,42 @@ class TouchOffScene:
     visible_area: Bounds
 
 
+def _find_sign(*positions_mm: float | None) -> int:
+    """Return the sign of the first position that is known and not on the centerline, or else 0."""
+    signs = (
+        int(math.copysign(1, x)) for x in positions_mm if x is not None and abs(x) > _CENTER_TOLERANCE_MM
+    )
+    return next(signs, 0)
+
+
 def find_working_side(
-    shape: ToolShape, old_position_mm: float | None, *, is_shape_known: bool
+    shape: ToolShape, old_x_mm: float | None, new_x_mm: float | None = None
 ) -> tuple[int, bool]:
     """Return the side of the part on which a tool works, and whether it works in a bore.
 
-    The side is 1 for positive X. A tool without a stored shape is assumed to remain on its side, and its
-    tip quadrant then shows whether it points to the axis or away from it.
+    The side is 1 for positive X. A rotating tool can work on both sides, so it is assumed to remain on its
+    side. ``old_x_mm`` and ``new_x_mm`` are X of the tip according to the old offset and to the entry.
     """
-    if is_shape_known:
-        return (-1 if shape.is_rear_tool and not shape.is_rotating else 1), shape.internal
-    side = -1 if old_position_mm is not None and old_position_mm < 0.0 else 1
-    return side, shape.direction[1] * side > 0
+    if not shape.is_rotating:
+        return -1 if shape.is_rear_tool else 1, shape.internal
+    points_to_positive_x = TIP_DIRECTIONS[shape.tip] == (0, 1)
+    return -1 if points_to_positive_x else _find_sign(old_x_mm, new_x_mm) or 1, False
+
+
+def assume_working_side(
+    quadrant: int, old_x_mm: float | None, new_x_mm: float | None = None
+) -> tuple[int, bool]:
+    """Return the same as ``find_working_side`` for a tool whose shape is not stored.
+
+    The old offset can be wrong. Therefore, it does not decide that the tool works in a bore. A tool that
+    points to negative X is an outside tool at positive X, unless the entry confirms the other side.
+    """
+    across = TIP_DIRECTIONS[quadrant][1]
+    old, new = _find_sign(old_x_mm), _find_sign(new_x_mm)
+    if across < 0 and (not new or new != (old or new)):
+        return 1, False
+    side = new or old or 1
+    return side, across * side > 0
 
 
 @lru_cache(maxsize=16)
@@ -153,9 +180,10 @@ def _draw_diameter(tool: ToolAtPart, outline: ToolOutline) -> TouchOffScene:
     edge = _find_edge_distance(outline, 1, toward)
     radius = abs(x) + (edge if tool.is_internal else -edge)
     is_touching = radius > _TOUCH_TOLERANCE_MM
-    if not is_touching:  # The control point is on the centerline, and so is a part of the tool.
+    if not is_touching:
         part = _mirror(((-_FAR_MM, size), (0.0, size)), is_hollow=False)
-        surface = TouchedSurface.NONE
+        is_centered = abs(x) <= _CENTER_TOLERANCE_MM
+        surface = TouchedSurface.CENTERLINE if is_centered else TouchedSurface.NONE
     else:
         part = _make_turned_part(tool, radius, size)
         surface = TouchedSurface.BORE if tool.is_internal else TouchedSurface.OUTSIDE_DIAMETER

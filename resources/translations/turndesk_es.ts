@@ -12200,8 +12200,18 @@
     </message>
     <message>
       <location filename="app/jog/touch_off_picture.py" />
+      <source>NO DIAMETER TOUCHED</source>
+      <translation>NO TOCA NINGÚN DIÁMETRO</translation>
+    </message>
+    <message>
+      <location filename="app/jog/touch_off_picture.py" />
       <source>OUTSIDE DIAMETER</source>
       <translation>DIÁMETRO EXTERIOR</translation>
+    </message>
+    <message>
+      <location filename="app/jog/touch_off_picture.py" />
+      <source>TIP NOT SET (Q)</source>
+      <translation>PUNTA SIN DEFINIR (Q)</translation>
     </message>
     <message>
       <location filename="app/jog/touch_off_picture.py" />

@@ -14,6 +14,7 @@ from app.jog.touch_off_scene import (
     ToolAtPart,
     TouchedSurface,
     TouchOffScene,
+    assume_working_side,
     find_working_side,
     make_touch_off_scene,
 )
@@ -47,12 +48,12 @@ def part_radii(scene: TouchOffScene) -> set[float]:
 
 def diameter(shape: ToolShape, new: float | None, old: float | None = None, **more: bool) -> TouchOffScene:
     """The scene of a diameter, with X as a radius; the side is the one on which the tool works."""
-    side, internal = find_working_side(shape, old, is_shape_known=True)
+    side, internal = find_working_side(shape, old, new)
     return make_touch_off_scene(ToolAtPart(shape, side, internal, True, new, old, **more))
 
 
 def face(shape: ToolShape, new: float | None, old: float | None = None, **more: bool) -> TouchOffScene:
-    side, internal = find_working_side(shape, None, is_shape_known=True)
+    side, internal = find_working_side(shape, None)
     return make_touch_off_scene(ToolAtPart(shape, side, internal, False, new, old, **more))
 
 
@@ -96,7 +97,7 @@ def test_boring_bar_touches_bore_from_inside(tip: int, side: int, hand: ToolHand
 
 def test_drill_on_center_touches_no_diameter() -> None:
     scene = diameter(DRILL, 0.0)
-    assert scene.surface is TouchedSurface.NONE
+    assert scene.surface is TouchedSurface.CENTERLINE
     assert scene.touched_edge is None
     assert tool_range(scene, 1, scene.new_tip) == (NEAR(-4.0), NEAR(4.0))
 
@@ -202,23 +203,72 @@ def test_radius_typed_as_diameter_shows_old_tool_at_twice_the_radius() -> None:
     ],
 )
 def test_quadrant_decides_on_which_side_a_stored_shape_works(shape: ToolShape, side: int) -> None:
-    assert find_working_side(shape, 10.0, is_shape_known=True)[0] == side
+    assert find_working_side(shape, 10.0)[0] == side
 
 
 @pytest.mark.parametrize(
-    ("tip", "old", "side", "internal"),
+    ("tip", "old", "new", "side", "internal"),
     [
-        (2, 10.0, 1, True),
-        (2, -10.0, -1, False),
-        (3, 10.0, 1, False),
-        (3, -10.0, -1, True),
-        (0, None, 1, False),
+        (2, 10.0, 10.1, 1, True),
+        (2, -10.0, -10.1, -1, False),
+        (2, -10.0, 10.0, 1, True),
+        (3, 10.0, 10.1, 1, False),
+        (3, -10.0, -10.1, -1, True),
+        (3, -10.0, 10.0, 1, False),  # the old sign was wrong
+        (3, 10.0, -10.0, 1, False),  # the new sign is wrong
+        (3, -0.127, None, 1, False),  # a face that was cut .010 in past the center
+        (8, -0.127, None, 1, False),
+        (6, -10.0, None, -1, False),
+        (3, 0.0, 0.0, 1, False),
+        (0, None, None, 1, False),
+        (0, -10.0, None, -1, False),
+        (0, None, -10.0, -1, False),
+        (0, -10.0, 10.0, 1, False),
     ],
 )
-def test_tool_without_stored_shape_stays_on_its_side(
-    tip: int, old: float | None, side: int, internal: bool
+def test_old_sign_alone_makes_no_boring_bar_of_a_tool_without_shape(
+    tip: int, old: float | None, new: float | None, side: int, internal: bool
 ) -> None:
-    assert find_working_side(ToolShape(tip=tip), old, is_shape_known=False) == (side, internal)
+    assert assume_working_side(tip, old, new) == (side, internal)
+
+
+@pytest.mark.parametrize(
+    ("tip", "old", "new", "side"),
+    [
+        (0, -10.0, 10.0, -1),
+        (0, None, -10.0, -1),
+        (0, 0.0, -10.0, -1),  # from the centerline
+        (7, 10.0, -10.0, 1),
+        (8, -10.0, None, -1),
+        (6, 10.0, 10.0, -1),  # points to X+, so the part is there
+        (0, None, None, 1),
+    ],
+)
+def test_rotating_tool_stays_on_its_side(tip: int, old: float | None, new: float | None, side: int) -> None:
+    assert find_working_side(ToolShape(ToolKind.DRILL, tip=tip, diameter=8.0), old, new) == (side, False)
+
+
+def test_drill_at_negative_x_touches_with_its_upper_flank() -> None:
+    """The entered -28 is the bar of 20 and the drill of 8 mm, at X-."""
+    scene = diameter(DRILL, -14.0, -14.1)
+    assert scene.surface is TouchedSurface.OUTSIDE_DIAMETER
+    assert scene.touched_edge is not None
+    assert [x for _z, x in scene.touched_edge] == [NEAR(-10.0)] * 2
+    assert tool_range(scene, 1, scene.new_tip) == (NEAR(-18.0), NEAR(-10.0))
+
+
+@pytest.mark.parametrize(
+    ("x", "surface"),
+    [
+        (1.27, TouchedSurface.NONE),  # Ø .1 in, and the drill has a radius of 4 mm
+        (-3.9, TouchedSurface.NONE),
+        (0.02, TouchedSurface.NONE),
+        (0.009, TouchedSurface.CENTERLINE),
+        (-0.009, TouchedSurface.CENTERLINE),
+    ],
+)
+def test_only_a_tool_at_the_centerline_is_on_center(x: float, surface: TouchedSurface) -> None:
+    assert diameter(DRILL, x).surface is surface
 
 
 def test_boring_bar_at_negative_diameter_leaves_its_bore_edge() -> None:

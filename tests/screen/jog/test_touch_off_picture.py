@@ -94,7 +94,7 @@ def test_picture_of_a_face_shows_the_entered_position(jog: JogBench) -> None:
         ("turning", "1.2", TouchedSurface.OUTSIDE_DIAMETER),
         ("left", "1.2", TouchedSurface.OUTSIDE_DIAMETER),
         ("boring", "1.2", TouchedSurface.BORE),
-        ("drill", "0", TouchedSurface.NONE),
+        ("drill", "0", TouchedSurface.CENTERLINE),
         ("cutoff", "1.2", TouchedSurface.OUTSIDE_DIAMETER),
     ],
 )
@@ -119,6 +119,47 @@ def test_tool_without_shape_is_marked_as_example(jog: JogBench) -> None:
     given(jog)
     jog.type("x1.2")
     assert picture(jog).note_text
+
+
+def without_shape(jog: JogBench, quadrant: int, old_diameter: float) -> None:
+    """T1 has an offset and no stored shape, and is chosen. Its old diameter is in inches."""
+    values: Values = {"quadrant": quadrant, "x": -old_diameter / 2 * INCH, "z": -50.0}
+    jog.store.offsets.tool_offsets.change_row(1, "set", values).result(60)
+    jog.desk.offset_book.read_store()
+    choose(jog, 1)
+
+
+def test_right_diameter_after_a_wrong_sign_shows_an_outside_tool(jog: JogBench) -> None:
+    without_shape(jog, quadrant=3, old_diameter=-1.202)
+    jog.type("x1.2")
+    shown = picture(jog)
+    assert shown.scene.surface is TouchedSurface.OUTSIDE_DIAMETER
+    assert shown.scene.touched_edge is not None
+    assert shown.scene.touched_edge[0][1] == pytest.approx(0.6 * INCH)
+    assert shown.note_text == text("jog.example-tool")
+
+
+def test_face_cut_past_the_center_shows_no_boring_bar(jog: JogBench) -> None:
+    without_shape(jog, quadrant=3, old_diameter=-0.010)
+    jog.type("z1.97")
+    scene = picture(jog).scene
+    assert len(scene.part_outlines) == 1  # solid, without a bore
+    assert scene.new_tip is not None
+    assert scene.new_tip[1] > 0.0
+
+
+@pytest.mark.parametrize("old_diameter", [1.202, -1.202])
+def test_tool_without_quadrant_has_a_neutral_title(jog: JogBench, old_diameter: float) -> None:
+    without_shape(jog, quadrant=0, old_diameter=old_diameter)
+    jog.type("x1.2")
+    assert picture(jog).title == text("jog.unknown-side")
+    assert picture(jog).note_text == text("jog.tip-not-set")
+
+
+def test_drill_beside_the_center_touches_no_diameter(jog: JogBench) -> None:
+    shaped(jog, "drill", x=0.0)
+    jog.type("x.1")
+    assert picture(jog).title == text("jog.no-diameter")
 
 
 def test_skim_cut_shows_the_cut_surface_at_the_size_question(jog: JogBench) -> None:
