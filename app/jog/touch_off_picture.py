@@ -32,9 +32,10 @@ MISSING_VALUE = "?"
 class TouchOffPicture:
     """Drawing of a touch-off with its texts.
 
+    - ``unit_text`` is the unit of the sizes, or an empty string if the whole screen uses it.
     - ``new_text`` is the entered size, and ``old_text`` is the size according to the old offset.
-    - ``size_texts`` are the lines of the dimension: the entered size, and the radius if the machine uses
-      radii.
+    - ``size_texts`` are the lines of the dimension: the entered size, and the radius of a diameter.
+    - ``size_change_text`` is the new size minus the old size. The offset changes in the opposite direction.
     - ``warning_text`` is the reason why the entry must be confirmed, or an empty string.
     - ``note_text`` explains how the tool is drawn, states that its tip quadrant is wrong, or is an empty
       string.
@@ -42,10 +43,11 @@ class TouchOffPicture:
 
     scene: TouchOffScene
     title: str
+    unit_text: str
     old_text: str
     new_text: str
     size_texts: tuple[str, ...]
-    difference_text: str
+    size_change_text: str
     warning_text: str
     note_text: str
 
@@ -83,6 +85,7 @@ class TouchOffPictures:
             tool.tool_row,
             tool.offset_book.tool_shapes.get(get_tool_number(tool.tool_number)),
             tool.offset_history.unit_mode,
+            self._is_other_unit_displayed(),
             touch.touch_position_mm,
             touch.moves_only_this_tool,
             touch.is_skim_cut,
@@ -101,10 +104,11 @@ class TouchOffPictures:
         return TouchOffPicture(
             scene,
             self._make_title(scene.surface),
+            (tr("MM") if mode.is_metric else tr("INCH")) if self._is_other_unit_displayed() else "",
             _format_size(name, old, mode) if old is not None else describe_missing_offset(),
             _format_size(name, new, mode),
             _format_dimension(name, new, mode),
-            _format_difference(name, old, new, mode),
+            _format_size_change(name, old, new, mode),
             self._find_warning(new),
             self._make_note(new_x),
         )
@@ -123,6 +127,12 @@ class TouchOffPictures:
             return tr("DIAMETER")
         return _name_surface(surface)
 
+    def _is_other_unit_displayed(self) -> bool:
+        """Return whether the positions on the screen are in another unit than the entry."""
+        tool = self.tool_setting
+        is_metric = tool.offset_history.unit_mode.is_metric
+        return tool.desk.settings_store.display_units.metric(is_metric) != is_metric
+
     def _make_note(self, new_x_mm: float | None) -> str:
         """Return a note about the tip quadrant or the shape of the tool, or an empty string."""
         shape, row = self._find_stored_shape(), self.tool_setting.tool_row or ToolOffsetRow()
@@ -133,7 +143,7 @@ class TouchOffPictures:
             return tr("EXAMPLE TOOL. SHAPE: F8, F8")
         if new_x_mm is None or not is_quadrant_for_other_side(shape, row, new_x_mm):
             return ""
-        return tr("WRONG TIP FOR THIS SIDE. CHANGE: Q")
+        return tr("TIP FOR OTHER SIDE (Q)")
 
     def _find_new_position(self, mode: UnitMode) -> float | None:
         """Return the entered size as the position of the tip in mm, or None if it is not a valid number."""
@@ -215,15 +225,16 @@ def _format_size(name: str, position_mm: float | None, mode: UnitMode) -> str:
 
 
 def _format_dimension(name: str, position_mm: float | None, mode: UnitMode) -> tuple[str, ...]:
-    """Return the lines of the dimension: the entered size, and the radius if the machine uses radii."""
+    """Return the lines of the dimension: the entered size, and the radius of a diameter."""
     size = _format_size(name, position_mm, mode)
-    if name == "z" or mode.is_diameter or position_mm is None:
+    if name == "z" or position_mm is None:
         return (size,)
     return size, f"R {format_length(position_mm, mode.is_metric)}"
 
 
-def _format_difference(name: str, old_mm: float | None, new_mm: float | None, mode: UnitMode) -> str:
+def _format_size_change(name: str, old_mm: float | None, new_mm: float | None, mode: UnitMode) -> str:
     """Return the new size minus the old size as text, or an empty string if one of them is unknown."""
     if old_mm is None or new_mm is None:
         return ""
-    return format_signed_length((new_mm - old_mm) * (2.0 if name == "x" else 1.0), mode.is_metric)
+    symbol, factor = ("Ø", 2.0) if name == "x" else ("Z", 1.0)
+    return f"{symbol} {format_signed_length((new_mm - old_mm) * factor, mode.is_metric)}"

@@ -65,7 +65,7 @@ class TouchOffScene:
     """Outlines and dimension of a touch-off in mm.
 
     - ``tool_outline`` is relative to the tip, which is at ``new_tip`` and ``old_tip``.
-    - ``dimension`` extends from the zero point to the control point of the tool.
+    - ``dimension`` extends across the diameter, or from part zero to the control point of the tool.
     - ``visible_area`` is the area that the picture must contain.
     """
 
@@ -194,7 +194,7 @@ def _draw_diameter(tool: ToolAtPart, outline: ToolOutline) -> TouchOffScene:
         outline,
         (0.0, x) if tool.new_position_mm is not None or not known else None,
         (0.0, tool.old_position_mm) if tool.old_position_mm is not None else None,
-        ((-1.3 * size, 0.0), (-1.3 * size, x)),
+        ((-1.3 * size, -x), (-1.3 * size, x)),
         _find_diameter_area(tool, known or (x,), radius, size),
     )
 
@@ -230,6 +230,7 @@ def _find_diameter_area(tool: ToolAtPart, positions: Iterable[float], radius: fl
     points = [each for x in positions for each in (x - 0.3 * size, x + 0.3 * size, x + 1.5 * size * body)]
     if tool.is_internal:
         points += [math.copysign(radius + size, x) for x in positions]
+        points.append(tool.side * (radius + 0.3 * size))  # A wrong tip is opposite the touched line.
     if tool.shape.is_rotating:
         points += [-1.2 * size, 1.2 * size]
     elif all(_is_near(x, size) for x in positions):

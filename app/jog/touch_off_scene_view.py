@@ -12,6 +12,7 @@ from app.jog.touch_off_picture import TouchOffPicture
 from app.jog.touch_off_scene import Bounds, TouchedSurface, TouchOffScene
 from app.screen.drawings import draw_arrowhead, make_outline_polygon
 from app.screen.screen_theme import ALIGN_CENTER, ALIGN_RIGHT, ThemedPainter
+from core.message import join_messages
 from core.sketch import Point
 
 _TEXT_WIDTH_RATIO = 0.36  # Width of the texts as a ratio to the width of the picture.
@@ -46,16 +47,17 @@ def _draw_warning(painter: ThemedPainter, box: QRectF, picture: TouchOffPicture)
 
 
 def _draw_texts(painter: ThemedPainter, area: QRectF, picture: TouchOffPicture) -> None:
-    """Draw the surface, the old and the new size, their difference and the note."""
+    """Draw the surface with the unit, the old and the new size, their difference and the note."""
     u, ink = painter.theme.unit_px, _find_new_color(picture)
     rows = (
         (tr("OLD"), picture.old_text, "pause", Qt.PenStyle.DashLine),
         (tr("NEW"), picture.new_text, ink, Qt.PenStyle.SolidLine),
-        (tr("DIFFERENCE"), picture.difference_text, "", Qt.PenStyle.NoPen),
+        (tr("SIZE CHANGE"), picture.size_change_text, "", Qt.PenStyle.NoPen),
     )
     high = min(painter.theme.find_line_height(3.4), area.height() / _ROW_COUNT)
     row = QRectF(area.x(), area.y(), area.width(), high)
-    painter.draw_text_line(row, picture.title, _TEXT_SIZE, "accent")
+    title = join_messages(", ", [each for each in (picture.title, picture.unit_text) if each])
+    painter.draw_text_line(row, title, _TEXT_SIZE, "accent")
     for name, value, color, style in rows:
         row.translate(0, high)
         if not value:
@@ -185,7 +187,10 @@ def _draw_old_tool(
 def _draw_dimension(
     painter: ThemedPainter, scene: TouchOffScene, place: QTransform, area: QRectF, texts: tuple[str, ...]
 ) -> None:
-    """Draw the dimension from the zero point to the control point, with the entered size."""
+    """Draw the dimension with the entered size.
+
+    A diameter has its text between the centerline and the tool. Its other end can be outside the drawing.
+    """
     start, end = (place.map(QPointF(*each)) for each in scene.dimension)
     tip = scene.new_tip or scene.old_tip
     painter.setPen(QPen(painter.theme.get_color("text"), 1.0))
@@ -200,7 +205,7 @@ def _draw_dimension(
         _draw_size(painter, area, line, texts, area.right())
     else:  # Z of the tip is 0, and the text must not cover the tool.
         tip_column = place.map(QPointF(0.0, 0.0)).x() - _CROSS_SIZE * painter.theme.unit_px
-        _draw_size(painter, area, line, texts, tip_column)
+        _draw_size(painter, area, QLineF(line.center(), end), texts, tip_column)
 
 
 def _draw_part_zero(painter: ThemedPainter, zero: QPointF, dimension_start: QPointF) -> None:

@@ -12210,6 +12210,11 @@
     </message>
     <message>
       <location filename="app/jog/touch_off_picture.py" />
+      <source>TIP FOR OTHER SIDE (Q)</source>
+      <translation>PUNTA PARA OTRO LADO (Q)</translation>
+    </message>
+    <message>
+      <location filename="app/jog/touch_off_picture.py" />
       <source>TIP NOT SET (Q)</source>
       <translation>PUNTA SIN DEFINIR (Q)</translation>
     </message>
@@ -12217,11 +12222,6 @@
       <location filename="app/jog/touch_off_picture.py" />
       <source>TOOL ON CENTER</source>
       <translation>HERRAMIENTA EN EL CENTRO</translation>
-    </message>
-    <message>
-      <location filename="app/jog/touch_off_picture.py" />
-      <source>WRONG TIP FOR THIS SIDE. CHANGE: Q</source>
-      <translation>PUNTA INCORRECTA PARA ESTE LADO. CAMBIAR: Q</translation>
     </message>
     <message>
       <location filename="app/jog/touch_off_scene_view.py" />
@@ -12232,6 +12232,11 @@
       <location filename="app/jog/touch_off_scene_view.py" />
       <source>OLD</source>
       <translation>ANTES</translation>
+    </message>
+    <message>
+      <location filename="app/jog/touch_off_scene_view.py" />
+      <source>SIZE CHANGE</source>
+      <translation>CAMBIO MEDIDA</translation>
     </message>
     <message>
       <location filename="app/mdi/mdi_model.py" />

@@ -75,8 +75,7 @@ def test_outside_tool_touches_measured_diameter_on_its_side(shape: ToolShape, si
     assert part_radii(scene) == {12.5}
     assert scene.touched_edge is not None
     assert [x for _z, x in scene.touched_edge] == [NEAR(12.5 * side)] * 2
-    assert scene.dimension[0][1] == 0.0
-    assert scene.dimension[1][1] == NEAR(12.5 * side)
+    assert [x for _z, x in scene.dimension] == [NEAR(-12.5 * side), NEAR(12.5 * side)]  # the whole diameter
     low, high = tool_range(scene, 1, scene.new_tip)
     assert (low if side > 0 else high) == NEAR(12.5 * side, abs=1e-3)
     low, high = tool_range(scene, 1, scene.old_tip)
@@ -269,6 +268,14 @@ def test_drill_at_negative_x_touches_with_its_upper_flank() -> None:
 )
 def test_only_a_tool_at_the_centerline_is_on_center(x: float, surface: TouchedSurface) -> None:
     assert diameter(DRILL, x).surface is surface
+
+
+def test_boring_bar_with_the_tip_of_an_outside_tool_is_shown_with_its_touched_line() -> None:
+    """Quadrant 3 is for a bar at X-, so the touched line is there."""
+    scene = diameter(ToolShape(ToolKind.BORING, tip=3, diameter=12.0), 7.6, 7.6)
+    assert scene.touched_edge is not None
+    assert scene.touched_edge[0][1] == NEAR(-7.6)
+    assert contains(scene, 0.0, -7.6)
 
 
 def test_boring_bar_at_negative_diameter_leaves_its_bore_edge() -> None:

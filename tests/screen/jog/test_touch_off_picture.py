@@ -8,8 +8,10 @@ from __future__ import annotations
 import pytest
 from PySide6.QtCore import QRect
 
+from app.desk.screen_settings import DisplayUnits
 from app.jog.touch_off_picture import TouchOffPicture
 from app.jog.touch_off_scene import TouchedSurface
+from app.offsets.offset_values import UnitMode
 from app.screen.color_palettes import LIGHT_PALETTE
 from app.screen.text_sizes import ScreenResolution
 from app.screen.window_layout import FINGERTIP_PX
@@ -61,14 +63,36 @@ def test_picture_follows_the_typed_digits(jog: JogBench) -> None:
     jog.type("1.2")
     shown = picture(jog)
     assert shown.new_text == "Ø 1.20000"
-    assert shown.size_texts == ("Ø 1.20000", "R 0.60000")  # the machine uses radii
+    assert shown.size_texts == ("Ø 1.20000", "R 0.60000")
     assert shown.old_text == "Ø 1.20200"
-    assert shown.difference_text == "−0.00200"
+    assert shown.size_change_text == "Ø −0.00200"
+    assert shown.unit_text == ""
     assert shown.warning_text == ""
     assert shown.scene.new_tip == (0.0, pytest.approx(0.6 * INCH))
     assert shown.scene.old_tip == (0.0, pytest.approx(0.601 * INCH))
     jog.key(Key.Key_Backspace)
     assert picture(jog).scene.new_tip == (0.0, pytest.approx(0.5 * INCH))  # 1.
+
+
+def test_dimension_has_the_radius_also_if_the_control_uses_diameters(jog: JogBench) -> None:
+    given(jog)
+    jog.type("x1.2")
+    model = jog.page.model
+    model.tool_setting.offset_history.unit_mode = UnitMode(is_diameter=True)
+    model.touch_off_pictures.update()
+    assert model.touch_off_pictures.picture is not None
+    assert model.touch_off_pictures.picture.size_texts == ("Ø 1.20000", "R 0.60000")
+
+
+def test_sizes_have_their_unit_if_the_positions_have_another(jog: JogBench) -> None:
+    given(jog)
+    jog.desk.settings_store.choose("units", DisplayUnits.METRIC.value)
+    jog.type("x1.2")
+    assert picture(jog).unit_text == "INCH"
+    assert picture(jog).new_text == "Ø 1.20000"
+    jog.desk.settings_store.choose("units", DisplayUnits.INCH.value)
+    assert picture(jog).unit_text == ""
+    jog.desk.settings_store.choose("units", DisplayUnits.PROGRAM.value)
 
 
 def test_unchanged_entry_is_not_drawn_again(jog: JogBench) -> None:
