@@ -26,6 +26,7 @@ from core.store.store_rows import ToolOffsetRow, ToolShapeRow
 from core.tool_edges import TIP_DIRECTIONS, format_edge_name, get_tool_number
 
 MISSING_VALUE = "?"
+WARNING_DELAY_S = 0.7  # Pause in the entry after which a warning appears.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,6 +38,7 @@ class TouchOffPicture:
     - ``size_texts`` are the lines of the dimension: the entered size, and the radius of a diameter.
     - ``size_change_text`` is the new size minus the old size. The offset changes in the opposite direction.
     - ``warning_text`` is the reason why the entry must be confirmed, or an empty string.
+    - ``is_warning_due`` means that the operator has finished or interrupted the entry.
     - ``note_text`` explains how the tool is drawn, states that its tip quadrant is wrong, or is an empty
       string.
     """
@@ -50,6 +52,12 @@ class TouchOffPicture:
     size_change_text: str
     warning_text: str
     note_text: str
+    is_warning_due: bool = False
+
+    @property
+    def shown_warning(self) -> str:
+        """Return the warning, or an empty string while the operator is typing."""
+        return self.warning_text if self.is_warning_due else ""
 
 
 @dataclass(slots=True)
@@ -62,6 +70,7 @@ class TouchOffPictures:
     tool_setting: ToolSetting
     picture: TouchOffPicture | None = None
     _inputs: Hashable = field(default=None)  # The values that the current picture was made from.
+    _changed_at: float = 0.0  # s: time of the last change of these values.
 
     def update(self) -> None:
         """Make the picture again if the entry or the tool has changed.
@@ -70,11 +79,19 @@ class TouchOffPictures:
         """
         tool = self.tool_setting
         if tool.question_name in TOUCH_FIELDS and not tool.is_tool_setter_result:
-            inputs = self._list_inputs()
+            now, inputs = tool.desk.station_controls.clock(), self._list_inputs()
             if self.picture is None or inputs != self._inputs:
-                self.picture, self._inputs = self._make_picture(), inputs
-        elif not tool.is_touch_off_confirmation_open:
+                self.picture, self._inputs, self._changed_at = self._make_picture(), inputs, now
+            self._show_warning(is_due=now - self._changed_at >= WARNING_DELAY_S)
+        elif tool.is_touch_off_confirmation_open:
+            self._show_warning(is_due=True)
+        else:
             self.picture = None
+
+    def _show_warning(self, *, is_due: bool) -> None:
+        """Show the warning of the picture when it is due. A shown warning remains."""
+        if self.picture is not None and is_due and not self.picture.is_warning_due:
+            self.picture = replace(self.picture, is_warning_due=True)
 
     def _list_inputs(self) -> Hashable:
         tool, touch = self.tool_setting, self.tool_setting.touch_off

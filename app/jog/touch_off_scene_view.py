@@ -28,7 +28,7 @@ def draw_touch_off_picture(painter: ThemedPainter, area: QRectF, picture: TouchO
     """Draw the texts of the picture, the drawing next to or below them, and the warning below both."""
     u, line = painter.theme.unit_px, painter.theme.find_line_height(2.2)
     rest = QRectF(area)
-    if picture.warning_text:
+    if picture.shown_warning:
         rest.setBottom(area.bottom() - line - 0.4 * u)
         _draw_warning(painter, QRectF(area.x(), rest.bottom() + 0.4 * u, area.width(), line), picture)
     if rest.height() > rest.width():  # The texts are above the drawing.
@@ -43,7 +43,7 @@ def draw_touch_off_picture(painter: ThemedPainter, area: QRectF, picture: TouchO
 
 def _draw_warning(painter: ThemedPainter, box: QRectF, picture: TouchOffPicture) -> None:
     painter.draw_box(box, "alarm", 0.2, "key")
-    painter.draw_text_line(box, picture.warning_text, 2.0, "alarm", at=ALIGN_CENTER, margin=1.0)
+    painter.draw_text_line(box, picture.shown_warning, 2.0, "alarm", at=ALIGN_CENTER, margin=1.0)
 
 
 def _draw_texts(painter: ThemedPainter, area: QRectF, picture: TouchOffPicture) -> None:
@@ -74,7 +74,7 @@ def _draw_texts(painter: ThemedPainter, area: QRectF, picture: TouchOffPicture) 
 
 
 def _find_new_color(picture: TouchOffPicture) -> str:
-    return "alarm" if picture.warning_text else "text"
+    return "alarm" if picture.shown_warning else "text"
 
 
 def _draw_legend(painter: ThemedPainter, box: QRectF, color: str, style: Qt.PenStyle) -> None:

@@ -282,6 +282,29 @@ def test_other_question_removes_the_picture(jog: JogBench, key: Key) -> None:
     assert not has_picture(jog)
 
 
+def test_warning_waits_until_the_operator_stops_typing(jog: JogBench) -> None:
+    """Ø 1 on the way to 1.2 is .101 in on the radius from the old offset."""
+    shaped(jog, "turning")
+    jog.type("x1")
+    jog.run(0.6)
+    assert picture(jog).warning_text == text("offsets.doubt-large")
+    assert picture(jog).shown_warning == ""
+    jog.run(0.1)
+    assert picture(jog).shown_warning == text("offsets.doubt-large")
+    jog.type(".2")
+    assert picture(jog).shown_warning == ""
+    jog.run(0.8)
+    assert picture(jog).shown_warning == ""
+
+
+def test_enter_shows_the_warning_at_once(jog: JogBench) -> None:
+    shaped(jog, "turning")
+    jog.type("x-1.2")
+    assert picture(jog).shown_warning == ""
+    jog.key(Key.Key_Return)
+    assert picture(jog).shown_warning == text("offsets.doubt-side")
+
+
 def test_new_tool_at_wrong_side_is_shown_at_once(jog: JogBench) -> None:
     choose(jog, 5)
     jog.type("x-.5")
@@ -353,7 +376,8 @@ def test_picture_covers_neither_position_nor_keys(
     jog.frame.arrange_parts()
     shaped(jog, "turning")
     jog.type("x-1.2")
-    picture(jog)
+    jog.run(0.8)
+    assert picture(jog).shown_warning
     page = jog.page
     panel = page.tool_panel
     assert panel.isVisible()
