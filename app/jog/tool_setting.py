@@ -221,16 +221,16 @@ class ToolSetting:
     def update(self, snapshot: Snapshot) -> None:
         """Select the tool that becomes active, and discard the entry if the unit of length changes.
 
-        This method is called once per frame.
+        While a question is open, the selected tool remains. This method is called once per frame.
         """
         before = self.offset_history.unit_mode
         self.offset_history.update(snapshot)
         if self.offset_history.unit_mode != before and self.question_name:
             self.close_question()
             self.desk.say(tr("UNITS OR DIAMETER/RADIUS CHANGED. NOT SAVED. RE-ENTER VALUE"))
-        if snapshot.modal.tool != self._active:
+        if snapshot.modal.tool != self._active and not self.question_name:
             self._active = snapshot.modal.tool
-            if self._active and not self.question_name:
+            if self._active:
                 self._choose(self._active)
 
     def _choose(self, number: int) -> None:
@@ -331,6 +331,7 @@ class ToolSetting:
         if value not in OFFSET_NUMBERS:
             raise InvalidEntryError(tr(Message("T{number:g} does not exist; tools are T1…32", number=value)))
         self._choose(int(value))
+        self._active = self.desk.read_snapshot().modal.tool  # The operator's choice remains.
         self.close_question()
         return ""
 

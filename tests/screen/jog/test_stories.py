@@ -160,6 +160,39 @@ def test_touch_off_is_active_at_once_for_loaded_tool(jog: JogBench) -> None:
     assert jog.frame.readout_line.status.tool_text == "T1"
 
 
+def load(jog: JogBench, tool: int) -> None:
+    """Another tool becomes active."""
+    status = jog.executor._control.status
+    status.modal_state = jog.executor.snapshot.modal._replace(tool=tool)
+    jog.run(0.05)
+
+
+def test_tool_that_is_changed_during_an_entry_is_selected_after_it(jog: JogBench) -> None:
+    set_two(jog)
+    jog.key(Key.Key_F1)
+    jog.key(Key.Key_F5)
+    load(jog, 1)
+    setting = jog.page.model.tool_setting
+    jog.type("x1.2")
+    load(jog, 2)
+    assert setting.tool_number == 1  # the entry remains with its tool
+    jog.key(Key.Key_Escape)
+    jog.run(0.02)
+    assert setting.tool_number == 2
+
+
+def test_tool_number_that_is_typed_during_a_tool_change_is_selected(jog: JogBench) -> None:
+    set_two(jog)
+    jog.key(Key.Key_F1)
+    jog.key(Key.Key_F5)
+    load(jog, 1)
+    jog.type("t")
+    load(jog, 2)
+    jog.enter("1")
+    jog.run(0.02)
+    assert jog.page.model.tool_setting.tool_number == 1
+
+
 def test_tool_fields_are_entered_on_jog_page(jog: JogBench) -> None:
     set_two(jog)
     touch(jog, "n", ".4/25.4")
