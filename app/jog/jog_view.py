@@ -55,7 +55,7 @@ class ManualFunctionPanel(TouchPanel):
     """Panel of the manual functions.
 
     A touch selects a function, and the start buttons run it. STOP takes effect immediately, even if the
-    press arrives late.
+    press arrives late. The keys have no letters while an entry is open, because the keyboard then types.
     """
 
     _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
@@ -71,6 +71,7 @@ class ManualFunctionPanel(TouchPanel):
             hand.selected_function,
             hand.prepared_line.ready_job is not None,
             hand.start_speed_rpm,
+            self._model.is_entry_open,
             (round(snapshot.rpm_actual), snapshot.rpm_command, snapshot.outputs),
             snapshot.state,
         )
@@ -130,12 +131,17 @@ class ManualFunctionPanel(TouchPanel):
         )
         box = QRectF(left.right() + 0.6 * u, row.y(), row.right() - left.right() - 0.6 * u, row.height())
         painter.draw_box(box, "alarm", 0.3, "key")
-        painter.draw_text_line(QRectF(box.x() + 0.8 * u, box.y(), 2.6 * u, box.height()), "0", 1.9, "accent")
+        letter_box = QRectF(box.x() + 0.8 * u, box.y(), 2.6 * u, box.height())
+        painter.draw_text_line(letter_box, self._find_letter("0"), 1.9, "accent")
         painter.draw_text_line(
             box.adjusted(3.2 * u, 0, -0.6 * u, 0), tr("SPINDLE STOP"), 2.4, "alarm", at=ALIGN_CENTER
         )
         stop = make_press_control(box, partial(self._model.select_manual_function, STOP))
         self.controls.append(stop.make_stop_control())
+
+    def _find_letter(self, letter: str) -> str:
+        """Return the letter of a key, or an empty string while the letter belongs to an entry."""
+        return "" if self._model.is_entry_open else letter
 
     def _keys(self, painter: ThemedPainter, row: QRectF, *keys: tuple[str, str, str, bool]) -> None:
         u, hand = self.theme.unit_px, self._model.manual_functions
@@ -143,7 +149,7 @@ class ManualFunctionPanel(TouchPanel):
         for number, (letter, words, name, on) in enumerate(keys):
             box = QRectF(row.x() + number * wide, row.y(), wide - 0.6 * u, row.height())
             chosen = hand.selected_function == (name or SPEED_KEY)
-            draw_function_key(painter, box, letter, words, is_selected=chosen, is_on=on)
+            draw_function_key(painter, box, self._find_letter(letter), words, is_selected=chosen, is_on=on)
             press = (
                 partial(self._model.select_manual_function, name)
                 if name

@@ -358,6 +358,27 @@ def test_turning_spindle_keeps_the_stop_key_of_the_manual_functions(jog: JogBenc
     assert not jog.page.tool_panel.isVisible()
 
 
+def test_digit_keys_of_the_manual_functions_are_hidden_while_they_type(jog: JogBench) -> None:
+    """Key 0 types a digit during an entry, so the key of SPINDLE STOP is only a touch target then."""
+    panel = jog.page.manual_panel
+    spindle(jog)
+    choose(jog, 1)
+    assert {"0", "1", "2"} <= {shown for _box, shown in panel.read_painted_texts()}
+    jog.type("x1")
+    jog.run(0.02)
+    panel.grab()
+    assert not any(shown.isdigit() for _box, shown in panel.read_painted_texts())
+    jog.type("0")
+    assert jog.page.model.tool_setting.text == "10"
+    assert jog.shot.rpm_actual > 190.0
+    jog.key(Key.Key_Escape)
+    jog.run(0.02)
+    panel.grab()
+    assert "0" in {shown for _box, shown in panel.read_painted_texts()}
+    jog.type("0")
+    jog.until(lambda: jog.shot.rpm_actual < 1.0)
+
+
 # --- layout ------------------------------------------------------------------------------------------------
 
 
