@@ -141,7 +141,7 @@ def remove_abandoned_files(folder: Path) -> None:
         return
     with suppress(OSError):
         for leftover in folder.glob(f".*{_ENDING}"):
-            if not _is_written_elsewhere(leftover):
+            if not is_written_elsewhere(leftover):
                 _remove(leftover)
         for ending in _BESIDE:
             for companion_file in folder.glob(f".*{_ENDING}{ending}"):
@@ -168,7 +168,7 @@ def _locked(handle: int) -> Iterator[None]:
             os.close(handle)
 
 
-def _is_written_elsewhere(path: Path) -> bool:
+def is_written_elsewhere(path: Path) -> bool:
     """Return whether another process is writing the file, or True if this is unknown."""
     handle = _opened(path)
     if handle < 0:

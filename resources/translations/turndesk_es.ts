@@ -11310,13 +11310,13 @@
     </message>
     <message>
       <location filename="app/extras/tour/tour_function.py" />
-      <source>THE TOUR NEEDS A SIMULATED MACHINE. START turndesk tour</source>
-      <translation>EL RECORRIDO NECESITA UNA MÁQUINA SIMULADA. INICIE turndesk tour</translation>
+      <source>THE TOUR OPENS IN ITS OWN WINDOW</source>
+      <translation>EL RECORRIDO SE ABRE EN SU PROPIA VENTANA</translation>
     </message>
     <message>
       <location filename="app/extras/tour/tour_function.py" />
-      <source>THE TOUR OPENS IN ITS OWN WINDOW</source>
-      <translation>EL RECORRIDO SE ABRE EN SU PROPIA VENTANA</translation>
+      <source>THE TOUR RUNS ONLY ON A SIMULATED MACHINE</source>
+      <translation>EL RECORRIDO SÓLO FUNCIONA EN UNA MÁQUINA SIMULADA</translation>
     </message>
     <message>
       <location filename="app/extras/tour/tour_function.py" />

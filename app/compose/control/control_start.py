@@ -16,6 +16,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import NamedTuple
 
+from core.file_lock import is_written_elsewhere
 from core.machine.machine_model import Machine
 from core.process_environment import make_module_environment
 
@@ -48,6 +49,12 @@ def list_socket_paths(folder: Path) -> list[Path]:
     """
     paths = [folder / f"{name}.sock" for name in SLOT_NAMES]
     return paths if all(len(os.fsencode(path)) < _PATH_LENGTH for path in paths) else []
+
+
+def is_control_running(folder: Path) -> bool:
+    """Return whether a control of this data folder is running, or the drivers of a killed control."""
+    locks = (folder / f"{name}{ending}" for name in SLOT_NAMES for ending in (".lock", "-drivers.lock"))
+    return any(path.exists() and is_written_elsewhere(path) for path in locks)
 
 
 def start_control(machine: Machine, folder: Path, clock_zero_s: float | None = None) -> StartedControl:

@@ -9,12 +9,13 @@ from collections.abc import Mapping
 from app.desk.desk import Desk
 from app.desk.pages.table_content import FunctionKey, TableContent, TableRow
 from app.desk.status.prompt_line import ACTIVE_STATES
+from app.extras.tour.tour_command import FROM_SCREEN_OPTION
 from app.extras.tour.tour_setup import SHOWN_SETTING
 from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Snapshot
 from core.process_environment import make_module_environment
 
-_SIMULATED_ONLY = "THE TOUR NEEDS A SIMULATED MACHINE. START turndesk tour"
+_SIMULATED_ONLY = "THE TOUR RUNS ONLY ON A SIMULATED MACHINE"
 _ROWS = (
     ("1", "A PART IS TURNED, THREADED, MILLED WITH C AND PARTED OFF"),
     ("2", "A WEAR CORRECTION"),
@@ -69,7 +70,7 @@ class TourFunction(SpecialFunction):
             self.desk.show_refusal(refusal)
             return
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "app.cli.main", "tour"],
+            [sys.executable, "-m", "app.cli.main", "tour", FROM_SCREEN_OPTION],
             env=make_module_environment(),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
@@ -21,6 +22,7 @@ from app.extras.tour.extra import EXTRA
 from app.extras.tour.tour_setup import SHOWN_SETTING, is_first_start, save_tour_shown, use_tour_folder
 from app.screen import display
 from core.extras.tour.tour_script import FAULTY_PROGRAM_NAME, PROGRAM_NAME
+from core.file_lock import lock_file
 from core.store.production.part_cycles import CycleRow, save_cycle
 from core.store.store import Store
 from core.store.store_errors import StoreError
@@ -157,8 +159,55 @@ def test_plain_demo_start_begins_with_the_tour(folder: Path, monkeypatch: pytest
 def test_tour_without_a_display_is_rejected(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(display, "find_display_error", lambda: "no display found")
     with raises_code(CommandError, "no-screen", "no display found"):
-        tour_command.run(Namespace())
+        tour_command.run(Namespace(from_screen=False))
     assert is_first_start(folder)
+
+
+@pytest.fixture
+def shown(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The shows that the command has begun."""
+    found = list[str]()
+
+    def show(class_name: str) -> int:
+        found.append(class_name)
+        return 0
+
+    monkeypatch.setattr(main, "run_opening_show", show)
+    return found
+
+
+def test_tour_is_rejected_while_a_screen_of_the_same_folder_is_open(folder: Path, shown: list[str]) -> None:
+    with Store.open(folder), raises_code(CommandError, "screen-open", "close the screen"):
+        tour_command.run(main.build_parser(["tour"]).parse_args(["tour"]))
+    assert shown == []
+
+
+@pytest.mark.parametrize("name", ["control.lock", "control-drivers.lock", "control-4.lock"])
+@pytest.mark.skipif(sys.platform == "win32", reason="the control has no process of its own")
+def test_tour_is_rejected_while_a_control_is_running(folder: Path, shown: list[str], name: str) -> None:
+    with (folder / name).open("w") as lock:
+        lock_file(lock.fileno())
+        with raises_code(CommandError, "screen-open", "close the screen"):
+            tour_command.run(Namespace(from_screen=False))
+    assert shown == []
+
+
+def test_tour_begins_after_the_control_was_killed(folder: Path, shown: list[str]) -> None:
+    (folder / "control.lock").touch()  # a killed control leaves its file, but the kernel releases the lock
+    assert tour_command.run(Namespace(from_screen=False)) == 0
+    assert shown == [EXTRA.opening_show_class]
+
+
+def test_tour_of_the_special_function_begins_although_its_screen_is_open(
+    folder: Path, shown: list[str]
+) -> None:
+    with Store.open(folder):
+        assert tour_command.run(main.build_parser(["tour"]).parse_args(["tour", "--from-screen"])) == 0
+    assert shown == [EXTRA.opening_show_class]
+
+
+def test_option_of_the_special_function_is_not_in_the_help() -> None:
+    assert "from-screen" not in main.build_parser(["tour"]).format_help()
 
 
 def test_tour_creates_no_store_in_a_folder_without_one(tmp_path: Path) -> None:

@@ -290,7 +290,7 @@ def function(
 def test_special_function_starts_one_tour_in_its_own_process(function: tuple[Day, TourFunction]) -> None:
     day, shown = function
     day.key(Key.Key_Return)
-    assert [command[-1] for command in StartedProcess.commands] == ["tour"]
+    assert [command[-2:] for command in StartedProcess.commands] == [["tour", "--from-screen"]]
     assert shows(day.prompt, "tour.opens")
     day.key(Key.Key_F2)
     assert shows(day.prompt, "tour.running")
