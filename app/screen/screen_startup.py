@@ -22,7 +22,7 @@ from app.desk.screen_settings import SYSTEM_THEME
 from app.screen import accessible
 from app.screen.screen_theme import ScreenTheme, find_palette, load_fonts, style_application
 from app.screen.window.main_window import MainWindow
-from core.message import Message
+from core.message import CodedError, Message
 
 if TYPE_CHECKING:
     from app.compose.control.control_attachment import MachineAndControl
@@ -107,10 +107,20 @@ class _Startup:
             self._window.show_model(desk)
             show.begin(self._window, self._end_show)
         except Exception as error:  # noqa: BLE001 - an exception in Qt's loop cannot be caught
-            _log.exception("the opening show cannot begin")
-            if not show.opens_desk:
-                self._trouble = error
+            self._report_show_error(error, opens_desk=show.opens_desk)
             self._end_show()
+
+    def _report_show_error(self, error: Exception, *, opens_desk: bool) -> None:
+        """Log why the show cannot begin, or let ``close`` raise the error if no screen opens.
+
+        An expected error, such as a full disk, is logged in one line without a traceback.
+        """
+        if not opens_desk:
+            self._trouble = error
+        elif isinstance(error, CodedError | OSError):
+            _log.warning("the opening show cannot begin: %s", error)
+        else:
+            _log.error("the opening show cannot begin", exc_info=error)
 
     def _end_show(self) -> None:
         """Close the opening show, and then open the screen or close the window."""

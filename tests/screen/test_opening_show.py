@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -9,6 +10,7 @@ import pytest
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
+from app.desk.command_errors import CommandError
 from app.desk.desk import Desk
 from app.desk.pages.attached_parts import ClosingSequence, ControlClosing
 from app.screen.screen_startup import run_screen
@@ -84,6 +86,48 @@ def test_screen_opens_if_the_show_cannot_begin(qapp: QApplication, caplog: pytes
     assert run_screen(build_model=lambda: build_desk_that_closes_its_window(log, []), opening_show=show) == 0
     assert log == ["show over", "desk built", "desk closed"]
     assert "no space left" in caplog.text
+
+
+def run_faulty_show(error: Exception, monkeypatch: pytest.MonkeyPatch, *, opens_desk: bool) -> None:
+    """Run a show that cannot begin, with the log as it is before the desk attaches its file."""
+    monkeypatch.setattr(logging.getLogger(), "handlers", [])
+    log = list[str]()
+    run_screen(
+        build_model=lambda: build_desk_that_closes_its_window(log, []),
+        opening_show=ShortShow(log, opens_desk, error),
+    )
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        CommandError("[Errno 28] No space left on device: '.tour.x'", "cannot-write"),
+        FileNotFoundError(2, "No such file or directory", "tour.nc"),
+    ],
+)
+def test_expected_error_of_the_show_is_one_line_without_a_traceback(
+    qapp: QApplication, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], error: Exception
+) -> None:
+    run_faulty_show(error, monkeypatch, opens_desk=True)
+    assert [
+        line for line in capfd.readouterr().err.splitlines() if "the opening show" in line or "File" in line
+    ] == [f"the opening show cannot begin: {error}"]
+
+
+def test_error_of_a_show_without_a_screen_is_only_raised(
+    qapp: QApplication, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(CommandError, match="disk full"):
+        run_faulty_show(CommandError("disk full", "cannot-write"), monkeypatch, opens_desk=False)
+    assert "disk full" not in capfd.readouterr().err
+
+
+def test_unexpected_error_of_the_show_is_logged_with_its_traceback(
+    qapp: QApplication, caplog: pytest.LogCaptureFixture
+) -> None:
+    show = ShortShow([], error=KeyError("fault"))
+    run_screen(build_model=lambda: build_desk_that_closes_its_window([], []), opening_show=show)
+    assert "Traceback" in caplog.text
 
 
 def test_show_without_a_screen_that_cannot_begin_is_reported(qapp: QApplication) -> None:

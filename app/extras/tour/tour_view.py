@@ -133,7 +133,10 @@ class Tour:
         return build_tour_desk()
 
     def begin(self, window: MainWindow, on_end: Callable[[], None]) -> None:
-        """Begin the first step. ``on_end`` is called from the event loop after the tour has ended."""
+        """Begin the first step. ``on_end`` is called from the event loop after the tour has ended.
+
+        Raises CommandError if the program of the tour cannot be read.
+        """
         application = QApplication.instance()
         assert window.frame is not None
         assert application is not None
@@ -145,7 +148,8 @@ class Tour:
             self.opens_desk = self.opens_desk and not input_filter.was_closed
             QTimer.singleShot(0, window, on_end)
 
-        director = TourDirector(window.frame.desk, keyboard, end)
+        with convert_to_command_error(OSError):
+            director = TourDirector(window.frame.desk, keyboard, end)
         input_filter = TourInputFilter(window, keyboard, director.stop)
         window.frame.desk.page_registry.set_guidance_card(director)
         application.installEventFilter(input_filter)
