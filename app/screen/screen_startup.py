@@ -126,10 +126,19 @@ class _Startup:
         """Close the opening show, and then open the screen or close the window."""
         show = self._show
         self._close_model()
-        if show is not None and show.opens_desk:
-            self.build_and_show_model()
-        else:
+        if show is None or not show.opens_desk or self._is_program_handed_over():
             QApplication.exit(0)
+        else:
+            self.build_and_show_model()
+
+    def _is_program_handed_over(self) -> bool:
+        """Return whether a screen that was started during the show has accepted the program.
+
+        A second screen in the same data folder could not save anything.
+        """
+        from app.screen.window.running_screen import hand_over_program
+
+        return bool(self._program) and hand_over_program(self._program or "")
 
     def build_and_show_model(self) -> None:
         """Build the model, and open it.

@@ -16,7 +16,7 @@ from app.desk.pages.attached_parts import ClosingSequence, ControlClosing
 from app.screen.screen_startup import run_screen
 from app.screen.window.main_window import MainWindow
 from app.screen.window.window_frame import WindowFrame
-from tests.screen.desks import desk_on
+from tests.screen.desks import SAMPLES, desk_on
 from tests.screen.fake import FakeMachine
 
 
@@ -128,6 +128,28 @@ def test_unexpected_error_of_the_show_is_logged_with_its_traceback(
     show = ShortShow([], error=KeyError("fault"))
     run_screen(build_model=lambda: build_desk_that_closes_its_window([], []), opening_show=show)
     assert "Traceback" in caplog.text
+
+
+@pytest.mark.parametrize("is_accepted", [True, False])
+def test_second_screen_opens_only_if_no_other_screen_accepts_the_program(
+    qapp: QApplication, monkeypatch: pytest.MonkeyPatch, is_accepted: bool
+) -> None:
+    log = list[str]()
+
+    def hand_over(program_path: str) -> bool:
+        log.append(f"hands over {program_path}")
+        return is_accepted
+
+    monkeypatch.setattr("app.screen.window.running_screen.hand_over_program", hand_over)
+    program = str(SAMPLES / "pin.nc")
+    status = run_screen(
+        program_file=program,
+        build_model=lambda: build_desk_that_closes_its_window(log, []),
+        opening_show=ShortShow(log),
+    )
+    assert status == 0
+    screen = [] if is_accepted else ["desk built", "desk closed"]
+    assert log == ["begins", "show closed", "show over", f"hands over {program}", *screen]
 
 
 def test_show_without_a_screen_that_cannot_begin_is_reported(qapp: QApplication) -> None:

@@ -38,17 +38,18 @@ if TYPE_CHECKING:
 SHOWN_SETTING = "tour_shown"  # Setting that is true after the tour was shown with this data folder.
 _LESSONS_SETTING = "completed_lessons"
 _PROGRAMS_FOLDER_NAME = "programs"
+_TOUR_FOLDER_NAME = "tour"
 _CHANGE_REASON = ChangeReason("tools of the tour", "import")
 
 
 def is_first_start(folder: Path) -> bool:
     """Return whether the data folder is unused, so that the tour can begin.
 
-    The folder then has no cycle, no program of the operator, no completed lesson and no earlier tour. The
-    result is False if the store cannot be read.
+    The folder then has no cycle, no program of the operator, no completed lesson, no earlier tour and no
+    tour that is running. The result is False if the store cannot be read.
     """
     remove_abandoned_files(folder)
-    if any((folder / _PROGRAMS_FOLDER_NAME).glob("*")):
+    if any(folder.glob(f".{_TOUR_FOLDER_NAME}.*")) or any((folder / _PROGRAMS_FOLDER_NAME).glob("*")):
         return False
     with suppress(StoreError, OSError), Store.open(folder, read_only=True) as store:
         read = store.settings.read_setting
@@ -88,7 +89,7 @@ def use_tour_folder() -> Iterator[Path]:
     """
     own_folder, environment_value = find_data_folder(), os.environ.get(HOME_VARIABLE)
     own_folder.mkdir(parents=True, exist_ok=True)
-    with create_unfinished_folder(own_folder / "tour") as folder:
+    with create_unfinished_folder(own_folder / _TOUR_FOLDER_NAME) as folder:
         _fill_folder(folder, _read_screen_settings(own_folder))
         os.environ[HOME_VARIABLE] = str(folder)
         try:

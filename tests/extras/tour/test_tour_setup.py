@@ -123,6 +123,12 @@ def test_folder_of_a_killed_tour_is_deleted_at_the_next_start(folder: Path) -> N
     assert not left.exists()
 
 
+def test_second_start_during_the_tour_begins_without_a_tour(folder: Path) -> None:
+    with use_tour_folder():
+        assert not is_first_start(folder)
+    assert is_first_start(folder)
+
+
 def test_tour_is_not_marked_as_shown_while_a_screen_uses_the_store(folder: Path) -> None:
     with Store.open(folder):
         save_tour_shown(folder)
