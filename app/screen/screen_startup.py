@@ -94,6 +94,7 @@ class _Startup:
     ) -> None:
         self._window, self._build, self._program, self._show = window, build, program, show
         self._desk: Desk | None = None
+        self._starts_with_estop = False  # The operator has pressed the E-stop in the opening show.
         self._trouble: Exception | None = None
 
     def begin(self) -> None:
@@ -124,7 +125,8 @@ class _Startup:
 
     def _end_show(self) -> None:
         """Close the opening show, and then open the screen or close the window."""
-        show = self._show
+        show, desk = self._show, self._desk
+        self._starts_with_estop = desk is not None and desk.station_controls.is_estop_pressed
         self._close_model()
         if show is None or not show.opens_desk or self._is_program_handed_over():
             QApplication.exit(0)
@@ -148,6 +150,8 @@ class _Startup:
         try:
             desk = self._desk = self._build()
             self._window.show_model(desk)
+            if self._starts_with_estop:
+                desk.station_keys.press_estop()
             load_first_program(desk, self._program)
             self._listen_later()
         except Exception as error:  # noqa: BLE001 - an exception in Qt's loop cannot be caught

@@ -27,6 +27,7 @@ class ShortShow:
     log: list[str]
     opens_desk: bool = True
     error: Exception | None = None
+    presses_estop: bool = False
     windows: list[MainWindow] = field(default_factory=list)
 
     def build_model(self) -> Desk:
@@ -37,6 +38,8 @@ class ShortShow:
     def begin(self, window: MainWindow, on_end: Callable[[], None]) -> None:
         self.log.append("begins")
         self.windows.append(window)
+        if self.presses_estop:
+            window.press_estop()
         QTimer.singleShot(0, window, on_end)
 
     def close(self) -> None:
@@ -150,6 +153,26 @@ def test_second_screen_opens_only_if_no_other_screen_accepts_the_program(
     assert status == 0
     screen = [] if is_accepted else ["desk built", "desk closed"]
     assert log == ["begins", "show closed", "show over", f"hands over {program}", *screen]
+
+
+@pytest.mark.parametrize("is_pressed", [True, False])
+def test_emergency_stop_pressed_in_the_show_remains_pressed_on_the_screen(
+    qapp: QApplication, is_pressed: bool
+) -> None:
+    log, shown = list[str](), list[bool]()
+    show = ShortShow(log, presses_estop=is_pressed)
+
+    def look() -> None:
+        (window,) = (
+            each
+            for each in QApplication.topLevelWidgets()
+            if isinstance(each, MainWindow) and each.isVisible()
+        )
+        assert window.frame is not None
+        shown.append(window.frame.desk.station_controls.is_estop_pressed)
+
+    run_screen(build_model=lambda: build_desk_that_closes_its_window(log, [], look), opening_show=show)
+    assert shown == [is_pressed]
 
 
 def test_show_without_a_screen_that_cannot_begin_is_reported(qapp: QApplication) -> None:
