@@ -35,6 +35,7 @@ MAX_STEP_S = 60.0  # Seconds after which a step whose condition is not met ends 
 MAX_STOP_S = 8.0  # Seconds after which a tour that is being stopped ends in any state.
 STANDSTILL_RPM = 10.0  # Below this speed, the spindle counts as stopped.
 START_RETRY_S = 2.0  # Seconds after which the palm buttons are pressed again if the cycle did not start.
+_DISTURBED_STATES = INTERRUPTED_STATES | {MachineState.FAULT, MachineState.ESTOP}
 
 
 class TourKeyboard(Protocol):
@@ -107,7 +108,7 @@ class TourDirector:
         now, snapshot = self._clock(), self._desk.read_snapshot()
         if self._is_stopping:
             self._continue_stop(now, snapshot)
-        elif not self.can_move_machine() or now - self._begun_at_s > MAX_STEP_S:
+        elif not self.can_move_machine() or now - self._begun_at_s > MAX_STEP_S or _is_disturbed(snapshot):
             self.stop()
         elif self._keys:
             self._press_next_key(now)
@@ -191,6 +192,14 @@ def _can_start(loaded: LoadedProgram) -> bool:
 def _make_caption(text: str, text_below: str = "") -> NoticeRow:
     """Return the row of the tour with this caption."""
     return NoticeRow(text, text_below, color_name="wait", is_caption=True)
+
+
+def _is_disturbed(snapshot: Snapshot) -> bool:
+    """Return whether something has stopped the cycle, such as a late screen, an alarm or the E-stop.
+
+    The programs of the tour have no stops, so the caption would then be wrong.
+    """
+    return bool(snapshot.alarms) or snapshot.state in _DISTURBED_STATES
 
 
 def _is_at_rest(snapshot: Snapshot) -> bool:

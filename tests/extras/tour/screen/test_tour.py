@@ -28,7 +28,7 @@ from app.screen.screen_theme import ScreenTheme, measure_text, set_language
 from app.screen.window.window_bars import CAPTION_TEXT
 from app.screen.window_layout import MIN_WINDOW_PX, make_automatic_layout
 from app.special.special_functions import SpecialFunctionsModel
-from core.executor.snapshot import MachineState
+from core.executor.snapshot import Alarm, MachineState
 from core.extras.tour.tour_script import FAULTY_PROGRAM_NAME, TOUR_STEPS, TourStep
 from tests.screen.day import Day, Key, begun
 from tests.texts import shows
@@ -237,6 +237,48 @@ def test_tour_presses_no_key_on_a_machine_that_is_not_simulated(
     assert pressed == []
     assert tour.day.shot.begun == 0
     assert tour.day.shot.state is MachineState.DISABLED
+
+
+def hold_feed(day: Day) -> None:
+    day.desk.start_feed_hold()
+
+
+def press_estop(day: Day) -> None:
+    day.desk.station_controls.estop(is_pressed=True)
+
+
+def turn_on_single_block(day: Day) -> None:
+    day.desk.toggle_switch("single_block")
+
+
+@pytest.mark.parametrize(
+    ("disturb", "end"),
+    [
+        (hold_feed, MachineState.IDLE),
+        (turn_on_single_block, MachineState.IDLE),
+        (press_estop, MachineState.ESTOP),
+    ],
+)
+def test_stop_that_the_tour_did_not_cause_ends_it(
+    tour: ShownTour, disturb: Callable[[Day], None], end: MachineState
+) -> None:
+    tour.run_to("TURNING")
+    tour.run_until(lambda: tour.day.shot.state is MachineState.RUN)
+    disturb(tour.day)
+    start = tour.day.clock.now()
+    tour.run_until(lambda: bool(tour.ends) or tour.day.clock.now() - start > MAX_STEP_S / 2)
+    assert tour.ends == [True]
+    assert tour.day.shot.state is end
+    assert tour.day.shot.rpm_command == 0.0
+
+
+def test_alarm_ends_the_tour(tour: ShownTour, monkeypatch: pytest.MonkeyPatch) -> None:
+    tour.run_to("TURNING")
+    alarm = Alarm(101, "axis", "AXIS DRIVE FAULT", "", "")
+    shot = replace(tour.day.shot, state=MachineState.FAULT, alarms=(alarm,))
+    monkeypatch.setattr(tour.day.desk, "read_snapshot", lambda: shot)
+    tour.director.advance()
+    assert tour.director.is_stopping
 
 
 def test_tour_that_cannot_continue_ends(tour: ShownTour) -> None:
