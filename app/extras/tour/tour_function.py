@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Mapping
+from contextlib import suppress
 
 from app.desk.desk import Desk
 from app.desk.pages.table_content import FunctionKey, TableContent, TableRow
@@ -16,6 +17,7 @@ from core.executor.snapshot import Snapshot
 from core.process_environment import make_module_environment
 
 _SIMULATED_ONLY = "THE TOUR RUNS ONLY ON A SIMULATED MACHINE"
+_END_TIMEOUT_S = 2.0  # Seconds that TurnDesk waits for the end of the tour when it closes.
 _ROWS = (
     ("1", "A PART IS TURNED, THREADED, MILLED WITH C AND PARTED OFF"),
     ("2", "A WEAR CORRECTION"),
@@ -84,4 +86,5 @@ class TourFunction(SpecialFunction):
         """End the tour when TurnDesk closes."""
         if self._process is not None and self._process.poll() is None:
             self._process.terminate()
-            self._process.wait()
+            with suppress(subprocess.TimeoutExpired):  # It ends its machine later, without this screen.
+                self._process.wait(_END_TIMEOUT_S)

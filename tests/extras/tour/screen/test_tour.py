@@ -300,6 +300,7 @@ class StartedProcess:
     def __init__(self, command: list[str], **_options: object) -> None:
         self.commands.append(command)
         self.status: int | None = None
+        self.hangs = False
 
     def poll(self) -> int | None:
         return self.status
@@ -307,7 +308,10 @@ class StartedProcess:
     def terminate(self) -> None:
         self.status = -15
 
-    def wait(self) -> int:
+    def wait(self, timeout: float | None = None) -> int:
+        if self.hangs:
+            assert timeout is not None
+            raise subprocess.TimeoutExpired(self.commands[-1], timeout)
         return self.status or 0
 
 
@@ -342,6 +346,17 @@ def test_special_function_starts_one_tour_in_its_own_process(function: tuple[Day
     shown.close()
     day.key(Key.Key_F2)
     assert len(StartedProcess.commands) == 2
+
+
+def test_screen_closes_although_the_tour_does_not_end(
+    function: tuple[Day, TourFunction], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    day, shown = function
+    day.key(Key.Key_Return)
+    assert isinstance(shown._process, StartedProcess)
+    shown._process.hangs = True
+    shown.close()
+    assert shown._process.status == -15
 
 
 def test_special_function_is_rejected_on_a_real_machine(function: tuple[Day, TourFunction]) -> None:
