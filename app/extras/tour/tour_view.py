@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 
 from PySide6.QtCore import QCoreApplication, QEvent, QObject, Qt, QTimer
@@ -22,6 +23,7 @@ from core.extras.tour.tour_script import PALMS_DOWN, PALMS_UP, SOLID_VIEW
 from core.store.store_errors import StoreError
 
 ADVANCE_INTERVAL_MS = 50  # Milliseconds between two calls of the director.
+INPUT_DELAY_MS = 300  # Milliseconds after which input acts on the next screen, which has then been drawn.
 _NO_MODIFIER = Qt.KeyboardModifier.NoModifier
 _NAMED_KEYS: Mapping[str, tuple[Qt.Key, str]] = {
     **{f"F{number}": (Qt.Key(Qt.Key.Key_F1 + number - 1), "") for number in range(1, 13)},
@@ -82,13 +84,14 @@ class TourInputFilter(QObject):
     """Application event filter that ends the tour at the first key press, click or touch.
 
     Stop keys and stop controls are passed on, so that they stop the machine as always. All other input has
-    no effect until the tour has ended.
+    no effect until the tour has ended and the next screen has been drawn.
     """
 
     def __init__(self, window: MainWindow, keyboard: WindowKeyboard, stop: Callable[[], None]) -> None:
         super().__init__(window)
         self._window, self._keyboard, self._stop = window, keyboard, stop
         self.was_closed = False  # The operator has closed the window.
+        self.has_tour_ended = False  # The window can then be closed.
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Return whether the event must not be passed on."""
@@ -96,6 +99,8 @@ class TourInputFilter(QObject):
             return False
         kind = event.type()
         if kind == QEvent.Type.Close and watched is self._window:
+            if self.has_tour_ended:
+                return False
             event.ignore()
             self.was_closed = True
             self._stop()
@@ -144,9 +149,14 @@ class Tour:
 
         def end() -> None:
             timer.stop()
-            application.removeEventFilter(input_filter)
+            input_filter.has_tour_ended = True
             self.opens_desk = self.opens_desk and not input_filter.was_closed
-            QTimer.singleShot(0, window, on_end)
+            QTimer.singleShot(0, window, open_next_screen)
+
+        def open_next_screen() -> None:
+            on_end()
+            remove_filter = partial(application.removeEventFilter, input_filter)
+            QTimer.singleShot(INPUT_DELAY_MS, window, remove_filter)
 
         with convert_to_command_error(OSError):
             director = TourDirector(window.frame.desk, keyboard, end)

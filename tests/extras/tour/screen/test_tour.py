@@ -16,8 +16,10 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.compose.machine.machine_files import load_machine
+from app.desk.data_folder import find_data_folder
 from app.desk.persistence import Persistence
 from app.desk.translation import tr
+from app.extras.tour import tour_view
 from app.extras.tour.extra import EXTRA
 from app.extras.tour.tour_director import MAX_STEP_S, TourDirector
 from app.extras.tour.tour_function import TourFunction
@@ -73,6 +75,13 @@ class ShownTour:
         self.day.window.refresh()
         rows = self.day.frame.notice_rows.notice_rows
         return rows[0].text if rows else ""
+
+
+class EndingDirector(TourDirector):
+    """Director of a tour that ends at once."""
+
+    def advance(self) -> None:
+        self._end()
 
 
 @contextmanager
@@ -213,6 +222,31 @@ def test_closing_the_window_ends_the_tour_but_keeps_the_window_until_the_machine
     assert input_filter.was_closed
     assert tour.director.is_stopping
     assert tour.day.window.isVisible()
+
+
+def test_key_pressed_while_the_next_screen_is_built_does_not_act_on_it(
+    tour: ShownTour, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    day, pages = tour.day, list[str]()
+
+    def build_screen() -> None:
+        day.key(Key.Key_F9)
+        pages.append(day.page)
+        day.key(Key.Key_E)
+
+    monkeypatch.setattr(tour_view, "TourDirector", EndingDirector)
+    show = tour_view.Tour(find_data_folder(), opens_desk=True)
+    show.begin(day.window, build_screen)
+    day.qtbot.waitUntil(lambda: bool(pages))
+    assert pages == ["AUTOMATIC"]
+    assert day.desk.station_controls.is_estop_pressed  # stop keys act at once
+
+    def press_key() -> bool:
+        day.key(Key.Key_F9)
+        return day.page == "SECONDARY OFFSETS"
+
+    day.qtbot.waitUntil(press_key)
+    show.close()
 
 
 def test_keys_of_the_tour_do_not_end_it(tour: ShownTour, input_filter: TourInputFilter) -> None:
