@@ -83,6 +83,8 @@ NO_CHANGE = {
     "cli/proofs/proof_cache.py": "proofs that can be made again",
     "cli/proofs/report_file.py": "a report, to a file of whoever asks",
     "desk/programs/recent_programs.py": "the paths of programs that were loaded",
+    "extras/tour/tour_function.py": "starts turndesk tour, which has its own data folder",
+    "extras/tour/tour_setup.py": "the store of the tour, and the mark that it was shown",
     "extras/quality/shift_command.py": "a report",
     "extras/tool_tables/export_command.py": "a tool table, to a file that the user names",
     "cli/trace_command.py": "setpoints, to a file of whoever asks",

@@ -1,7 +1,7 @@
-"""Options of ``turndesk tour`` for the tests of all commands. The command has none of its own."""
+"""Option of ``turndesk tour`` for the tests of all commands."""
 
 from __future__ import annotations
 
-COVERED: dict[tuple[str, str], str] = {}
+COVERED = {("tour", "--from-screen"): "tests/extras/tour"}
 REST: dict[str, list[str]] = {"tour": []}
 READS = {"tour"}  # the tour has its own data folder
