@@ -11255,13 +11255,13 @@
     </message>
     <message>
       <location filename="app/extras/tour/extra.py" />
-      <source>watch a simulated lathe make a part in one minute; any key ends the tour</source>
-      <translation>ver un torno simulado hacer una pieza en un minuto; cualquier tecla termina el recorrido</translation>
+      <source>watch a simulated lathe make a part in one minute; any key or touch ends the tour</source>
+      <translation>ver un torno simulado hacer una pieza en un minuto; cualquier tecla o toque termina el recorrido</translation>
     </message>
     <message>
       <location filename="app/extras/tour/tour_director.py" />
-      <source>ANY KEY ENDS THE TOUR</source>
-      <translation>CUALQUIER TECLA TERMINA EL RECORRIDO</translation>
+      <source>ANY KEY OR TOUCH ENDS THE TOUR</source>
+      <translation>CUALQUIER TECLA O TOQUE TERMINA EL RECORRIDO</translation>
     </message>
     <message>
       <location filename="app/extras/tour/tour_director.py" />
@@ -11290,8 +11290,8 @@
     </message>
     <message>
       <location filename="app/extras/tour/tour_function.py" />
-      <source>ENTER: START THE TOUR. ANY KEY ENDS IT</source>
-      <translation>ENTER: INICIAR EL RECORRIDO. CUALQUIER TECLA LO TERMINA</translation>
+      <source>ENTER: START THE TOUR. ANY KEY OR TOUCH ENDS IT</source>
+      <translation>ENTER: INICIAR EL RECORRIDO. CUALQUIER TECLA O TOQUE LO TERMINA</translation>
     </message>
     <message>
       <location filename="app/extras/tour/tour_function.py" />
@@ -23355,28 +23355,23 @@
     </message>
     <message>
       <location filename="core/extras/tour/tour_script.py" />
-      <source>EACH DIAMETER BEFORE AND AFTER THE CORRECTION</source>
-      <translation>CADA DIÁMETRO ANTES Y DESPUÉS DE LA CORRECCIÓN</translation>
-    </message>
-    <message>
-      <location filename="core/extras/tour/tour_script.py" />
       <source>END OF THE TOUR. SEE IT AGAIN WITH F10, TOUR</source>
       <translation>FIN DEL RECORRIDO. VÉALO DE NUEVO CON F10, RECORRIDO</translation>
     </message>
     <message>
       <location filename="core/extras/tour/tour_script.py" />
-      <source>MILLING: THE SPINDLE, NOW THE C AXIS, TURNS A HEXAGON</source>
-      <translation>FRESADO: EL HUSILLO, AHORA EJE C, GIRA Y SALE UN HEXÁGONO</translation>
+      <source>EVERY DIAMETER CUT WITH D1 GETS .0012 IN SMALLER</source>
+      <translation>CADA DIÁMETRO TORNEADO CON D1 DISMINUYE .0012 PULG</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tour/tour_script.py" />
+      <source>MILLING: THE SPINDLE IS NOW THE C AXIS AND A MILL CUTS A HEXAGON</source>
+      <translation>FRESADO: EL HUSILLO ES AHORA EL EJE C Y LA FRESA CORTA UN HEXÁGONO</translation>
     </message>
     <message>
       <location filename="core/extras/tour/tour_script.py" />
       <source>PARTING OFF: THE PART FALLS INTO THE CATCHER</source>
       <translation>TRONZADO: LA PIEZA CAE EN EL RECOGEDOR</translation>
-    </message>
-    <message>
-      <location filename="core/extras/tour/tour_script.py" />
-      <source>THE PART BEFORE AND AFTER THE CORRECTION</source>
-      <translation>LA PIEZA ANTES Y DESPUÉS DE LA CORRECCIÓN</translation>
     </message>
     <message>
       <location filename="core/extras/tour/tour_script.py" />
@@ -23387,6 +23382,11 @@
       <location filename="core/extras/tour/tour_script.py" />
       <source>THREADING: EACH PASS STARTS AT THE SAME SPINDLE ANGLE</source>
       <translation>ROSCADO: CADA PASADA EMPIEZA EN EL MISMO ÁNGULO DEL HUSILLO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/tour/tour_script.py" />
+      <source>TURNDESK CALCULATES THE PART WITH THE CORRECTION</source>
+      <translation>TURNDESK CALCULA LA PIEZA CON LA CORRECCIÓN</translation>
     </message>
     <message>
       <location filename="core/extras/tour/tour_script.py" />
@@ -23401,12 +23401,12 @@
     <message>
       <location filename="core/extras/tour/tour_script.py" />
       <source>WEAR: D1 MAKES THE DIAMETER .0012 IN SMALLER</source>
-      <translation>DESGASTE: D1 REDUCE EL DIÁMETRO .0012 IN</translation>
+      <translation>DESGASTE: D1 REDUCE EL DIÁMETRO .0012 PULG</translation>
     </message>
     <message>
       <location filename="core/extras/tour/tour_script.py" />
       <source>WEAR: THE HEAD MEASURES .8612 IN INSTEAD OF .8600 IN</source>
-      <translation>DESGASTE: LA CABEZA MIDE .8612 IN EN VEZ DE .8600 IN</translation>
+      <translation>DESGASTE: LA CABEZA MIDE .8612 PULG EN VEZ DE .8600 PULG</translation>
     </message>
     <message>
       <location filename="core/geometry/chamfer_and_rounding.py" />

@@ -20,7 +20,9 @@ class TourExtra(OptionalFeature):
     """Optional feature with the tour: at the first start of the demo, in F10 and as ``turndesk tour``."""
 
     subcommands = {
-        "tour": Subcommand("run", "watch a simulated lathe make a part in one minute; any key ends the tour")
+        "tour": Subcommand(
+            "run", "watch a simulated lathe make a part in one minute; any key or touch ends the tour"
+        )
     }
 
     opening_show_class = "app.extras.tour.tour_view.Tour"

@@ -86,7 +86,7 @@ class TourDirector:
             caption = Message(caption, line=self._wrong_line)
         values = {"step": self._index + 1, "count": len(TOUR_STEPS)}
         words = tr(Message("TOUR ON A SIMULATED LATHE: {step} OF {count}", **values))
-        return _make_caption(tr(caption), f"{words}  ·  {tr('ANY KEY ENDS THE TOUR')}")
+        return _make_caption(tr(caption), f"{words}  ·  {tr('ANY KEY OR TOUCH ENDS THE TOUR')}")
 
     def close_card(self) -> bool:
         """End the tour, and return False if it has ended already."""

@@ -41,7 +41,7 @@ class TourFunction(SpecialFunction):
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the table with the contents of the tour."""
-        note = "ENTER: START THE TOUR. ANY KEY ENDS IT" if self._is_simulated else _SIMULATED_ONLY
+        note = "ENTER: START THE TOUR. ANY KEY OR TOUCH ENDS IT" if self._is_simulated else _SIMULATED_ONLY
         return TableContent("TOUR", ("", ""), (0.07, 0.93), tuple(map(TableRow, _ROWS)), notes=(note,))
 
     def make_function_keys(self) -> Mapping[str, FunctionKey]:

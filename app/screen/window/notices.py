@@ -26,8 +26,12 @@ def make_notices(
 ) -> tuple[NoticeRow, ...]:
     """Return the notices that remain until the operator acts.
 
-    ``here`` is True while the Automatic page, on which the keys of the notices work, is open.
+    A caption is the only notice while it is shown, so that the viewer reads only the caption. ``here`` is
+    True while the Automatic page, on which the keys of the notices work, is open.
     """
+    card = desk.page_registry.make_guidance_row()
+    if card is not None and card.is_caption:
+        return (card,)
     rows = []
     unheard = make_unknown_values_notice(snapshot)
     if unheard is not None:
@@ -35,7 +39,6 @@ def make_notices(
     found = make_interrupted_notice(snapshot, loaded, desk.settings_store.display_units)
     if found is not None:
         rows.append(replace(found, keys=_make_prompt_keys(desk, snapshot, loaded) if here else ()))
-    card = desk.page_registry.make_guidance_row()
     if card is not None:
         rows.append(card)
     elif here and desk.settings_store.current_settings.first_job:

@@ -64,15 +64,15 @@ TOUR_STEPS = (
         tool=11,
     ),
     TourStep("THREADING: EACH PASS STARTS AT THE SAME SPINDLE ANGLE", end=StepEnd.TOOL, tool=12),
-    TourStep("MILLING: THE SPINDLE, NOW THE C AXIS, TURNS A HEXAGON", end=StepEnd.TOOL, tool=3),
+    TourStep("MILLING: THE SPINDLE IS NOW THE C AXIS AND A MILL CUTS A HEXAGON", end=StepEnd.TOOL, tool=3),
     TourStep("PARTING OFF: THE PART FALLS INTO THE CATCHER", end=StepEnd.FINISHED),
     TourStep("WEAR: THE HEAD MEASURES .8612 IN INSTEAD OF .8600 IN", ("F9", "1", "Enter"), seconds=3.0),
     TourStep(
         "WEAR: D1 MAKES THE DIAMETER .0012 IN SMALLER", (*"-.0012", "Enter", "Enter", "Enter"), seconds=4.0
     ),
     TourStep("THE PATH BEFORE AND AFTER THE CORRECTION", ("F6",), StepEnd.PATHS_COMPARED, seconds=1.5),
-    TourStep("THE PART BEFORE AND AFTER THE CORRECTION", ("F6", "F6"), StepEnd.PARTS_COMPARED),
-    TourStep("EACH DIAMETER BEFORE AND AFTER THE CORRECTION", seconds=3.5),
+    TourStep("TURNDESK CALCULATES THE PART WITH THE CORRECTION", ("F6", "F6"), StepEnd.PARTS_COMPARED),
+    TourStep("EVERY DIAMETER CUT WITH D1 GETS .0012 IN SMALLER", seconds=5.0),
     TourStep(
         "A WRONG SIGN: LINE {line} SAYS Z-.05 INSTEAD OF Z.05",
         ("Esc", "Esc"),

@@ -25,6 +25,7 @@ from app.extras.tour.tour_director import MAX_STEP_S, TourDirector
 from app.extras.tour.tour_function import TourFunction
 from app.extras.tour.tour_setup import SHOWN_SETTING, use_tour_folder
 from app.extras.tour.tour_view import TourInputFilter, WindowKeyboard
+from app.offsets.offset_effect import OffsetEffectWorker
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme, measure_text, set_language
 from app.screen.window.window_bars import CAPTION_TEXT
@@ -32,10 +33,12 @@ from app.screen.window_layout import MIN_WINDOW_PX, make_automatic_layout
 from app.special.special_functions import SpecialFunctionsModel
 from core.executor.snapshot import Alarm, MachineState
 from core.extras.tour.tour_script import FAULTY_PROGRAM_NAME, TOUR_STEPS, TourStep
+from core.proving.offset_comparison import FeatureKind, Pair
 from tests.screen.day import Day, Key, begun
 from tests.texts import shows
 
 INCH = 25.4
+WORK_TIMEOUT_S = 60.0
 
 
 @dataclass
@@ -60,12 +63,20 @@ class ShownTour:
         def tick() -> bool:
             for _ in range(20):
                 self.day.run(0.05)
+                self.wait_for_workers()
                 self.director.advance()
                 if is_true():
                     return True
             return False
 
         self.day.qtbot.waitUntil(tick, timeout=120_000)
+
+    def wait_for_workers(self) -> None:
+        """Wait for the proof and the comparison, because the clock of the test runs ahead of them."""
+        self.day.desk.program_loader.wait_until_loaded(WORK_TIMEOUT_S)
+        effect = self.day.desk.page_registry.find_model(OffsetEffectWorker)
+        if effect is not None:
+            effect.worker.wait_for_results(WORK_TIMEOUT_S)
 
     def run_to(self, caption_start: str) -> None:
         self.run_until(lambda: self.step is not None and self.step.caption.startswith(caption_start))
@@ -110,9 +121,14 @@ def input_filter(tour: ShownTour, qapp: QApplication) -> Iterator[TourInputFilte
 
 def test_tour_makes_a_part_corrects_wear_and_finds_the_crash(tour: ShownTour) -> None:
     day = tour.day
-    seen = list[str]()
+    seen, pairs = list[str](), list[Pair]()
 
     def watch() -> bool:
+        if not pairs and tour.step is not None and tour.step.caption.startswith("EVERY DIAMETER"):
+            effect = day.desk.page_registry.find_model(OffsetEffectWorker)
+            assert effect is not None
+            assert effect.compared_part is not None
+            pairs.extend(effect.compared_part.feature_pairs)
         if tour.step is not None and (not seen or seen[-1] != tour.step.caption):
             seen.append(tour.step.caption)
         return bool(tour.ends)
@@ -129,6 +145,19 @@ def test_tour_makes_a_part_corrects_wear_and_finds_the_crash(tour: ShownTour) ->
     assert day.shot.rpm_command == 0.0
     assert tour.ends == [True]
     assert tour.caption == ""
+    check_table_of_the_caption(pairs)
+
+
+def check_table_of_the_caption(pairs: list[Pair]) -> None:
+    """Check that shank and head, both cut with D1, get .0012 in smaller, and that each row has two values."""
+    diameters = [
+        (before.at / INCH, after.at / INCH)
+        for before, after in pairs
+        if before is not None and after is not None and before.kind is FeatureKind.DIAMETER
+    ]
+    assert all(None not in each for each in pairs)
+    assert [before for before, _ in diameters] == pytest.approx([0.5, 0.86], abs=2e-5)
+    assert [after for _, after in diameters] == pytest.approx([0.4988, 0.8588], abs=2e-5)
 
 
 def test_caption_names_the_line_with_the_wrong_sign(tour: ShownTour) -> None:
@@ -151,6 +180,11 @@ def test_every_caption_fits_in_the_smallest_window(qapp: object, language: str) 
     assert [text for text, width in widths.items() if width > width_px] == []
 
 
+def is_caption_alone(tour: ShownTour) -> bool:
+    tour.day.window.refresh()
+    return [row.is_caption for row in tour.day.frame.notice_rows.notice_rows] in ([], [True])
+
+
 # --- the end by the operator ----------------------------------------------------------------------------
 
 
@@ -162,7 +196,8 @@ def test_stop_in_the_cut_leaves_the_machine_at_rest_with_the_spindle_off(
     tour.run_until(lambda: tour.day.shot.line > 0)
     tour.director.stop()
     assert shows(tour.caption, "tour.ends")
-    tour.run_until(lambda: bool(tour.ends))
+    tour.run_until(lambda: bool(tour.ends) or not is_caption_alone(tour))
+    assert tour.ends == [True]
     assert tour.day.shot.state is MachineState.IDLE
     assert tour.day.shot.rpm_command == 0.0
     assert "coolant" not in tour.day.shot.outputs
