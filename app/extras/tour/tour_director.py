@@ -177,6 +177,7 @@ class TourDirector:
             StepEnd.FINISHED: lambda: (
                 snapshot.parts > self._parts_at_begin and snapshot.state is MachineState.IDLE
             ),
+            StepEnd.CORRECTED: lambda: bool(self._desk.offset_book.secondary_offsets),
             StepEnd.PATHS_COMPARED: lambda: effect is not None and effect.compared_paths is not None,
             StepEnd.PARTS_COMPARED: lambda: effect is not None and effect.compared_part is not None,
             StepEnd.REJECTED: lambda: loaded.name == step.program and bool(loaded.blocking_errors),

@@ -27,6 +27,7 @@ class StepEnd(Enum):
     READY = auto()  # The drives are on.
     TOOL = auto()  # The program has called the tool of the step.
     FINISHED = auto()  # The program has ended, and the part is counted.
+    CORRECTED = auto()  # The wear correction is saved.
     PATHS_COMPARED = auto()  # The paths with the old and the new offset are drawn.
     PARTS_COMPARED = auto()  # The diameters with the old and the new offset are calculated.
     REJECTED = auto()  # The proof of the step's program has found an error.
@@ -68,7 +69,10 @@ TOUR_STEPS = (
     TourStep("PARTING OFF: THE PART FALLS INTO THE CATCHER", end=StepEnd.FINISHED),
     TourStep("WEAR: THE HEAD MEASURES .8612 IN INSTEAD OF .8600 IN", ("F9", "1", "Enter"), seconds=3.0),
     TourStep(
-        "WEAR: D1 MAKES THE DIAMETER .0012 IN SMALLER", (*"-.0012", "Enter", "Enter", "Enter"), seconds=4.0
+        "WEAR: D1 MAKES THE DIAMETER .0012 IN SMALLER",
+        (*"-.0012", "Enter", "Enter", "Enter"),
+        StepEnd.CORRECTED,
+        seconds=4.0,
     ),
     TourStep("THE PATH BEFORE AND AFTER THE CORRECTION", ("F6",), StepEnd.PATHS_COMPARED, seconds=1.5),
     TourStep("TURNDESK CALCULATES THE PART WITH THE CORRECTION", ("F6", "F6"), StepEnd.PARTS_COMPARED),
