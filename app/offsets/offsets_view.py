@@ -221,6 +221,10 @@ class OffsetPage(ModelPage):
         """Return True unless the effect on the path is shown, because values cannot be entered then."""
         return not self.effect_display.is_open
 
+    def has_unfinished_entry(self) -> bool:
+        """Return whether a value or a text must be saved or discarded first."""
+        return bool(self.model.text) or self.model.is_text_open
+
     def prompt_text(self) -> str:
         """Return the prompt of the table, or a description of the path effect while it is shown."""
         if self.effect_display.is_open:

@@ -224,6 +224,10 @@ class ToolOffsetsPage(OffsetPage):
         }
         return {**super().make_key_actions(), **own}
 
+    def has_unfinished_entry(self) -> bool:
+        """Return whether a value, a remark or a new tool must be saved or discarded first."""
+        return self.model.has_entry
+
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
         """Update the table from the model."""
         super().refresh(snapshot, status, loaded)

@@ -196,6 +196,11 @@ class Page(QWidget):
         """Return the list that the page keys, Home, End and the search use, or None without a list."""
         return None
 
+    def has_unfinished_entry(self) -> bool:
+        """Return whether a typed value or text is neither saved nor discarded."""
+        rows = self.find_list()
+        return rows is not None and rows.has_typed_text
+
     def continue_preparation(self) -> bool:
         """Prepare one slice of the slow parts before the page is shown.
 

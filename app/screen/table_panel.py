@@ -216,6 +216,11 @@ class TablePanel(RowPanel):
         """Return the index of the selected row, or -1 if no row is selected."""
         return self.table.marked
 
+    @property
+    def has_typed_text(self) -> bool:
+        """Return whether the entry line contains text."""
+        return bool(self.table.text)
+
     def show_table(self, table: TableContent) -> None:
         """Show a table, and redraw it if it has changed.
 

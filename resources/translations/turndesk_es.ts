@@ -15365,6 +15365,11 @@
     </message>
     <message>
       <location filename="app/screen/window/search_bar.py" />
+      <source>ENTRY NOT FINISHED. PRESS ENTER OR ESC BEFORE SEARCHING</source>
+      <translation>ENTRADA SIN TERMINAR. PULSE ENTER O ESC ANTES DE BUSCAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/search_bar.py" />
       <source>KEEP ROW</source>
       <translation>CONSERVAR</translation>
     </message>

@@ -296,6 +296,39 @@ def test_a_page_without_a_list_refuses_the_search(ready: Operator, page: str) ->
     assert ready.prompt() == wording("screen.search-no-list")
 
 
+def test_an_unfinished_value_refuses_the_search_and_keeps_its_tool(ready: Operator) -> None:
+    assert ready.frame.open_page(page_table.TOOLS)
+    page = ready.frame.current_page
+    assert isinstance(page, ToolOffsetsPage)
+    tool = page.model.tool_number
+    write(ready, "5")
+    open_search(ready)
+    assert not ready.frame.search_bar.is_open
+    assert ready.prompt() == wording("screen.search-entry")
+    assert (page.model.tool_number, page.model.text) == (tool, "5")
+    ready.key(Key.Key_Escape)
+    open_search(ready)
+    assert ready.frame.search_bar.is_open
+
+
+def test_an_unfinished_number_in_the_entry_line_refuses_the_search(ready: Operator) -> None:
+    shown = functions(ready)
+    ready.key(Key.Key_Down, Key.Key_Return)  # the parts counter, which has an entry line
+    write(ready, "7")
+    open_search(ready)
+    assert not ready.frame.search_bar.is_open
+    assert (ready.prompt(), shown.inside) == (wording("screen.search-entry"), True)
+
+
+def test_enter_is_refused_while_the_selected_row_is_not_found(above: QWidget) -> None:
+    panel, search = table_with_search(above)
+    panel.on_select = lambda _row: None  # The page does not move the selection.
+    type_text(search, "17")
+    assert (panel.found_rows, panel.selected_row) == ((17,), 0)
+    assert not search.handle_key("Enter")
+    assert search.is_open
+
+
 def test_the_programs_page_names_its_own_search(ready: Operator) -> None:
     assert ready.frame.open_page(page_table.PROGRAMS)
     open_search(ready)

@@ -33,6 +33,14 @@ class ListSearch:
         """Return whether a search is open."""
         return self.searched_list is not None
 
+    @property
+    def is_selection_hidden(self) -> bool:
+        """Return whether the selected row is not one of the found rows."""
+        rows = self.searched_list
+        if rows is None or rows.found_rows is None or rows.on_select is None:
+            return False
+        return rows.selected_row not in rows.found_rows
+
     def find_refusal(self, searched_list: SearchableList | None, snapshot: Snapshot) -> str:
         """Return the reason why a search cannot be opened now, or an empty string if it can."""
         if snapshot.state in MANUAL_STATES:
@@ -53,12 +61,12 @@ class ListSearch:
         self._was_stopped = snapshot.state in _STOPPED_STATES
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key, and return False if it is Enter but no row contains the text."""
+        """Handle a key, and return False if it is Enter but the selected row does not contain the text."""
         rows = self.searched_list
         if rows is None:
             return False
         if key == "Enter":
-            if self.is_row_missing:
+            if self.is_row_missing or self.is_selection_hidden:
                 return False
             self.close()
         elif key in ROW_STEPS:

@@ -36,6 +36,11 @@ class SearchableList(Panel):
         """Return the index of the selected row, or -1 if no row is selected."""
         return -1
 
+    @property
+    def has_typed_text(self) -> bool:
+        """Return whether the entry line of the list contains text. The base class has no entry line."""
+        return False
+
     def scroll_by(self, rows: int) -> None:
         """Scroll down by a number of rows, or up if the number is negative."""
         raise NotImplementedError

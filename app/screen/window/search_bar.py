@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import Protocol
 
 from PySide6.QtCore import QRectF
 from PySide6.QtWidgets import QWidget
@@ -13,8 +14,10 @@ from app.desk.translation import tr
 from app.screen.entry_panel import WIDE_NAME_KEYS, LetterPad, draw_text_with_caret
 from app.screen.lists.list_search import ListSearch
 from app.screen.lists.searchable_list import LIST_KEYS, SearchableList
+from app.screen.page_base import Page
 from app.screen.panel import Panel
 from app.screen.screen_theme import ScreenTheme, ThemedPainter
+from app.screen.window.alarm_panels import AlarmList
 from app.screen.window.key_table import SEARCH_KEY
 from app.screen.window.part_placement import GAP_PX
 from app.screen.window_layout import FINGERTIP_PX, Rect
@@ -22,6 +25,13 @@ from core.executor.snapshot import Snapshot
 from core.message import Message
 
 _BAR_HEIGHT, _KEY_WIDTH, _LABEL_WIDTH = 5.6, 15.0, 14.0  # Units.
+
+
+class SearchedWindow(Protocol):
+    """The parts of the window whose lists can be searched."""
+
+    current_page: Page
+    alarm_list: AlarmList
 
 
 class SearchBar(Panel):
@@ -39,15 +49,15 @@ class SearchBar(Panel):
         theme: ScreenTheme,
         desk: Desk,
         press: Callable[[str], None],
-        find_list: Callable[[], SearchableList | None],
+        searched_window: SearchedWindow,
         parent: QWidget,
     ) -> None:
         """Create the bar.
 
-        ``press`` presses a key of the window. ``find_list`` returns the list that uses the keys now.
+        ``press`` presses a key of the window. ``searched_window`` has the list that uses the keys now.
         """
         super().__init__(theme, parent)
-        self._desk, self._press, self._find_list = desk, press, find_list
+        self._desk, self._press, self._window = desk, press, searched_window
         self.search = ListSearch()
         self.letter_pad = LetterPad(theme, self._handle_touched_key, parent, WIDE_NAME_KEYS)
         self.has_letters = False
@@ -70,6 +80,10 @@ class SearchBar(Panel):
     def _bar_height_px(self) -> int:
         return max(FINGERTIP_PX, round(_BAR_HEIGHT * self.theme.unit_px))
 
+    def _find_list(self) -> SearchableList | None:
+        window = self._window
+        return window.alarm_list if window.alarm_list.isVisible() else window.current_page.find_list()
+
     def move_selection(self, key: str) -> bool:
         """Move the selection with a page key, Home or End, and return whether a list used the key."""
         rows = self._find_list() if key in LIST_KEYS else None
@@ -85,12 +99,19 @@ class SearchBar(Panel):
         searched_list, snapshot = self._find_list(), self._desk.read_snapshot()
         if self.is_open:
             return
-        refusal = self.search.find_refusal(searched_list, snapshot)
+        refusal = self._find_entry_refusal() or self.search.find_refusal(searched_list, snapshot)
         if refusal or searched_list is None:
             self._desk.say(refusal)
             return
         self.has_letters = has_letters
         self.search.open(searched_list, snapshot)
+
+    def _find_entry_refusal(self) -> str:
+        """Return a hint if the page has an unfinished entry, which belongs to the selected row."""
+        window = self._window
+        if window.alarm_list.isVisible() or not window.current_page.has_unfinished_entry():
+            return ""
+        return tr("ENTRY NOT FINISHED. PRESS ENTER OR ESC BEFORE SEARCHING")
 
     def handle_key(self, key: str) -> None:
         """Handle a key as text, as Enter, or as a key that selects a found row."""

@@ -17,7 +17,6 @@ from app.desk.status.machine_status import MachineStatus
 from app.desk.status.state_prompt import make_page_prompt
 from app.desk.translation import tr
 from app.screen import page_table
-from app.screen.lists.searchable_list import SearchableList
 from app.screen.page_base import KeyActions, Page, PageHost
 from app.screen.page_help import make_page_help
 from app.screen.page_table import find_replacement_page, make_page
@@ -97,7 +96,7 @@ class WindowFrame(QWidget):
         self.alarm_notice = AlarmNotice(theme, self)
         self.alarm_list = AlarmList(theme, self.open_recording, self)
         self.help_panel = HelpPanel(theme, self)
-        self.search_bar = SearchBar(theme, desk, press, self._find_list, self)
+        self.search_bar = SearchBar(theme, desk, press, self, self)
         self._page_area = Rect(0, 0, 0, 0)
         self._docked = True
         self._placed_needs: LayoutNeeds | None = None
@@ -199,9 +198,6 @@ class WindowFrame(QWidget):
             **self.current_page.make_key_actions(),
             **(self.alarm_list.make_key_actions() if self.alarm_list.isVisible() else {}),
         }
-
-    def _find_list(self) -> SearchableList | None:
-        return self.alarm_list if self.alarm_list.isVisible() else self.current_page.find_list()
 
     @property
     def is_page_covered(self) -> bool:
