@@ -15379,6 +15379,11 @@
       <translation>NINGUNA FILA CONTIENE ESTE TEXTO</translation>
     </message>
     <message>
+      <location filename="app/screen/window/search_bar.py" />
+      <source>SEARCH CLOSED. ONLY STOP KEYS ACT UNTIL YOU STOP TYPING FOR 1 S</source>
+      <translation>BÚSQUEDA CERRADA. SÓLO ACTÚAN LAS TECLAS DE PARO HASTA 1 S SIN TECLAS</translation>
+    </message>
+    <message>
       <location filename="app/screen/window/station_dock.py" />
       <source>CYCLE START: BOTH BUTTONS</source>
       <translation>ARRANQUE CICLO: AMBOS</translation>

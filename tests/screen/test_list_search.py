@@ -344,7 +344,7 @@ def test_manual_motion_refuses_and_closes_the_search(above: QWidget, state: Mach
     assert not search.find_refusal(panel, Snapshot())
     type_text(search, "7")
     search.update(moving)
-    assert (search.is_open, panel.found_rows, panel.selected_row) == (False, None, 7)
+    assert (search.is_open, panel.found_rows, panel.selected_row) == (False, None, 0)
 
 
 def test_a_new_alarm_closes_the_search_but_an_old_one_does_not(above: QWidget) -> None:
@@ -364,6 +364,49 @@ def test_a_list_without_rows_or_with_an_immovable_selection_refuses(above: QWidg
     panel.on_select = None
     assert search.find_refusal(panel, Snapshot()) == wording("screen.search-no-list")
     assert search.find_refusal(None, Snapshot()) == wording("screen.search-no-list")
+
+
+def test_the_rest_of_a_text_is_discarded_after_an_estop_closes_the_search(ready: Operator) -> None:
+    assert ready.frame.open_page(page_table.TOOLS)
+    page = ready.frame.current_page
+    assert isinstance(page, ToolOffsetsPage)
+    tool = page.model.tool_number
+    open_search(ready)
+    write(ready, "t1")
+    send(ready, Key.Key_ScrollLock)
+    ready.reaches(MachineState.ESTOP)
+    write(ready, "7uyd")
+    ready.key(Key.Key_Return, Key.Key_F3)
+    assert ready.prompt() == wording("screen.search-closed")
+    assert (page.model.tool_number, page.model.text) == (tool, "")
+    assert not ready.stage.desk.confirmation_key
+    ready.pause(0.9)  # less than 1 s after the last key
+    write(ready, "7")
+    assert not page.model.text
+    ready.pause(1.1)
+    repeat = QKeyEvent(QEvent.Type.KeyPress, Key.Key_7, NONE, "7", True)
+    QCoreApplication.sendEvent(ready.window, repeat)
+    assert not page.model.text
+    ready.pause(1.1)
+    write(ready, "7")
+    assert page.model.text == "7"
+
+
+@pytest.mark.parametrize(
+    ("letter", "states"),
+    [("e", {MachineState.ESTOP}), ("h", {MachineState.HOLD, MachineState.STOPPING})],
+)
+def test_stop_letters_stop_at_once_after_the_search_is_closed(
+    ready: Operator, letter: str, states: set[MachineState]
+) -> None:
+    ready.palms()
+    ready.reaches(MachineState.RUN)
+    assert ready.frame.open_page(page_table.TOOLS)  # All characters are text on this page.
+    ready.window.grab()
+    open_search(ready)
+    ready.frame.search_bar.search.force_close()
+    write(ready, letter)
+    ready.until(lambda: ready.shot.state in states)
 
 
 @pytest.mark.parametrize("key", [Key.Key_F7, Key.Key_F1])

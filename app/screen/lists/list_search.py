@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from app.desk.pages.page_entry import MANUAL_STATES
 from app.desk.pages.table_content import ROW_STEPS, InputField
 from app.desk.status.prompt_line import ACTIVE_STATES
@@ -27,6 +29,7 @@ class ListSearch:
         self._texts: tuple[str, ...] = ()
         self._alarm_count = 0
         self._was_stopped = False  # The machine was in one of the states of _STOPPED_STATES.
+        self.on_forced_close: Callable[[], None] = lambda: None
 
     @property
     def is_open(self) -> bool:
@@ -81,21 +84,25 @@ class ListSearch:
     def update(self, snapshot: Snapshot) -> None:
         """Search again if the rows have changed.
 
-        Manual motion, a new alarm and an E-stop close the search, so that letters are commands again. This is
-        called once a frame.
+        Manual motion, a new alarm, an E-stop and a hidden list close the search. This is called once a frame.
         """
         rows = self.searched_list
         if rows is None:
             return
-        is_stopped = snapshot.state in _STOPPED_STATES
-        has_stopped = is_stopped and not self._was_stopped
-        if snapshot.state in MANUAL_STATES or len(snapshot.alarms) > self._alarm_count or has_stopped:
-            self.close()
-        elif not rows.isVisible():
-            self.cancel()
+        if not rows.isVisible() or self._has_machine_changed(snapshot):
+            self.force_close()
         else:
-            self._alarm_count, self._was_stopped = len(snapshot.alarms), is_stopped
             self._find_rows()
+
+    def _has_machine_changed(self, snapshot: Snapshot) -> bool:
+        """Return whether the machine has changed so that letters must be commands again."""
+        was_stopped, self._was_stopped = self._was_stopped, snapshot.state in _STOPPED_STATES
+        alarm_count, self._alarm_count = self._alarm_count, len(snapshot.alarms)
+        return (
+            snapshot.state in MANUAL_STATES
+            or self._alarm_count > alarm_count
+            or self._was_stopped > was_stopped
+        )
 
     def _find_rows(self) -> None:
         """Show only the rows that contain the text, and select the first one if necessary."""
@@ -128,6 +135,12 @@ class ListSearch:
             rows.on_search("")
         if rows.on_select is not None and 0 <= self._former_row < len(rows.list_row_texts()):
             rows.on_select(self._former_row)
+
+    def force_close(self) -> None:
+        """Close the search although the operator may still be typing, and select the former row."""
+        if self.is_open:
+            self.cancel()
+            self.on_forced_close()
 
     def prompt_text(self, snapshot: Snapshot) -> str:
         """Return the prompt while the search is open."""

@@ -381,11 +381,7 @@ class MainWindow(QWidget):
         A repeat is accepted only for keys that may repeat.
         """
         frame = self.frame
-        if (
-            frame is None
-            or self.typed_keys.handle_answer(frame, event)
-            or self.typed_keys.handle_stop_key(frame, event)
-        ):
+        if frame is None or self.typed_keys.handle_priority_key(frame, event):
             return
         if self._handle_help_key(frame, event) or (
             not frame.is_page_covered and frame.current_page.handle_key_press(event)

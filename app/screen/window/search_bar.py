@@ -24,6 +24,8 @@ from app.screen.window_layout import FINGERTIP_PX, Rect
 from core.executor.snapshot import Snapshot
 from core.message import Message
 
+DISCARD_TIME_S = 1.0  # Seconds without keys after which keys act again after a forced close.
+SEARCH_CLOSED = "SEARCH CLOSED. ONLY STOP KEYS ACT UNTIL YOU STOP TYPING FOR 1 S"
 _BAR_HEIGHT, _KEY_WIDTH, _LABEL_WIDTH = 5.6, 15.0, 14.0  # Units.
 
 
@@ -59,6 +61,8 @@ class SearchBar(Panel):
         super().__init__(theme, parent)
         self._desk, self._press, self._window = desk, press, searched_window
         self.search = ListSearch()
+        self.search.on_forced_close = self._start_discarding
+        self._discard_end_s: float | None = None  # End of the discarding, unless another key is pressed.
         self.letter_pad = LetterPad(theme, self._handle_touched_key, parent, WIDE_NAME_KEYS)
         self.has_letters = False
         self._drawn: object = None
@@ -119,6 +123,30 @@ class SearchBar(Panel):
             self._desk.clear_prompt_line()
         else:
             self._desk.say(tr("NO ROW CONTAINS THIS TEXT"))
+
+    def _start_discarding(self) -> None:
+        self._discard_end_s = self._desk.station_controls.clock() + DISCARD_TIME_S
+        self._desk.say(tr(SEARCH_CLOSED))
+
+    @property
+    def is_discarding(self) -> bool:
+        """Return whether the search was closed while the operator was perhaps still typing."""
+        end = self._discard_end_s
+        return end is not None and self._desk.station_controls.clock() < end
+
+    def discard_key(self, *, is_repeat: bool) -> bool:
+        """Return whether a pressed key is discarded because it may be the rest of a searched text.
+
+        This ends with the first press after one second without keys.
+        """
+        if self._discard_end_s is None:
+            return False
+        pressed_at_s = self._desk.station_controls.clock() - self._desk.window_state.find_press_age_s()
+        if not is_repeat and pressed_at_s >= self._discard_end_s:
+            self._discard_end_s = None
+            return False
+        self._start_discarding()
+        return True
 
     def handle_escape(self) -> bool:
         """Close an open search and select the former row. Return False if no search is open."""

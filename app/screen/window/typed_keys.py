@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeyEvent
 
 from app.desk.translation import tr
 from app.screen.window.key_table import (
     AUTOMATIC_KEYS,
+    MODIFIER_KEYS,
     NO_KEY,
     REPEATED_WHEN_TYPED,
     SEARCH_KEY,
@@ -50,6 +52,26 @@ class TypedKeyHandler:
         ):
             return False
         frame.desk.say(tr(Message("{key} WORKS ON THE AUTOMATIC PAGE: PRESS F1, THEN F2", key=name)))
+        self._refresh()
+        return True
+
+    def handle_priority_key(self, frame: WindowFrame, event: QKeyEvent) -> bool:
+        """Return whether the key was discarded, answered a question or stopped something."""
+        return (
+            self._discard_search_text(frame, event)
+            or self.handle_answer(frame, event)
+            or self.handle_stop_key(frame, event)
+        )
+
+    def _discard_search_text(self, frame: WindowFrame, event: QKeyEvent) -> bool:
+        """Return whether the key is discarded because the search was closed while the operator typed.
+
+        The other stop keys have already acted in the keyboard filter.
+        """
+        if event.key() in MODIFIER_KEYS or event.key() == Qt.Key.Key_Escape:
+            return False
+        if not frame.search_bar.discard_key(is_repeat=event.isAutoRepeat()):
+            return False
         self._refresh()
         return True
 

@@ -162,7 +162,7 @@ class WindowFrame(QWidget):
     def _front(self) -> None:
         page = self.current_page
         self.help_panel.close_help()
-        self.search_bar.search.close()
+        self.search_bar.search.force_close()
         self.desk.window_state.set_page_properties(
             can_start=page.CAN_START_CYCLES, has_field=self._blocks_letters, page_name=page.NAME
         )
@@ -213,7 +213,7 @@ class WindowFrame(QWidget):
 
     def uncover_page(self) -> None:
         """Close the help, the search, the alarm log and the file prompt."""
-        self.search_bar.search.close()
+        self.search_bar.search.force_close()
         self.help_panel.close_help()
         self.alarm_list.close_list()
         self.automatic_page.file_prompt.close_prompt()
@@ -259,7 +259,7 @@ class WindowFrame(QWidget):
 
         It does unless Esc has another function now.
         """
-        return (
+        return self.search_bar.is_discarding or (
             not self.desk.confirmation_key
             and not self.is_page_covered
             and self.current_page.is_esc_stop_key()
@@ -455,6 +455,8 @@ class WindowFrame(QWidget):
         """Return whether an input field has the keyboard focus, so that characters are text."""
         if self.search_bar.is_open:
             return self.help_panel.isHidden()
+        if self.search_bar.is_discarding:
+            return False  # Letters are stop keys, and all other characters are discarded.
         return self._is_field_reachable() and (self.current_page.has_text_field() or self._stock_field())
 
     def _blocks_letters(self) -> bool:
