@@ -14970,6 +14970,11 @@
     </message>
     <message>
       <location filename="app/screen/lists/list_search.py" />
+      <source>HANDWHEEL IS ON. TURN IT OFF BEFORE SEARCHING</source>
+      <translation>EL VOLANTE ESTÁ ACTIVO. DESACTÍVELO ANTES DE BUSCAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/lists/list_search.py" />
       <source>NO LIST TO SEARCH HERE</source>
       <translation>AQUÍ NO HAY LISTA EN LA QUE BUSCAR</translation>
     </message>
@@ -15437,6 +15442,11 @@
       <location filename="app/screen/window/station_dock.py" />
       <source>TWIST</source>
       <translation>GIRE</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/typed_keys.py" />
+      <source>CLOSE THE SEARCH FIRST (ESC)</source>
+      <translation>CIERRE ANTES LA BÚSQUEDA (ESC)</translation>
     </message>
     <message>
       <location filename="app/screen/window/typed_keys.py" />

@@ -347,6 +347,46 @@ def test_manual_motion_refuses_and_closes_the_search(above: QWidget, state: Mach
     assert (search.is_open, panel.found_rows, panel.selected_row) == (False, None, 0)
 
 
+def test_the_palm_buttons_start_nothing_while_a_search_is_open(ready: Operator) -> None:
+    assert ready.frame.open_page(page_table.MDI)
+    ready.line("G04F99")
+    fill_log(ready)
+    ready.key(Key.Key_F7)
+    ready.window.grab()
+    open_search(ready)
+    ready.palms()
+    assert (ready.shot.state, ready.frame.search_bar.is_open) == (MachineState.IDLE, True)
+    ready.key(Key.Key_F11)
+    assert ready.prompt() == wording("screen.search-palms")
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        (MachineState.IDLE, MachineState.RUN),
+        (MachineState.IDLE, MachineState.HOLD),
+        (MachineState.SINGLE_BLOCK_STOP, MachineState.RUN),
+        (MachineState.PROGRAM_STOP, MachineState.WAIT),
+    ],
+)
+def test_a_cycle_start_closes_the_search(above: QWidget, before: MachineState, after: MachineState) -> None:
+    panel, search = table_with_search(above)
+    search.close()
+    search.open(panel, replace(Snapshot(), state=before))
+    search.update(replace(Snapshot(), state=before))
+    assert search.is_open
+    search.update(replace(Snapshot(), state=after))
+    assert not search.is_open
+
+
+def test_the_handwheel_refuses_and_closes_the_search(above: QWidget) -> None:
+    panel, search = table_with_search(above)
+    turned = replace(Snapshot(), wheel="x")
+    assert search.find_refusal(panel, turned) == wording("screen.search-wheel")
+    search.update(turned)
+    assert not search.is_open
+
+
 def test_a_new_alarm_closes_the_search_but_an_old_one_does_not(above: QWidget) -> None:
     panel, search = table_with_search(above)
     search.cancel()

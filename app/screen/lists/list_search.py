@@ -6,12 +6,13 @@ from collections.abc import Callable
 
 from app.desk.pages.page_entry import MANUAL_STATES
 from app.desk.pages.table_content import ROW_STEPS, InputField
-from app.desk.status.prompt_line import ACTIVE_STATES
+from app.desk.status.prompt_line import ACTIVE_STATES, MOVING_STATES
 from app.desk.translation import tr
 from app.screen.lists.searchable_list import SearchableList
 from core.executor.snapshot import MachineState, Snapshot
 
-_STOPPED_STATES = frozenset({MachineState.ESTOP, MachineState.FAULT})
+# The search closes when the machine enters one of these groups of states: stopped, running, moving.
+_CLOSING_STATES = (frozenset({MachineState.ESTOP, MachineState.FAULT}), ACTIVE_STATES, MOVING_STATES)
 
 
 class ListSearch:
@@ -27,8 +28,7 @@ class ListSearch:
         self.is_row_missing = False  # No row contains the text.
         self._former_row = -1
         self._texts: tuple[str, ...] = ()
-        self._alarm_count = 0
-        self._was_stopped = False  # The machine was in one of the states of _STOPPED_STATES.
+        self._snapshot = Snapshot()  # The state of the machine when it was last checked.
         self.on_forced_close: Callable[[], None] = lambda: None
 
     @property
@@ -48,6 +48,8 @@ class ListSearch:
         """Return the reason why a search cannot be opened now, or an empty string if it can."""
         if snapshot.state in MANUAL_STATES:
             return tr("AXES ARE MOVING. WAIT UNTIL THEY STOP BEFORE SEARCHING")
+        if snapshot.wheel:
+            return tr("HANDWHEEL IS ON. TURN IT OFF BEFORE SEARCHING")
         if searched_list and searched_list.search_hint:
             return tr(searched_list.search_hint)
         if not (searched_list and searched_list.can_be_searched and searched_list.list_row_texts()):
@@ -60,8 +62,7 @@ class ListSearch:
         self.is_row_missing, self._texts = False, ()
         if searched_list.on_search is not None:
             searched_list.on_search("")
-        self._former_row, self._alarm_count = searched_list.selected_row, len(snapshot.alarms)
-        self._was_stopped = snapshot.state in _STOPPED_STATES
+        self._former_row, self._snapshot = searched_list.selected_row, snapshot
 
     def handle_key(self, key: str) -> bool:
         """Handle a key, and return False if it is Enter but the selected row does not contain the text."""
@@ -84,7 +85,8 @@ class ListSearch:
     def update(self, snapshot: Snapshot) -> None:
         """Search again if the rows have changed.
 
-        Manual motion, a new alarm, an E-stop and a hidden list close the search. This is called once a frame.
+        Manual motion, the handwheel, a cycle start, a new alarm, an E-stop and a hidden list close it.
+        This is called once a frame.
         """
         rows = self.searched_list
         if rows is None:
@@ -96,12 +98,12 @@ class ListSearch:
 
     def _has_machine_changed(self, snapshot: Snapshot) -> bool:
         """Return whether the machine has changed so that letters must be commands again."""
-        was_stopped, self._was_stopped = self._was_stopped, snapshot.state in _STOPPED_STATES
-        alarm_count, self._alarm_count = self._alarm_count, len(snapshot.alarms)
+        former, self._snapshot = self._snapshot, snapshot
         return (
             snapshot.state in MANUAL_STATES
-            or self._alarm_count > alarm_count
-            or self._was_stopped > was_stopped
+            or bool(snapshot.wheel)
+            or len(snapshot.alarms) > len(former.alarms)
+            or any(snapshot.state in each and former.state not in each for each in _CLOSING_STATES)
         )
 
     def _find_rows(self) -> None:

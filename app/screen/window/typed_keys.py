@@ -12,6 +12,7 @@ from app.screen.window.key_table import (
     AUTOMATIC_KEYS,
     MODIFIER_KEYS,
     NO_KEY,
+    PALM_BUTTON_KEYS,
     REPEATED_WHEN_TYPED,
     SEARCH_KEY,
     STOP_LETTERS,
@@ -56,12 +57,21 @@ class TypedKeyHandler:
         return True
 
     def handle_priority_key(self, frame: WindowFrame, event: QKeyEvent) -> bool:
-        """Return whether the key was discarded, answered a question or stopped something."""
+        """Return whether the key was discarded or refused, answered a question or stopped something."""
         return (
             self._discard_search_text(frame, event)
+            or self._is_palm_refused(frame, event)
             or self.handle_answer(frame, event)
             or self.handle_stop_key(frame, event)
         )
+
+    def _is_palm_refused(self, frame: WindowFrame, event: QKeyEvent) -> bool:
+        """Return whether the key is a palm button that is refused because letters stop nothing now."""
+        if event.key() not in PALM_BUTTON_KEYS or not frame.search_bar.is_open:
+            return False
+        frame.desk.say(tr("CLOSE THE SEARCH FIRST (ESC)"))
+        self._refresh()
+        return True
 
     def _discard_search_text(self, frame: WindowFrame, event: QKeyEvent) -> bool:
         """Return whether the key is discarded because the search was closed while the operator typed.
