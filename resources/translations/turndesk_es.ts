@@ -15370,6 +15370,11 @@
     </message>
     <message>
       <location filename="app/screen/window/search_bar.py" />
+      <source>AXES HAVE JUST MOVED. SEARCH AGAIN AFTER 3 S</source>
+      <translation>LOS EJES ACABAN DE MOVERSE. BUSQUE PASADOS 3 S</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/search_bar.py" />
       <source>ENTRY NOT FINISHED. PRESS ENTER OR ESC BEFORE SEARCHING</source>
       <translation>ENTRADA SIN TERMINAR. PULSE ENTER O ESC ANTES DE BUSCAR</translation>
     </message>

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 from PySide6.QtCore import QCoreApplication, QEvent, Qt
 from PySide6.QtGui import QKeyEvent
+from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 
 from app.desk.pages.table_content import TableContent, TableRow
@@ -385,6 +386,33 @@ def test_the_handwheel_refuses_and_closes_the_search(above: QWidget) -> None:
     assert search.find_refusal(panel, turned) == wording("screen.search-wheel")
     search.update(turned)
     assert not search.is_open
+
+
+def test_the_search_waits_until_the_layout_may_change_after_a_jog(ready: Operator) -> None:
+    assert ready.frame.open_page(page_table.JOG)
+    fill_log(ready)
+    QTest.keyPress(ready.window, Key.Key_Left)
+    ready.reaches(MachineState.JOG)
+    QTest.keyRelease(ready.window, Key.Key_Left)
+    ready.reaches(MachineState.IDLE)
+    ready.key(Key.Key_F7)
+    ready.window.grab()
+    open_search(ready)
+    assert not ready.frame.search_bar.is_open
+    assert ready.prompt() == wording("screen.search-after-jog")
+    ready.pause(3.1)
+    open_search(ready)
+    assert ready.frame.search_bar.is_open
+
+
+def test_the_field_and_the_keyboard_disappear_as_soon_as_the_search_closes(ready: Operator) -> None:
+    functions(ready)
+    bar, page = ready.frame.search_bar, ready.frame.current_page
+    bar.has_letters = True
+    open_search(ready)
+    assert (bar.isHidden(), bar.letter_pad.isHidden(), page.is_searching) == (False, False, True)
+    bar.search.force_close()  # without a new layout
+    assert (bar.isHidden(), bar.letter_pad.isHidden(), page.is_searching) == (True, True, False)
 
 
 def test_a_new_alarm_closes_the_search_but_an_old_one_does_not(above: QWidget) -> None:

@@ -29,6 +29,7 @@ class ListSearch:
         self._former_row = -1
         self._texts: tuple[str, ...] = ()
         self._snapshot = Snapshot()  # The state of the machine when it was last checked.
+        self.on_close: Callable[[], None] = lambda: None
         self.on_forced_close: Callable[[], None] = lambda: None
 
     @property
@@ -125,7 +126,8 @@ class ListSearch:
         """Close the search, show all rows, and keep the selected row."""
         if self.searched_list is not None:
             self.searched_list.found_rows = None
-        self.searched_list = None
+            self.searched_list = None
+            self.on_close()
 
     def cancel(self) -> None:
         """Close the search, show all rows, and select the former row."""

@@ -34,6 +34,7 @@ class SearchedWindow(Protocol):
 
     current_page: Page
     alarm_list: AlarmList
+    has_recent_manual_motion: bool  # The layout must not change yet.
 
 
 class SearchBar(Panel):
@@ -61,6 +62,7 @@ class SearchBar(Panel):
         super().__init__(theme, parent)
         self._desk, self._press, self._window = desk, press, searched_window
         self.search = ListSearch()
+        self.search.on_close = self._hide_at_once
         self.search.on_forced_close = self._start_discarding
         self._discard_end_s: float | None = None  # End of the discarding, unless another key is pressed.
         self.letter_pad = LetterPad(theme, self._handle_touched_key, parent, WIDE_NAME_KEYS)
@@ -103,16 +105,18 @@ class SearchBar(Panel):
         searched_list, snapshot = self._find_list(), self._desk.read_snapshot()
         if self.is_open:
             return
-        refusal = self._find_entry_refusal() or self.search.find_refusal(searched_list, snapshot)
+        refusal = self._find_page_refusal() or self.search.find_refusal(searched_list, snapshot)
         if refusal or searched_list is None:
             self._desk.say(refusal)
             return
         self.has_letters = has_letters
         self.search.open(searched_list, snapshot)
 
-    def _find_entry_refusal(self) -> str:
-        """Return a hint if the page has an unfinished entry, which belongs to the selected row."""
+    def _find_page_refusal(self) -> str:
+        """Return a hint if the layout must wait, or if the page has an entry for the selected row."""
         window = self._window
+        if window.has_recent_manual_motion:
+            return tr("AXES HAVE JUST MOVED. SEARCH AGAIN AFTER 3 S")
         if window.alarm_list.isVisible() or not window.current_page.has_unfinished_entry():
             return ""
         return tr("ENTRY NOT FINISHED. PRESS ENTER OR ESC BEFORE SEARCHING")
@@ -123,6 +127,12 @@ class SearchBar(Panel):
             self._desk.clear_prompt_line()
         else:
             self._desk.say(tr("NO ROW CONTAINS THIS TEXT"))
+
+    def _hide_at_once(self) -> None:
+        """Hide the field and the touch keyboard, although the layout may have to wait."""
+        self.hide()
+        self.letter_pad.hide()
+        self._window.current_page.is_searching = False
 
     def _start_discarding(self) -> None:
         self._discard_end_s = self._desk.station_controls.clock() + DISCARD_TIME_S

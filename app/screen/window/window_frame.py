@@ -103,7 +103,7 @@ class WindowFrame(QWidget):
         host = PageHost(theme, desk, press, self.open_page, self.alarm_list.close_list)
         self._host = host
         self._before_scope = page_table.AUTOMATIC
-        self._manual_motion = ManualMotion()
+        self._manual_motion, self.has_recent_manual_motion = ManualMotion(), False
         self.automatic_page = AutomaticPage(host, self)
         self._pages: dict[str, Page] = {page_table.AUTOMATIC: self.automatic_page}
         self.current_page: Page = self.automatic_page
@@ -125,6 +125,7 @@ class WindowFrame(QWidget):
         if not page.can_open() or not self.current_page.try_leave_page():
             return False
         self.desk.station_controls.release_all_buttons()
+        self.search_bar.search.force_close()
         self.current_page.hide()
         self.current_page = page
         self._front()
@@ -162,7 +163,6 @@ class WindowFrame(QWidget):
     def _front(self) -> None:
         page = self.current_page
         self.help_panel.close_help()
-        self.search_bar.search.force_close()
         self.desk.window_state.set_page_properties(
             can_start=page.CAN_START_CYCLES, has_field=self._blocks_letters, page_name=page.NAME
         )
@@ -395,7 +395,9 @@ class WindowFrame(QWidget):
         self.notice_rows.notice_rows = make_notices(
             self.desk, snapshot, loaded, here=self.current_page is self.automatic_page
         )
-        by_hand = self._manual_motion.is_recent(snapshot, self.desk.station_controls.clock())
+        self.has_recent_manual_motion = by_hand = self._manual_motion.is_recent(
+            snapshot, self.desk.station_controls.clock()
+        )
         is_new_height = self.notice_rows.needs_new_height or self._placed_needs != self._layout_needs
         if self._has_dock_changed or (is_new_height and not by_hand):
             self.arrange_parts()
