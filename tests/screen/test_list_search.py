@@ -227,6 +227,45 @@ def test_search_finds_a_tool_by_its_number(ready: Operator) -> None:
     assert (page.model.tool_number, page.model.text) == (17, "")
 
 
+def test_changed_texts_do_not_move_the_selection(above: QWidget) -> None:
+    panel, search = table_with_search(above)
+    type_text(search, "17")
+    assert panel.selected_row == 17
+    names = [f"row {n}" for n in range(MANY)]
+    names[17], names[3] = "done", "row 17"
+    show_rows(panel, names)
+    search.update(Snapshot())
+    assert (panel.found_rows, panel.selected_row) == ((3, 17), 17)
+    assert search.handle_key("Enter")
+    assert panel.selected_row == 17
+
+
+def test_a_row_that_appears_is_selected_only_by_a_key(above: QWidget) -> None:
+    panel, search = table_with_search(above)
+    type_text(search, "new")
+    show_rows(panel, [*(f"row {n}" for n in range(MANY)), "new"])
+    search.update(Snapshot())
+    assert (panel.found_rows, panel.selected_row) == ((MANY,), 0)
+    assert not search.handle_key("Enter")
+    search.handle_key("Down")
+    assert panel.selected_row == MANY
+
+
+@pytest.mark.parametrize(("count", "selected"), [(MANY, 4), (MANY - 1, 17), (MANY + 1, 17)])
+def test_esc_selects_the_former_row_only_if_no_row_was_added_or_removed(
+    above: QWidget, count: int, selected: int
+) -> None:
+    panel, search = table_with_search(above)
+    search.cancel()
+    assert panel.on_select is not None
+    panel.on_select(4)
+    search.open(panel, Snapshot())
+    type_text(search, "17")
+    show_rows(panel, [f"row {n}" for n in range(count)])
+    search.cancel()
+    assert panel.selected_row == selected
+
+
 # --- touch ------------------------------------------------------------------------------------------------
 
 
@@ -518,6 +557,10 @@ def table_with_search(above: QWidget, count: int = MANY) -> tuple[TablePanel, Li
     search = ListSearch()
     search.open(panel, Snapshot())
     return panel, search
+
+
+def show_rows(panel: TablePanel, names: list[str]) -> None:
+    panel.show_table(replace(panel.table, rows=tuple(TableRow((each,)) for each in names)))
 
 
 def type_text(search: ListSearch, text: str) -> None:

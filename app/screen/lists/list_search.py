@@ -26,7 +26,7 @@ class ListSearch:
         self.searched_list: SearchableList | None = None
         self.input_field = InputField(words=True)
         self.is_row_missing = False  # No row contains the text.
-        self._former_row = -1
+        self._former_row, self._row_count = -1, 0  # When the search was opened.
         self._texts: tuple[str, ...] = ()
         self._snapshot = Snapshot()  # The state of the machine when it was last checked.
         self.on_close: Callable[[], None] = lambda: None
@@ -64,6 +64,7 @@ class ListSearch:
         if searched_list.on_search is not None:
             searched_list.on_search("")
         self._former_row, self._snapshot = searched_list.selected_row, snapshot
+        self._row_count = len(searched_list.list_row_texts())
 
     def handle_key(self, key: str) -> bool:
         """Handle a key, and return False if it is Enter but the selected row does not contain the text."""
@@ -77,14 +78,15 @@ class ListSearch:
         elif key in ROW_STEPS:
             rows.move_selection(key)
         elif self.input_field.handle_key(key):
-            self._texts = ()
             if rows.on_search is not None:
                 rows.on_search(self.input_field.text.strip())
-            self._find_rows()
+            self._show_found_rows(rows, self._match_rows(rows))
+            if rows.found_rows and rows.on_select is not None and self.is_selection_hidden:
+                rows.on_select(rows.found_rows[0])
         return True
 
     def update(self, snapshot: Snapshot) -> None:
-        """Search again if the rows have changed.
+        """Search again if the rows have changed, without a change of the selection.
 
         Manual motion, the handwheel, a cycle start, a new alarm, an E-stop and a hidden list close it.
         This is called once a frame.
@@ -95,7 +97,7 @@ class ListSearch:
         if not rows.isVisible() or self._has_machine_changed(snapshot):
             self.force_close()
         else:
-            self._find_rows()
+            self._find_changed_rows(rows)
 
     def _has_machine_changed(self, snapshot: Snapshot) -> bool:
         """Return whether the machine has changed so that letters must be commands again."""
@@ -107,20 +109,25 @@ class ListSearch:
             or any(snapshot.state in each and former.state not in each for each in _CLOSING_STATES)
         )
 
-    def _find_rows(self) -> None:
-        """Show only the rows that contain the text, and select the first one if necessary."""
-        rows = self.searched_list
-        if rows is None:
-            return
-        texts = tuple(rows.list_row_texts())
-        if texts == self._texts:
-            return
-        self._texts = texts
+    def _match_rows(self, rows: SearchableList) -> tuple[int, ...]:
+        """Return the indices of the rows that contain the text."""
+        self._texts = tuple(rows.list_row_texts())
         text = "" if rows.on_search is not None else self.input_field.text.strip().casefold()
-        found = tuple(number for number, each in enumerate(texts) if text in each.casefold())
+        return tuple(number for number, each in enumerate(self._texts) if text in each.casefold())
+
+    def _find_changed_rows(self, rows: SearchableList) -> None:
+        """Search again if the texts have changed. A selected row that is shown remains shown."""
+        if tuple(rows.list_row_texts()) == self._texts:
+            return
+        selected = rows.selected_row
+        is_shown = rows.found_rows is None or selected in rows.found_rows
+        found = self._match_rows(rows)
+        if is_shown and 0 <= selected < len(self._texts) and selected not in found:
+            found = tuple(sorted((*found, selected)))
+        self._show_found_rows(rows, found)
+
+    def _show_found_rows(self, rows: SearchableList, found: tuple[int, ...]) -> None:
         rows.found_rows, self.is_row_missing = found, not found
-        if found and rows.on_select is not None and rows.selected_row not in found:
-            rows.on_select(found[0])
 
     def close(self) -> None:
         """Close the search, show all rows, and keep the selected row."""
@@ -130,14 +137,16 @@ class ListSearch:
             self.on_close()
 
     def cancel(self) -> None:
-        """Close the search, show all rows, and select the former row."""
+        """Close the search, show all rows, and select the former row unless rows were added or removed."""
         rows = self.searched_list
         self.close()
         if rows is None:
             return
         if rows.on_search is not None:
             rows.on_search("")
-        if rows.on_select is not None and 0 <= self._former_row < len(rows.list_row_texts()):
+        if rows.on_select is not None and 0 <= self._former_row < self._row_count == len(
+            rows.list_row_texts()
+        ):
             rows.on_select(self._former_row)
 
     def force_close(self) -> None:
