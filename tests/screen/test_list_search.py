@@ -369,6 +369,20 @@ def test_enter_is_refused_while_the_selected_row_is_not_found(above: QWidget) ->
     assert search.is_open
 
 
+@pytest.mark.parametrize("key", [Key.Key_F2, Key.Key_F3, Key.Key_F6])
+def test_a_function_key_does_not_act_on_a_row_that_the_search_hides(ready: Operator, key: Key) -> None:
+    assert ready.frame.open_page(page_table.TOOLS)
+    offsets = ready.stage.desk.offset_book.tool_offsets
+    open_search(ready)
+    write(ready, "zzz")
+    ready.key(key)
+    assert ready.prompt() == wording("screen.search-no-row")
+    assert (ready.frame.search_bar.is_open, typed(ready)) == (True, "zzz")
+    assert ready.stage.desk.offset_book.tool_offsets == offsets
+    ready.key(Key.Key_F1)  # leaves the page and needs no row
+    assert not ready.frame.search_bar.is_open
+
+
 def test_the_programs_page_names_its_own_search(ready: Operator) -> None:
     assert ready.frame.open_page(page_table.PROGRAMS)
     open_search(ready)

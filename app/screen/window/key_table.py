@@ -77,6 +77,8 @@ PAGE_FUNCTION_KEYS = frozenset(
 """Function keys of the pages. They close the list of alarms first, so that they do not act unseen."""
 SEARCH_CLOSING_KEYS = PAGE_FUNCTION_KEYS | {"F1", "F7", "Scope", HELP_KEY}
 """Keys that close the search first, because they show something else or act on the selected row."""
+ROW_ACTION_KEYS = PAGE_FUNCTION_KEYS | {"Scope"}
+"""Keys that can act on the selected row, and that are refused while a search does not show this row."""
 MENU_KEYS = {"J": "Step back"}
 """Letters of the main menu whose key is named after its function in the part playback, by letter."""
 REPEATING_KEYS = frozenset(

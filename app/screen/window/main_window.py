@@ -38,6 +38,7 @@ from app.screen.window.key_table import (
     PAGE_FUNCTION_KEYS,
     PALM_BUTTON_KEYS,
     REPEATING_KEYS,
+    ROW_ACTION_KEYS,
     SEARCH_CLOSING_KEYS,
     find_key_name,
 )
@@ -196,6 +197,9 @@ class MainWindow(QWidget):
         Touch targets also call this.
         """
         frame = self.frame
+        if frame is not None and key_name in ROW_ACTION_KEYS and frame.search_bar.refuse_hidden_row():
+            self.refresh()
+            return
         action = (frame.make_key_actions().get(key_name) if frame else None) or self._keys.get(key_name)
         if action is not None:
             if frame is not None:

@@ -158,6 +158,12 @@ class SearchBar(Panel):
         self._start_discarding()
         return True
 
+    def refuse_hidden_row(self) -> bool:
+        """Return whether the search hides the selected row, so that no key may act on it, and say so."""
+        if self.search.is_selection_hidden:
+            self._desk.say(tr("NO ROW CONTAINS THIS TEXT"))
+        return self.search.is_selection_hidden
+
     def handle_escape(self) -> bool:
         """Close an open search and select the former row. Return False if no search is open."""
         was_open = self.is_open
