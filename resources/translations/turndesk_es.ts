@@ -15370,6 +15370,11 @@
     </message>
     <message>
       <location filename="app/screen/window/search_bar.py" />
+      <source>ANSWER THE QUESTION BEFORE SEARCHING</source>
+      <translation>RESPONDA A LA PREGUNTA ANTES DE BUSCAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/search_bar.py" />
       <source>AXES HAVE JUST MOVED. SEARCH AGAIN AFTER 3 S</source>
       <translation>LOS EJES ACABAN DE MOVERSE. BUSQUE PASADOS 3 S</translation>
     </message>

@@ -383,6 +383,35 @@ def test_a_function_key_does_not_act_on_a_row_that_the_search_hides(ready: Opera
     assert not ready.frame.search_bar.is_open
 
 
+@pytest.mark.parametrize("letter", ["y", "n"])
+def test_a_question_closes_the_search_and_a_typed_letter_does_not_answer_it(
+    ready: Operator, letter: str
+) -> None:
+    answered: list[str] = []
+    desk = ready.stage.desk
+    functions(ready)
+    open_search(ready)
+    write(ready, "e")
+    desk.ask_operator("PRESS Y TO DELETE, N TO KEEP", lambda: answered.append("yes"))
+    write(ready, letter)
+    ready.pause(0.9)  # longer than the reading time of 0.5 s
+    write(ready, letter)
+    assert (answered, desk.confirmation_key) == ([], "Y")
+    assert not ready.frame.search_bar.is_open
+    ready.pause(1.1)
+    write(ready, letter)
+    assert (answered, desk.confirmation_key) == (["yes"] if letter == "y" else [], "")
+
+
+def test_an_open_question_refuses_the_search(ready: Operator) -> None:
+    functions(ready)
+    ready.stage.desk.ask_operator("PRESS Y TO DELETE, N TO KEEP", lambda: None)
+    open_search(ready)
+    assert not ready.frame.search_bar.is_open
+    assert ready.stage.desk.prompt_notice == wording("screen.search-question")
+    assert ready.stage.desk.confirmation_key == "Y"
+
+
 def test_the_programs_page_names_its_own_search(ready: Operator) -> None:
     assert ready.frame.open_page(page_table.PROGRAMS)
     open_search(ready)

@@ -113,8 +113,10 @@ class SearchBar(Panel):
         self.search.open(searched_list, snapshot)
 
     def _find_page_refusal(self) -> str:
-        """Return a hint if the layout must wait, or if the page has an entry for the selected row."""
+        """Return a hint if a question is open, the layout must wait, or the page has an unfinished entry."""
         window = self._window
+        if self._desk.confirmation_key:
+            return tr("ANSWER THE QUESTION BEFORE SEARCHING")
         if window.has_recent_manual_motion:
             return tr("AXES HAVE JUST MOVED. SEARCH AGAIN AFTER 3 S")
         if window.alarm_list.isVisible() or not window.current_page.has_unfinished_entry():
@@ -124,7 +126,7 @@ class SearchBar(Panel):
     def handle_key(self, key: str) -> None:
         """Handle a key as text, as Enter, or as a key that selects a found row."""
         if self.search.handle_key(key):
-            self._desk.clear_prompt_line()
+            self._desk.prompt_line.clear_message()
         else:
             self._desk.say(tr("NO ROW CONTAINS THIS TEXT"))
 
@@ -133,6 +135,11 @@ class SearchBar(Panel):
         self.hide()
         self.letter_pad.hide()
         self._window.current_page.is_searching = False
+
+    def close_for_question(self) -> None:
+        """Close the search if a question is open, so that no character of the text answers it."""
+        if self._desk.confirmation_key:
+            self.search.force_close()
 
     def _start_discarding(self) -> None:
         self._discard_end_s = self._desk.station_controls.clock() + DISCARD_TIME_S
@@ -172,6 +179,7 @@ class SearchBar(Panel):
 
     def refresh(self, snapshot: Snapshot) -> None:
         """Update the search and the search key of the list, and redraw the field if it has changed."""
+        self.close_for_question()
         self.search.update(snapshot)
         rows = self._find_list()
         if rows is not None:

@@ -76,8 +76,9 @@ class TypedKeyHandler:
     def _discard_search_text(self, frame: WindowFrame, event: QKeyEvent) -> bool:
         """Return whether the key is discarded because the search was closed while the operator typed.
 
-        The other stop keys have already acted in the keyboard filter.
+        A question also closes the search. The other stop keys have already acted in the keyboard filter.
         """
+        frame.search_bar.close_for_question()
         if event.key() in MODIFIER_KEYS or event.key() == Qt.Key.Key_Escape:
             return False
         if not frame.search_bar.discard_key(is_repeat=event.isAutoRepeat()):
