@@ -227,6 +227,16 @@ def test_search_finds_a_tool_by_its_number(ready: Operator) -> None:
     assert (page.model.tool_number, page.model.text) == (17, "")
 
 
+@pytest.mark.parametrize(
+    ("text", "rows"), [("rotacion", (0, 1)), ("Rotación", (0, 1)), ("ano", (2,)), ("rotacien", ())]
+)
+def test_accents_and_capitals_make_no_difference(above: QWidget, text: str, rows: tuple[int, ...]) -> None:
+    panel, search = table_with_search(above, count=3)
+    show_rows(panel, ["ROTACIÓN", "rotacio\u0301n", "AÑO"])  # The second name has a combining accent.
+    type_text(search, text)
+    assert panel.found_rows == rows
+
+
 def test_changed_texts_do_not_move_the_selection(above: QWidget) -> None:
     panel, search = table_with_search(above)
     type_text(search, "17")
