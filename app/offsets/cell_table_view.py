@@ -144,7 +144,8 @@ class CellPanel(RowPanel):
             spot = cell.united(box.adjusted(0, 0, cell.left() - box.right(), 0)) if nth == 0 else cell
             # The number belongs to the first cell, so that touching the number selects the row.
             words = f"{_ROW_LETTERS[self._kind]}{number} {self._words[column]}"
-            self.add_target(spot, partial(self._choose, row, column), words, kind="row", is_on=here)
+            press = partial(self.press_row, row, partial(self._choose, row, column))
+            self.add_target(spot, press, words, kind="row", is_on=here)
 
 
 # Relative widths of columns.

@@ -113,7 +113,7 @@ class ToolOffsetPanel(RowPanel):
         self._head(painter, head, columns)
         high = body.height() / fits
         for place, row in self.find_row_boxes(body, high):
-            self._row(painter, row, model.row_numbers[place], columns)
+            self._row(painter, row, place, columns)
 
     def _head(self, painter: ThemedPainter, head: QRectF, columns: dict[str, tuple[float, float]]) -> None:
         u, mode = self.theme.unit_px, self._model.unit_mode
@@ -133,9 +133,10 @@ class ToolOffsetPanel(RowPanel):
         return columns
 
     def _row(
-        self, painter: ThemedPainter, row: QRectF, number: int, columns: dict[str, tuple[float, float]]
+        self, painter: ThemedPainter, row: QRectF, place: int, columns: dict[str, tuple[float, float]]
     ) -> None:
         u, model = self.theme.unit_px, self._model
+        number = model.row_numbers[place]
         here = number == model.tool_number
         if here:
             painter.fill_rect(row, "here")
@@ -154,7 +155,7 @@ class ToolOffsetPanel(RowPanel):
             words = f"{name} {self._heads[field]}"
             self.add_target(
                 spot,
-                partial(self.on_cell_touched, number, at),
+                partial(self.press_row, place, partial(self.on_cell_touched, number, at)),
                 words,
                 kind="row",
                 is_on=here and at == model.column_index,

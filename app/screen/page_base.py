@@ -67,6 +67,7 @@ from app.desk.pages.editor_panel import EditorPanelModel
 from app.desk.pages.guide_text import GuideBlock
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
+from app.desk.translation import tr
 from app.screen.lists.searchable_list import SearchableList
 from app.screen.screen_theme import ScreenTheme
 from core.executor.snapshot import Snapshot
@@ -177,10 +178,12 @@ class Page(QWidget):
     def handle_touched_key(self, key: str) -> None:
         """Handle a touch on a key of the on-screen keyboard.
 
-        Esc goes to the window, and any other key goes to this page.
+        Esc goes to the window, and any other key goes to this page, but not while a search is open.
         """
         if key == "Esc":
             self.host.press_key(key)
+        elif self.is_searching:
+            self.desk.say(tr("CLOSE THE SEARCH FIRST (ESC)"))
         else:
             self.handle_key(key)
 

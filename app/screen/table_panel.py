@@ -305,7 +305,8 @@ class TablePanel(RowPanel):
         self._head(painter, row)
         for number, box in self.find_row_boxes(left, high * u):
             self._row(painter, box, sheet.rows[number], number == sheet.marked)
-            self.add_target(box, partial(self._choose, number), kind="row", is_on=number == sheet.marked)
+            press = partial(self.press_row, number, partial(self._choose, number))
+            self.add_target(box, press, kind="row", is_on=number == sheet.marked)
         self._foot(painter, room)
 
     def _columns(self, box: QRectF) -> Iterator[tuple[int, QRectF]]:

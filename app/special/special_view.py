@@ -76,7 +76,8 @@ class FunctionListPanel(RowPanel):
         for number, row in self.find_row_boxes(room, high):
             box = row.adjusted(0, 0, 0, -GAP * self.theme.unit_px)
             self._item(painter, box, number, functions[number].name, functions[number].use)
-            self.add_target(box, partial(self._enter, number), kind="row", is_on=number == self.model.at)
+            press = partial(self.press_row, number, partial(self._enter, number))
+            self.add_target(box, press, kind="row", is_on=number == self.model.at)
 
     def _item(self, painter: ThemedPainter, box: QRectF, number: int, name: str, use: str) -> None:
         u = self.theme.unit_px

@@ -15004,6 +15004,11 @@
       <translation>PULSE UNA TECLA DE FUNCIÓN O TOQUE UNA PÁGINA. ESC: AUTOMÁTICO</translation>
     </message>
     <message>
+      <location filename="app/screen/page_base.py" />
+      <source>CLOSE THE SEARCH FIRST (ESC)</source>
+      <translation>CIERRE ANTES LA BÚSQUEDA (ESC)</translation>
+    </message>
+    <message>
       <location filename="app/screen/page_help.py" />
       <source>ALARMS AND STOPS</source>
       <translation>ALARMAS Y PAROS</translation>
@@ -15457,11 +15462,6 @@
       <location filename="app/screen/window/station_dock.py" />
       <source>TWIST</source>
       <translation>GIRE</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/typed_keys.py" />
-      <source>CLOSE THE SEARCH FIRST (ESC)</source>
-      <translation>CIERRE ANTES LA BÚSQUEDA (ESC)</translation>
     </message>
     <message>
       <location filename="app/screen/window/typed_keys.py" />

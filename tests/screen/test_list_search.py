@@ -317,6 +317,52 @@ def test_the_list_is_visible_above_the_keyboard_in_a_small_window(ready: Operato
     assert all(rows.rect().contains(each.toAlignedRect()) for each in places)
 
 
+def test_a_touch_during_a_search_only_selects_the_function(ready: Operator) -> None:
+    shown = functions(ready)
+    open_search(ready)
+    write(ready, "event l")
+    page = ready.frame.current_page
+    assert isinstance(page, SpecialFunctionsPage)
+    page.function_list.grab()
+    (row,) = [each.box for each in page.function_list.list_targets() if each.kind == "row"]
+    press(page.function_list, row)
+    press(page.function_list, row)
+    assert (shown.functions[shown.at].name, shown.inside) == ("EVENT LOG", False)
+    ready.key(Key.Key_Return)
+    press(page.function_list, row)
+    assert shown.inside  # A touch opens the function again.
+
+
+def test_two_touches_of_a_tool_do_not_open_its_remark_during_a_search(ready: Operator) -> None:
+    assert ready.frame.open_page(page_table.TOOLS)
+    page = ready.frame.current_page
+    assert isinstance(page, ToolOffsetsPage)
+    open_search(ready)
+    write(ready, "t17")
+    page.content_panel.grab()
+    remark = [each.box for each in page.content_panel.list_targets() if each.kind == "row"][-1]
+    press(page.content_panel, remark)
+    press(page.content_panel, remark)
+    assert (page.model.tool_number, page.model.is_text_open) == (17, False)
+
+
+def test_keys_of_the_page_for_touch_enter_nothing_during_a_search(ready: Operator) -> None:
+    assert ready.frame.open_page(page_table.TOOLS)
+    page = ready.frame.current_page
+    assert isinstance(page, ToolOffsetsPage)
+    open_search(ready)
+    page.handle_touched_key("5")
+    assert (page.model.text, ready.prompt()) == ("", wording("screen.search-palms"))
+
+
+def test_the_search_closes_when_the_page_shows_another_list(ready: Operator) -> None:
+    shown = functions(ready)
+    open_search(ready)
+    shown.inside = True
+    ready.window.refresh()
+    assert not ready.frame.search_bar.is_open
+
+
 def test_a_list_that_shows_all_rows_has_no_search_key(above: QWidget) -> None:
     panel, _search = table_with_search(above, count=3)
     panel.on_search_key = lambda: None

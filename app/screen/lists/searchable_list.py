@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from app.desk.pages.table_content import ROW_STEPS
-from app.screen.panel import Panel, RedrawingAttribute
+from app.screen.panel import OnPress, Panel, RedrawingAttribute
 
 LIST_KEYS = frozenset({"Page up", "Page down", "Home", "End"})
 """Keys that every list uses before its page."""
@@ -55,6 +55,13 @@ class SearchableList(Panel):
         """Return whether the rows can be searched and the found row can be selected."""
         can_select = self.on_select is not None or self.selected_row < 0
         return self.is_searchable and can_select and not self.search_hint
+
+    def press_row(self, row: int, press: OnPress) -> None:
+        """Execute the action of a touched row, or only select the row while a search is open."""
+        if self.found_rows is None:
+            press()
+        elif self.on_select is not None:
+            self.on_select(row)
 
     def move_selection(self, key: str) -> bool:
         """Select the row to which an arrow, page, Home or End key leads.

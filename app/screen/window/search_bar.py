@@ -182,6 +182,8 @@ class SearchBar(Panel):
         self.close_for_question()
         self.search.update(snapshot)
         rows = self._find_list()
+        if self.search.searched_list is not rows:
+            self.search.force_close()
         if rows is not None:
             rows.on_search_key = self._open_by_touch if rows.can_be_searched else None
         shown = self.search.input_field.text, self._count_text, self.is_open
