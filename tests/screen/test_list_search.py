@@ -11,6 +11,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 
 from app.desk.pages.table_content import TableContent, TableRow
+from app.offsets.tool_offsets import TABLE_COLUMNS
 from app.offsets.tool_offsets_view import ToolOffsetsPage
 from app.screen import page_table
 from app.screen.color_palettes import DARK_PALETTE
@@ -338,12 +339,18 @@ def test_two_touches_of_a_tool_do_not_open_its_remark_during_a_search(ready: Ope
     page = ready.frame.current_page
     assert isinstance(page, ToolOffsetsPage)
     open_search(ready)
-    write(ready, "t17")
+    write(ready, "t1")  # The first found row is T1, which is set.
     page.content_panel.grab()
-    remark = [each.box for each in page.content_panel.list_targets() if each.kind == "row"][-1]
+    cells = [each.box for each in page.content_panel.list_targets() if each.kind == "row"]
+    remark = cells[TABLE_COLUMNS.index("remark")]
     press(page.content_panel, remark)
+    page.model.column_index = TABLE_COLUMNS.index("remark")
     press(page.content_panel, remark)
-    assert (page.model.tool_number, page.model.is_text_open) == (17, False)
+    assert (page.model.tool_number, page.model.is_text_open) == (1, False)
+    ready.key(Key.Key_Escape)
+    page.content_panel.grab()
+    press(page.content_panel, remark)
+    assert page.model.is_text_open  # A touch opens the remark again.
 
 
 def test_keys_of_the_page_for_touch_enter_nothing_during_a_search(ready: Operator) -> None:
