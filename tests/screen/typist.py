@@ -148,6 +148,7 @@ class Typist:
     def opens(self, name: str) -> bool:
         """Open a page afresh; False where it does not open in this state."""
         frame = self.day.frame
+        frame.search_bar.search.close()  # Esc; a page that closes the search discards the next keys
         self.clear()
         if isinstance(frame.current_page, EditorPage):
             self._leaves_editor(frame.current_page)
