@@ -14999,6 +14999,41 @@
       <translation>ESCRIBA EL TEXTO   PAUSA: RETENCIÓN DE AVANCE   ENTER: CONSERVAR   ESC: CERRAR</translation>
     </message>
     <message>
+      <location filename="app/screen/lists/search_bar.py" />
+      <source>ANSWER THE QUESTION BEFORE SEARCHING</source>
+      <translation>RESPONDA A LA PREGUNTA ANTES DE BUSCAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/lists/search_bar.py" />
+      <source>AXES HAVE JUST MOVED. SEARCH AGAIN AFTER 3 S</source>
+      <translation>LOS EJES ACABAN DE MOVERSE. BUSQUE PASADOS 3 S</translation>
+    </message>
+    <message>
+      <location filename="app/screen/lists/search_bar.py" />
+      <source>ENTRY NOT FINISHED. PRESS ENTER OR ESC BEFORE SEARCHING</source>
+      <translation>ENTRADA SIN TERMINAR. PULSE ENTER O ESC ANTES DE BUSCAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/lists/search_bar.py" />
+      <source>KEEP ROW</source>
+      <translation>CONSERVAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/lists/search_bar.py" />
+      <source>NO ROW CONTAINS THIS TEXT</source>
+      <translation>NINGUNA FILA CONTIENE ESTE TEXTO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/lists/search_bar.py" />
+      <source>SEARCH</source>
+      <translation>BUSCAR</translation>
+    </message>
+    <message>
+      <location filename="app/screen/lists/search_bar.py" />
+      <source>SEARCH CLOSED. ONLY STOP KEYS ACT UNTIL YOU STOP TYPING FOR 1 S</source>
+      <translation>BÚSQUEDA CERRADA. SÓLO ACTÚAN LAS TECLAS DE PARO HASTA 1 S SIN TECLAS</translation>
+    </message>
+    <message>
       <location filename="app/screen/main_menu.py" />
       <source>PRESS A FUNCTION KEY OR TAP A PAGE. ESC: AUTOMATIC</source>
       <translation>PULSE UNA TECLA DE FUNCIÓN O TOQUE UNA PÁGINA. ESC: AUTOMÁTICO</translation>
@@ -15182,11 +15217,6 @@
       <location filename="app/screen/table_panel.py" />
       <source>PREVIOUS ROWS</source>
       <translation>FILAS ANTERIORES</translation>
-    </message>
-    <message>
-      <location filename="app/screen/table_panel.py" />
-      <source>SEARCH</source>
-      <translation>BUSCAR</translation>
     </message>
     <message>
       <location filename="app/screen/window/alarm_panels.py" />
@@ -15377,36 +15407,6 @@
       <location filename="app/screen/window/run_row.py" />
       <source>STOP {number}: {first}</source>
       <translation>PARO {number}: {first}</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/search_bar.py" />
-      <source>ANSWER THE QUESTION BEFORE SEARCHING</source>
-      <translation>RESPONDA A LA PREGUNTA ANTES DE BUSCAR</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/search_bar.py" />
-      <source>AXES HAVE JUST MOVED. SEARCH AGAIN AFTER 3 S</source>
-      <translation>LOS EJES ACABAN DE MOVERSE. BUSQUE PASADOS 3 S</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/search_bar.py" />
-      <source>ENTRY NOT FINISHED. PRESS ENTER OR ESC BEFORE SEARCHING</source>
-      <translation>ENTRADA SIN TERMINAR. PULSE ENTER O ESC ANTES DE BUSCAR</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/search_bar.py" />
-      <source>KEEP ROW</source>
-      <translation>CONSERVAR</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/search_bar.py" />
-      <source>NO ROW CONTAINS THIS TEXT</source>
-      <translation>NINGUNA FILA CONTIENE ESTE TEXTO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/search_bar.py" />
-      <source>SEARCH CLOSED. ONLY STOP KEYS ACT UNTIL YOU STOP TYPING FOR 1 S</source>
-      <translation>BÚSQUEDA CERRADA. SÓLO ACTÚAN LAS TECLAS DE PARO HASTA 1 S SIN TECLAS</translation>
     </message>
     <message>
       <location filename="app/screen/window/station_dock.py" />

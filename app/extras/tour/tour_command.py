@@ -28,12 +28,12 @@ def run(args: argparse.Namespace) -> int:
     folder is running, because the window of the tour takes the keyboard from that screen.
     """
     from app.cli.main import run_opening_show
+    from app.compose.optional_features import extras
     from app.desk.data_folder import find_data_folder
-    from app.extras.tour.extra import EXTRA
 
     if not args.from_screen:
         check_no_machine_running(find_data_folder())
-    return run_opening_show(EXTRA.opening_show_class)
+    return run_opening_show(extras()["tour"].opening_show_class)
 
 
 def check_no_machine_running(folder: Path) -> None:

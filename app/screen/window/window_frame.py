@@ -17,6 +17,7 @@ from app.desk.status.machine_status import MachineStatus
 from app.desk.status.state_prompt import make_page_prompt
 from app.desk.translation import tr
 from app.screen import page_table
+from app.screen.lists.search_bar import SearchBar
 from app.screen.page_base import KeyActions, Page, PageHost
 from app.screen.page_help import make_page_help
 from app.screen.page_table import find_replacement_page, make_page
@@ -45,7 +46,6 @@ from app.screen.window.readout_panels import (
     ToolPanel,
 )
 from app.screen.window.run_row import RunStatusRow
-from app.screen.window.search_bar import SearchBar
 from app.screen.window.station_dock import StationDock
 from app.screen.window.window_bars import FunctionKeyBar, LampStrip, NoticeRows, PromptLine, TitleLine
 from app.screen.window_layout import (
