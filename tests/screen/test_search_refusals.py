@@ -10,6 +10,7 @@ from PySide6.QtGui import QKeyEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 
+from app.jog.jog_view import JogPage
 from app.offsets.tool_offsets_view import ToolOffsetsPage
 from app.screen import page_table
 from core.executor.snapshot import Alarm, MachineState, Snapshot
@@ -272,6 +273,52 @@ def test_stop_letters_stop_at_once_after_the_search_is_closed(
     ready.frame.search_bar.search.force_close()
     write(ready, letter)
     ready.until(lambda: ready.shot.state in states)
+
+
+def test_the_search_does_not_open_again_while_keys_are_discarded(ready: Operator) -> None:
+    ready.palms()
+    ready.reaches(MachineState.RUN)
+    assert ready.frame.open_page(page_table.TOOLS)
+    ready.window.grab()
+    open_search(ready)
+    ready.frame.search_bar.search.force_close()
+    ready.frame.search_bar.open_search()  # the touched key
+    assert not ready.frame.search_bar.is_open
+    assert ready.prompt() == wording("screen.search-closed")
+    write(ready, "h")
+    ready.until(lambda: ready.shot.state in {MachineState.HOLD, MachineState.STOPPING})
+
+
+def test_a_stop_letter_that_is_handled_late_still_stops(
+    ready: Operator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ready.palms()
+    ready.reaches(MachineState.RUN)
+    assert ready.frame.open_page(page_table.TOOLS)
+    ready.window.grab()
+    open_search(ready)
+    ready.frame.search_bar.search.force_close()
+    ready.pause(1.2)
+    assert ready.frame.has_text_field()
+    monkeypatch.setattr(ready.stage.desk.window_state, "_press_age", lambda: 0.4)  # pressed at 0.8 s
+    assert not ready.frame.has_text_field()
+    write(ready, "h")
+    ready.until(lambda: ready.shot.state in {MachineState.HOLD, MachineState.STOPPING})
+
+
+def test_a_stop_key_of_the_page_acts_while_keys_are_discarded(
+    ready: Operator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stopped: list[str] = []
+    fill_log(ready)
+    assert ready.frame.open_page(page_table.JOG)
+    monkeypatch.setattr(JogPage, "make_stop_key_actions", lambda _page: {"0": lambda: stopped.append("0")})
+    ready.key(Key.Key_F7)
+    ready.window.grab()
+    open_search(ready)
+    ready.frame.search_bar.search.force_close()
+    write(ready, "10")
+    assert stopped == ["0"]
 
 
 @pytest.mark.parametrize("key", [Key.Key_F7, Key.Key_F1])

@@ -25,6 +25,7 @@ from core.executor.snapshot import Snapshot
 from core.message import Message
 
 DISCARD_TIME_S = 1.0  # Seconds without keys after which keys act again after a forced close.
+_LATEST_PRESS_S = 3.0  # Seconds by which a press can be handled late, because the computer is busy.
 SEARCH_CLOSED = "SEARCH CLOSED. ONLY STOP KEYS ACT UNTIL YOU STOP TYPING FOR 1 S"
 _BAR_HEIGHT, _KEY_WIDTH, _LABEL_WIDTH = 5.6, 15.0, 14.0  # Units.
 
@@ -109,12 +110,14 @@ class SearchBar(Panel):
         if refusal or searched_list is None:
             self._desk.say(refusal)
             return
-        self.has_letters = has_letters
+        self.has_letters, self._discard_end_s = has_letters, None
         self.search.open(searched_list, snapshot)
 
     def _find_page_refusal(self) -> str:
-        """Return a hint if a question is open, the layout must wait, or the page has an unfinished entry."""
+        """Return a hint if keys are discarded, a question is open, or the layout or an entry must wait."""
         window = self._window
+        if self.is_discarding:
+            return tr(SEARCH_CLOSED)
         if self._desk.confirmation_key:
             return tr("ANSWER THE QUESTION BEFORE SEARCHING")
         if window.has_recent_manual_motion:
@@ -147,9 +150,15 @@ class SearchBar(Panel):
 
     @property
     def is_discarding(self) -> bool:
-        """Return whether the search was closed while the operator was perhaps still typing."""
-        end = self._discard_end_s
-        return end is not None and self._desk.station_controls.clock() < end
+        """Return whether the search was closed while the operator was perhaps still typing.
+
+        The time of the press counts, also if the press is handled late. Without a press, the state ends after
+        a few seconds.
+        """
+        end, now = self._discard_end_s, self._desk.station_controls.clock()
+        if end is None or now >= end + _LATEST_PRESS_S:
+            return False
+        return now - self._desk.window_state.find_press_age_s() < end
 
     def discard_key(self, *, is_repeat: bool) -> bool:
         """Return whether a pressed key is discarded because it may be the rest of a searched text.
@@ -158,8 +167,7 @@ class SearchBar(Panel):
         """
         if self._discard_end_s is None:
             return False
-        pressed_at_s = self._desk.station_controls.clock() - self._desk.window_state.find_press_age_s()
-        if not is_repeat and pressed_at_s >= self._discard_end_s:
+        if not is_repeat and not self.is_discarding:
             self._discard_end_s = None
             return False
         self._start_discarding()

@@ -75,7 +75,7 @@ PAGE_FUNCTION_KEYS = frozenset(
     {"F2", "F3", "F4", "F5", "F6", "F8", "F9", "F10", "Codes", RELOAD_KEY, "Shapes", "Calculators"}
 )
 """Function keys of the pages. They close the list of alarms first, so that they do not act unseen."""
-SEARCH_CLOSING_KEYS = PAGE_FUNCTION_KEYS | {"F1", "F7", "Scope", HELP_KEY}
+SEARCH_CLOSING_KEYS = PAGE_FUNCTION_KEYS | {"F1", "F7", "Shift+F6", "Scope", HELP_KEY}
 """Keys that close the search first, because they show something else or act on the selected row."""
 ROW_ACTION_KEYS = PAGE_FUNCTION_KEYS | {"Scope"}
 """Keys that can act on the selected row, and that are refused while a search does not show this row."""

@@ -59,10 +59,10 @@ class TypedKeyHandler:
     def handle_priority_key(self, frame: WindowFrame, event: QKeyEvent) -> bool:
         """Return whether the key was discarded or refused, answered a question or stopped something."""
         return (
-            self._discard_search_text(frame, event)
+            self.handle_stop_key(frame, event)
+            or self._discard_search_text(frame, event)
             or self._is_palm_refused(frame, event)
             or self.handle_answer(frame, event)
-            or self.handle_stop_key(frame, event)
         )
 
     def _is_palm_refused(self, frame: WindowFrame, event: QKeyEvent) -> bool:
@@ -76,10 +76,12 @@ class TypedKeyHandler:
     def _discard_search_text(self, frame: WindowFrame, event: QKeyEvent) -> bool:
         """Return whether the key is discarded because the search was closed while the operator typed.
 
-        A question also closes the search. The other stop keys have already acted in the keyboard filter.
+        A question also closes the search. The stop keys of the page act. All other stop keys have already
+        acted in the keyboard filter.
         """
         frame.search_bar.close_for_question()
-        if event.key() in MODIFIER_KEYS or event.key() == Qt.Key.Key_Escape:
+        is_stop = find_typed_text(event) in frame.current_page.make_stop_key_actions()
+        if is_stop or event.key() in MODIFIER_KEYS or event.key() == Qt.Key.Key_Escape:
             return False
         if not frame.search_bar.discard_key(is_repeat=event.isAutoRepeat()):
             return False
