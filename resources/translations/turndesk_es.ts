@@ -14975,11 +14975,6 @@
     </message>
     <message>
       <location filename="app/screen/lists/list_search.py" />
-      <source>NFKD</source>
-      <translation type="unfinished" />
-    </message>
-    <message>
-      <location filename="app/screen/lists/list_search.py" />
       <source>NO LIST TO SEARCH HERE</source>
       <translation>AQUÍ NO HAY LISTA EN LA QUE BUSCAR</translation>
     </message>

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import unicodedata
 from collections.abc import Callable
 
 from app.desk.pages.page_entry import MANUAL_STATES
@@ -10,16 +9,16 @@ from app.desk.pages.table_content import ROW_STEPS, InputField
 from app.desk.status.prompt_line import ACTIVE_STATES, MOVING_STATES
 from app.desk.translation import tr
 from app.screen.lists.searchable_list import SearchableList
+from core.accents import remove_accents
 from core.executor.snapshot import MachineState, Snapshot
 
 # The search closes when the machine enters one of these groups of states: stopped, running, moving.
 _CLOSING_STATES = (frozenset({MachineState.ESTOP, MachineState.FAULT}), ACTIVE_STATES, MOVING_STATES)
 
 
-def _remove_accents(text: str) -> str:
+def _fold(text: str) -> str:
     """Return a text in lower case and without accents, which the touch keyboard does not have."""
-    parts = unicodedata.normalize("NFKD", text.casefold())
-    return "".join(each for each in parts if not unicodedata.combining(each))
+    return remove_accents(text.casefold())
 
 
 class ListSearch:
@@ -119,8 +118,8 @@ class ListSearch:
     def _match_rows(self, rows: SearchableList) -> tuple[int, ...]:
         """Return the indices of the rows that contain the text."""
         self._texts = tuple(rows.list_row_texts())
-        text = "" if rows.on_search is not None else _remove_accents(self.input_field.text.strip())
-        return tuple(number for number, each in enumerate(self._texts) if text in _remove_accents(each))
+        text = "" if rows.on_search is not None else _fold(self.input_field.text.strip())
+        return tuple(number for number, each in enumerate(self._texts) if text in _fold(each))
 
     def _find_changed_rows(self, rows: SearchableList) -> None:
         """Search again if the texts have changed. A selected row that is shown remains shown."""

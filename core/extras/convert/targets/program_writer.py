@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from math import dist, tau
 from textwrap import wrap
 from typing import ClassVar
-from unicodedata import combining, normalize
 
+from core.accents import remove_accents
 from core.extras.convert.conversion_messages import make_error, make_warning
 from core.extras.convert.omniturn_writer import WrittenLine, number
 from core.extras.convert.path_steps import MOVE_KINDS, PathStep, SpindleState, StepKind, has_same_speed
@@ -146,8 +146,7 @@ class ProgramWriter(ABC):
 
     def make_comment(self, text: str) -> str:
         """Return a comment with the characters that the control accepts, and without accents."""
-        plain = "".join(each for each in normalize("NFKD", text) if not combining(each))
-        return f"({self.not_in_comments.sub(' ', plain).strip()})"
+        return f"({self.not_in_comments.sub(' ', remove_accents(text)).strip()})"
 
     def split_text(self, text: str) -> list[str]:
         """Return a text in parts that are short enough for the screen of a control."""
