@@ -1,7 +1,7 @@
-"""Moving picture of the tour, made without a display: ``python -m tests.extras.tour.tour_picture FILE``.
+"""Animation of the tour for the README: ``python -m tests.extras.tour.tour_picture FILE`` makes it.
 
-The tour runs on the simulated lathe, on a clock that this script moves. The picture shows it at twice its
-speed.
+The tour runs on the simulated lathe, on a clock that this script moves. The animation shows it at
+twice its speed.
 """
 
 from __future__ import annotations
@@ -9,11 +9,13 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import BinaryIO
 
+from PIL import Image
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
@@ -31,7 +33,6 @@ from app.screen.screen_theme import ScreenTheme, load_fonts, style_application
 from app.screen.window.main_window import MainWindow
 from core.executor.executor import Executor
 from drivers.wakeups import ManualClock
-from tests.extras.tour.webp_animation import WebpAnimation
 
 WINDOW_PX, PICTURE_PX = (1200, 750), (800, 500)
 QUALITY = 72
@@ -114,22 +115,44 @@ def play_tour() -> Iterator[PlayedTour]:
             yield tour
 
 
-def make_picture() -> bytes:
-    """Return the moving picture of the whole tour. Raises TimeoutError if the tour does not end."""
-    animation = WebpAnimation(*PICTURE_PX, QUALITY)
+def convert_picture(picture: QImage) -> Image.Image:
+    """Return a picture of Qt as a picture of Pillow."""
+    rows = picture.convertToFormat(QImage.Format.Format_RGB888)
+    size, stride = (rows.width(), rows.height()), rows.bytesPerLine()
+    return Image.frombytes("RGB", size, bytes(rows.constBits()), "raw", "RGB", stride)
+
+
+def write_animation(pictures: Sequence[QImage], file: BinaryIO) -> None:
+    """Write an animated WebP picture that repeats without end. Raises ValueError without pictures."""
+    if not pictures:
+        raise ValueError("the animation has no pictures")
+    first, *others = map(convert_picture, pictures)
+    first.save(
+        file,
+        "WEBP",
+        save_all=True,
+        append_images=others,
+        duration=PICTURE_MS,
+        loop=0,
+        quality=QUALITY,
+        kmax=0,  # Without key frames, the file has about half of the size.
+    )
+
+
+def play_pictures() -> Iterator[QImage]:
+    """Yield the pictures of the whole tour. Raises TimeoutError if the tour does not end."""
     with play_tour() as tour:
         while not tour.is_over:
             if tour.clock.now() > MAX_TOUR_S:
                 raise TimeoutError(f"the tour has not ended after {MAX_TOUR_S:g} s")
             tour.run(PICTURE_INTERVAL_S)
             if not tour.director.is_stopping:
-                animation.add_picture(tour.draw(), PICTURE_MS)
-    return animation.make_file()
+                yield tour.draw()
 
 
 def main() -> int:
-    """Write the moving picture, and print its size."""
-    parser = argparse.ArgumentParser(description="Write the moving picture of the tour.")
+    """Write the animation, and print its size."""
+    parser = argparse.ArgumentParser(description="Write an animation of the tour.")
     parser.add_argument("file", type=Path, help="WebP file to write")
     path = parser.parse_args().file
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
@@ -137,9 +160,10 @@ def main() -> int:
     assert isinstance(application, QApplication)
     load_fonts()
     style_application(DARK_PALETTE)
-    data = make_picture()
-    path.write_bytes(data)
-    sys.stdout.write(f"{path}: {len(data) / 1024:.0f} KB\n")
+    pictures = list(play_pictures())
+    with path.open("wb") as file:
+        write_animation(pictures, file)
+    sys.stdout.write(f"{path}: {path.stat().st_size / 1024:.0f} KB\n")
     return 0
 
 
