@@ -104,7 +104,7 @@ def find_working_side(
 def assume_working_side(
     quadrant: int, old_x_mm: float | None, new_x_mm: float | None = None
 ) -> tuple[int, bool]:
-    """Return the same as ``find_working_side`` for a tool whose shape is not stored.
+    """Return the assumed side and whether the tool works in a bore, if its shape is not stored.
 
     The old offset can be wrong. Therefore, it does not decide that the tool works in a bore. A tool that
     points to negative X is an outside tool at positive X, unless the entry confirms the other side.

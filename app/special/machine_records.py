@@ -112,7 +112,7 @@ class EventLogFunction(SpecialFunction):
         self.query_events()
 
     def find_row_search(self) -> Callable[[str], None]:
-        """Return the search in all events of the store."""
+        """Return the function that searches all stored events."""
         return self.search_events
 
     def search_events(self, text: str) -> None:

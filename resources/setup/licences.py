@@ -25,6 +25,7 @@ COMPATIBLE = frozenset(
             "BSD-3-Clause",
             "CC0-1.0",
             "MIT",
+            "MIT-CMU",
             "PSF-2.0",
             "ZPL-2.1",
             "Zlib",

@@ -38,6 +38,7 @@ from resources.setup.artifact_checks.minimal_root import make_base_root, open_ro
 from resources.setup.artifact_checks.store_data import StoredData, count_rows, list_losses, read_stored_data
 from resources.setup.bundle import BundleError
 
+_LINTIAN_FAILED = 1  # exit status of lintian after an error of its own
 MAX_FIRST_PART_S = 300.0
 """Longest permitted time from the artifact to the first part, in seconds."""
 _IGNORED = re.compile(
@@ -203,13 +204,18 @@ def check_losses(before: StoredData, after: StoredData) -> str:
 
 
 def list_lintian_errors(package: Path) -> list[str]:
-    """Return the errors that lintian reports, except those that a documented override explains."""
+    """Return the errors that lintian reports, except those that a documented override explains.
+
+    Raises BundleError if lintian itself failed.
+    """
     done = subprocess.run(
         ["lintian", "--no-cfg", "--tag-display-limit=0", str(package)],
         capture_output=True,
         text=True,
         check=False,
     )
+    if done.returncode == _LINTIAN_FAILED:
+        raise BundleError(f"lintian failed: {done.stderr.strip()}")
     return [line for line in done.stdout.splitlines() if line.startswith("E: ")]
 
 

@@ -6,6 +6,7 @@ import csv
 import hashlib
 import io
 import sqlite3
+import subprocess
 import zipfile
 from collections.abc import Callable, Iterator
 from contextlib import closing, nullcontext
@@ -112,6 +113,23 @@ def test_failure_of_an_artifact_does_not_end_the_check_of_the_others(
     assert "wheel on bookworm: removed" in shown.out  # is checked after the bundle
     assert "ubuntu24.04_amd64.deb: not checked" in shown.out
     assert shown.err == "The check failed: bundle on bookworm\n"
+
+
+@pytest.mark.parametrize(("status", "output"), [(0, ""), (2, "E: turndesk: bad-tag\nW: turndesk: other\n")])
+def test_errors_of_lintian_are_listed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, status: int, output: str
+) -> None:
+    done = subprocess.CompletedProcess([], status, output, "")
+    monkeypatch.setattr(subprocess, "run", lambda *_words, **_options: done)
+    errors = ["E: turndesk: bad-tag"] if output else []
+    assert release_check.list_lintian_errors(tmp_path / "a.deb") == errors
+
+
+def test_failure_of_lintian_itself_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    done = subprocess.CompletedProcess([], 1, "", "cannot read a.deb\n")
+    monkeypatch.setattr(subprocess, "run", lambda *_words, **_options: done)
+    with pytest.raises(BundleError, match=r"cannot read a\.deb"):
+        release_check.list_lintian_errors(tmp_path / "a.deb")
 
 
 # --- earlier artifact ------------------------------------------------------------------------------------

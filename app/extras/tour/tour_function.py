@@ -71,13 +71,17 @@ class TourFunction(SpecialFunction):
         if refusal := self.find_refusal():
             self.desk.show_refusal(refusal)
             return
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", "app.cli.main", "tour", FROM_SCREEN_OPTION],
-            env=make_module_environment(),
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            start_new_session=True,
-        )
+        try:
+            self._process = subprocess.Popen(
+                [sys.executable, "-m", "app.cli.main", "tour", FROM_SCREEN_OPTION],
+                env=make_module_environment(),
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                start_new_session=True,
+            )
+        except OSError as error:  # for example, no memory for another process
+            self.desk.show_refusal(error.strerror or str(error))
+            return
         self.desk.show_success("THE TOUR OPENS IN ITS OWN WINDOW")
         persistence = self.desk.settings_store.persistence
         self.desk.try_save(lambda: persistence.save_setting(SHOWN_SETTING, True))

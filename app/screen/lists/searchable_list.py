@@ -42,8 +42,7 @@ class SearchableList(Panel):
         return False
 
     def scroll_by(self, rows: int) -> None:
-        """Scroll down by a number of rows, or up if the number is negative."""
-        raise NotImplementedError
+        """Scroll down by a number of rows, or up if it is negative. The base class shows all its rows."""
 
     @property
     def shown_rows(self) -> Sequence[int]:

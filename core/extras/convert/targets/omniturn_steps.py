@@ -2,7 +2,7 @@
 
 Coordinates are relative to part zero of the tool, so that the work shift (G10) and the preset (G92) are
 contained in them. All offsets D and all nose radii are zero. A program is interpreted with two sets of
-invented tool offsets and start positions; a step that differs between them is rejected.
+assumed tool offsets and start positions; a step that differs between them is rejected.
 """
 
 from __future__ import annotations
@@ -57,8 +57,8 @@ class InterpretedProgram:
     is_diameter: bool = True
 
 
-def make_invented_setup(limits: ControlLimits, variant: int) -> InterpreterSetup:
-    """Return a setup with invented tool offsets and start position, and with all offsets D zero.
+def make_assumed_setup(limits: ControlLimits, variant: int) -> InterpreterSetup:
+    """Return a setup with assumed tool offsets and an assumed start position, and with all offsets D zero.
 
     The offsets of all tools differ, and so do the distances between two tools in two variants. Their odd
     values keep a move after a tool change from ending where it starts.
@@ -105,7 +105,7 @@ def _interpret_variant(
 ) -> InterpretedProgram:
     """Interpret a program with one variant of the assumed setup."""
     source = ProgramSource("source", "".join(f"{each}\n" for each in texts), Dialect.OMNITURN)
-    done = interpret_program(source, make_invented_setup(limits, variant))
+    done = interpret_program(source, make_assumed_setup(limits, variant))
     relative = []
     for block in done.generate_blocks():
         relative.append(_relative_to_part_zero(block))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import subprocess
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -415,6 +416,21 @@ def test_special_function_starts_one_tour_in_its_own_process(function: tuple[Day
     shown.close()
     day.key(Key.Key_F2)
     assert len(StartedProcess.commands) == 2
+
+
+def test_tour_that_cannot_start_is_reported(
+    function: tuple[Day, TourFunction], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_words: object, **_options: object) -> None:
+        raise OSError(errno.ENOMEM, "Cannot allocate memory")
+
+    day, shown = function
+    monkeypatch.setattr(subprocess, "Popen", fail)
+    day.key(Key.Key_F2)
+    assert "Cannot allocate memory" in day.prompt  # the text of the system
+    day.saved()
+    assert day.store.settings.read_setting(SHOWN_SETTING) is None
+    shown.close()
 
 
 def test_screen_closes_although_the_tour_does_not_end(
