@@ -192,65 +192,42 @@ def _shape_mistakes(number: int, row: ToolShapeRow, tool: ToolOffsetRow) -> Iter
 def _table(
     data: dict[str, object], kind: OffsetKind, mistakes: list[CodedError]
 ) -> Iterator[tuple[int, dict[str, FieldValue]]]:
+    """Yield the rows of one kind with their numbers, and append the mistakes of the table."""
     table, (numbers, those) = data.get(kind.value, {}), _NUMBER_RANGES[kind]
     if not isinstance(table, dict):
-        mistakes.append(
-            CodedError(
-                Message(
-                    "{kind} must contain tables such as [{kind2}.{numbers}]",
-                    kind=kind,
-                    kind2=kind,
-                    numbers=next(iter(numbers)),
-                ),
-                "not-tables",
-            )
-        )
+        text = "{kind} must contain tables such as [{kind2}.{numbers}]"
+        message = Message(text, kind=kind, kind2=kind, numbers=next(iter(numbers)))
+        mistakes.append(CodedError(message, "not-tables"))
         return
     for name, entry in table.items():
         if name not in numbers:
-            mistakes.append(
-                CodedError(
-                    Message("[{kind}.{name}] does not exist; {those}", kind=kind, name=name, those=those),
-                    "unknown-number",
-                )
-            )
+            message = Message("[{kind}.{name}] does not exist; {those}", kind=kind, name=name, those=those)
+            mistakes.append(CodedError(message, "unknown-number"))
         elif not isinstance(entry, dict):
-            mistakes.append(
-                CodedError(
-                    Message(
-                        "{kind}.{name} must be a table, [{kind2}.{name2}]",
-                        kind=kind,
-                        name=name,
-                        kind2=kind,
-                        name2=name,
-                    ),
-                    "not-a-table",
-                )
-            )
+            text = "{kind}.{name} must be a table, [{kind2}.{name2}]"
+            message = Message(text, kind=kind, name=name, kind2=kind, name2=name)
+            mistakes.append(CodedError(message, "not-a-table"))
         else:
             edges = _read_edges(entry) if kind is OffsetKind.TOOL else {}
             own = {key: value for key, value in entry.items() if key not in edges}
             if own or not edges:
                 yield numbers[name], _values(own, kind, name, mistakes)
-            for key, values in edges.items():
-                if not isinstance(values, dict):
-                    mistakes.append(
-                        CodedError(
-                            Message(
-                                "tool.{name}.{key} must be a table, [tool.{name2}.{key2}]",
-                                name=name,
-                                key=key,
-                                name2=name,
-                                key2=key,
-                            ),
-                            "not-a-table",
-                        )
-                    )
-                    continue
-                yield (
-                    make_edge_row_number(numbers[name], int(key[1])),
-                    _values(values, kind, Message("{name}.{key}", name=name, key=key), mistakes),
-                )
+            yield from _read_edge_rows(numbers[name], name, edges, mistakes)
+
+
+def _read_edge_rows(
+    number: int, name: str, edges: dict[str, object], mistakes: list[CodedError]
+) -> Iterator[tuple[int, dict[str, FieldValue]]]:
+    """Yield the rows of the additional cutting edges of a tool, and append their mistakes."""
+    for key, values in edges.items():
+        if isinstance(values, dict):
+            place = Message("{name}.{key}", name=name, key=key)
+            row = _values(values, OffsetKind.TOOL, place, mistakes)
+            yield make_edge_row_number(number, int(key[1])), row
+        else:
+            text = "tool.{name}.{key} must be a table, [tool.{name2}.{key2}]"
+            message = Message(text, name=name, key=key, name2=name, key2=key)
+            mistakes.append(CodedError(message, "not-a-table"))
 
 
 def _read_edges(entry: dict[str, object]) -> dict[str, object]:
