@@ -1,10 +1,12 @@
 """A shift on a busy computer: the real window, a robot at its keys, and programs that want the processors.
 
-``python -m tests.benchmarks.bench_busy [--minutes 30] [--busy 8] [--presses 2000] [--all-rights]``: an X
-server with a window manager, the demo with a program of a cut, a thread and C moves in cycle repeat. The
-robot presses OPTIONAL STOP again and again, at known times, and Feed Hold every twenty seconds. Beside it run
-busy processes and one that allocates memory in bursts. Without ``--all-rights`` the processes have the rights
-of an ordinary user. The result is printed, and kept for docs/late.md. Nothing is asserted.
+``python -m tests.benchmarks.bench_busy [--minutes 30] [--busy 8] [--presses 2000] [--beside COMMAND] [--name
+NAME] [--all-rights]``: an X server with a window manager, the demo with a program of a cut, a thread and C
+moves in cycle repeat. The robot presses OPTIONAL STOP again and again, at known times, and Feed Hold every
+twenty seconds. Busy processes and one that allocates memory in bursts run at the same time. ``--beside`` also
+runs a shell command on the same display, such as a browser that plays a video, again and again until the end.
+Without ``--all-rights`` the processes have the rights of an ordinary user. The result is printed and stored
+as NAME for docs/late.md. Nothing is asserted.
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ import argparse
 import json
 import os
 import queue
+import signal
 import statistics
 import subprocess
 import sys
@@ -233,15 +236,25 @@ def start(robot: Robot) -> None:
 
 
 @contextmanager
-def load(count: int) -> Iterator[None]:
-    """So many busy processes, and one that allocates memory in bursts if there are any."""
-    words = [BUSY] * count + [BURSTS] * bool(count)
-    running = [subprocess.Popen([sys.executable, "-c", each]) for each in words]
+def load(count: int, beside: str, environment: dict[str, str]) -> Iterator[None]:
+    """Run busy processes, with one that allocates memory in bursts, and repeat a shell command."""
+    words = [[sys.executable, "-c", each] for each in [BUSY] * count + [BURSTS] * bool(count)]
+    words += [["sh", "-c", f"while true; do {beside}\ndone"]] * bool(beside)
+    running = [
+        subprocess.Popen(
+            each,
+            env=environment,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            start_new_session=True,
+        )
+        for each in words
+    ]
     try:
         yield
     finally:
         for each in running:
-            each.kill()
+            os.killpg(each.pid, signal.SIGKILL)
             each.wait()
 
 
@@ -259,6 +272,8 @@ def main() -> int:
     parser.add_argument("--minutes", type=float, default=30.0)
     parser.add_argument("--busy", type=int, default=8)
     parser.add_argument("--presses", type=int, default=2000)
+    parser.add_argument("--name", default="busy")
+    parser.add_argument("--beside", default="", metavar="COMMAND")
     parser.add_argument("--all-rights", action="store_true")
     args = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder, server(Path(folder, "x")) as display:
@@ -267,7 +282,7 @@ def main() -> int:
         words = [sys.executable, "-m", "tests.benchmarks.bench_busy", "screen", "--demo"]
         words += ["--program", str(program)]
         robot = Robot(display, words if args.all_rights else [*ORDINARY, *words], home)
-        with load(args.busy):
+        with load(args.busy, args.beside, display.environment):
             told = shift(robot, 60.0 * args.minutes, args.presses)
         robot.process.terminate()
         robot.process.wait(60)
@@ -278,6 +293,7 @@ def main() -> int:
         result = {
             "minutes": args.minutes,
             "busy": args.busy,
+            "beside": args.beside,
             "rights": "all" if args.all_rights else "ordinary",
             "load": os.getloadavg()[0],
             **told,
@@ -293,7 +309,7 @@ def main() -> int:
             "holds by a low queue": robot.underruns,
         }
     sys.stdout.write(json.dumps(result, indent=1) + "\n")
-    keep_result("busy", result)
+    keep_result(args.name, result)
     return 0
 
 
