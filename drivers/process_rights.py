@@ -54,6 +54,12 @@ def lock_process_memory(*, only_used: bool = False) -> tuple[str, int]:
     return "", limit
 
 
+def unlock_process_memory() -> None:
+    """Allow the system to move the memory of this process to the disk again."""
+    with suppress(OSError, AttributeError):
+        ctypes.CDLL(None).munlockall()
+
+
 def _memory_limit() -> int:
     if not hasattr(os, "geteuid") or os.geteuid() == 0:
         return 0

@@ -10,8 +10,9 @@ import pytest
 import resources
 from app.cli.machine_command import format_check_table, summarize_names
 from app.cli.main import main
-from app.compose.backends import simulated_backend
+from app.compose.backends import machine_check, simulated_backend
 from app.compose.backends.backend_entry import FAILED_STATES, Backend, MachineCheckRow, find_backend
+from app.compose.control.process_rights_check import ProcessRight
 from app.compose.machine.machine_files import load_shipped_machine
 from drivers.simulated.simulated_machine import SimIO
 
@@ -26,6 +27,21 @@ def test_shipped_lathe_is_valid_and_its_ports_respond(capsys: Captured) -> None:
     assert rights[0].startswith("  computer: real-time priority: ")
     assert first.startswith("gt75.toml is valid: GT-75")
     assert second.endswith(": X, Z, C, spindle, station, 25 inputs, 14 outputs")
+
+
+@pytest.mark.parametrize("missing", ["", "other programs can delay the control"])
+def test_machine_check_prints_each_right_and_its_remedy(
+    capsys: Captured, monkeypatch: pytest.MonkeyPatch, missing: str
+) -> None:
+    rights = (ProcessRight("real-time priority", "no" if missing else "SCHED_RR 40", missing),)
+    monkeypatch.setattr(machine_check, "check_rights", lambda: rights)
+    assert main(["machine", "check"]) == 0
+    lines = capsys.readouterr().out.splitlines()[2:]
+    assert lines == (
+        ["  computer: real-time priority: no", "    other programs can delay the control"]
+        if missing
+        else ["  computer: real-time priority: SCHED_RR 40"]
+    )
 
 
 def test_machine_check_json_lists_every_drive_and_input(capsys: Captured, tmp_path: Path) -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ctypes
 import errno
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -17,7 +19,8 @@ from app.compose.control.process_rights_check import (
     acquire_rights,
     check_rights,
 )
-from drivers.process_rights import lower_thread_priority
+from drivers.process_rights import lower_thread_priority, unlock_process_memory
+from tests.named import ROOT
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="rights of Linux")
 REFUSED = PermissionError(errno.EPERM, os.strerror(errno.EPERM))
@@ -35,13 +38,31 @@ class System:
         monkeypatch.setattr(os, "sched_setscheduler", self.schedule)
         monkeypatch.setattr(os, "setpriority", self.be_nice)
         self.memory = ("", 0) if grants else ("not allowed", 1 << 23)
-        monkeypatch.setattr(process_rights_check, "lock_process_memory", lambda **_: self.memory)
+        monkeypatch.setattr(process_rights_check, "lock_process_memory", self.lock)
+        monkeypatch.setattr(process_rights_check, "unlock_process_memory", self.unlock)
+        self.locked = False
 
     def schedule(self, _who: int, policy: int, param: os.sched_param) -> None:
         """Another policy; back to the usual one is always granted."""
         self.asked.append((policy, param.sched_priority))
         if not self.grants and policy != os.SCHED_OTHER:
             raise REFUSED
+
+    def refuse_nice(self, _which: int, _who: int, value: int) -> None:
+        """A system that grants no nice value below zero."""
+        self.asked.append(value)
+        if value < 0:
+            raise REFUSED
+
+    def lock(self, *, only_used: bool) -> tuple[str, int]:
+        """Locked memory, of which only what is used counts."""
+        assert only_used
+        self.locked = not self.memory[0]
+        return self.memory
+
+    def unlock(self) -> None:
+        """Memory as before."""
+        self.locked = False
 
     def be_nice(self, _which: int, _who: int, value: int) -> None:
         """Another nice value."""
@@ -65,7 +86,8 @@ def test_each_missing_right_is_reported_with_its_remedy(
     monkeypatch.setattr(process_rights_check, "_AUTOGROUP", grouped)
     system = System(monkeypatch, grants=False)
     refused = acquire_rights()
-    assert [bool(right.missing) for right in refused] == [True, True, True, False]
+    assert [bool(right.missing) for right in refused] == [True, True, True, True]
+    assert "sched_autogroup_enabled = 0" in refused[-1].missing
     assert NICE_VALUE in system.asked
     grouped.write_text("0\n")
     assert len(acquire_rights()) == 3
@@ -91,13 +113,95 @@ def test_limited_locked_memory_is_reported_with_its_size(monkeypatch: pytest.Mon
 
 
 @pytest.mark.parametrize("grants", [True, False])
-def test_checking_rights_restores_the_previous_priority(
+def test_checking_rights_restores_the_previous_priority_and_memory(
     monkeypatch: pytest.MonkeyPatch, grants: bool
 ) -> None:
     system = System(monkeypatch, grants=grants)
     found = check_rights()
     assert bool(found[0].missing) is not grants
     assert system.asked[-2:] == [(os.SCHED_OTHER, 0), 0]
+    assert not system.locked
+
+
+def test_check_with_the_shipped_limits_reports_nothing_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    system = System(monkeypatch, grants=True)
+    monkeypatch.setattr(os, "setpriority", system.refuse_nice)
+    found = check_rights()
+    assert [(right.name, right.missing) for right in found] == [
+        ("real-time priority", ""),
+        ("locked memory", ""),
+    ]
+    assert [right.granted for right in found] == ["SCHED_RR 40", "all"]
+
+
+@pytest.mark.parametrize("limits", ["resources/setup/debian/limits.conf", "docs/integrator/computer.md"])
+def test_each_advised_limit_is_in_the_shipped_file_and_on_the_page(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, limits: str
+) -> None:
+    System(monkeypatch, grants=False)
+    monkeypatch.setattr(process_rights_check, "_AUTOGROUP", tmp_path / "missing")
+    missing = [right.missing for right in check_rights()]
+    advised = [found[1] for text in missing if (found := re.search("'@machine - (.*?)'", text))]
+    assert len(advised) == len(missing) == 3
+    lines = (ROOT / limits).read_text(encoding="utf-8").splitlines()
+    shipped = [" ".join(line.split()[2:]) for line in lines if line.strip().startswith("@machine")]
+    assert sorted(shipped) == sorted(advised)
+
+
+@pytest.mark.parametrize("kind", ["scheduling", "memory", "nice", "autogroup"])
+@pytest.mark.parametrize("grants", [True, False])
+def test_check_reports_each_right_as_granted_or_with_its_remedy(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, kind: str, grants: bool
+) -> None:
+    grouped = tmp_path / "autogroup"
+    grouped.write_text("0" if grants else "1")
+    monkeypatch.setattr(process_rights_check, "_AUTOGROUP", grouped)
+    system = System(monkeypatch, grants=False)
+    if grants and kind == "scheduling":
+        system.grants = True
+    if grants and kind == "memory":
+        system.memory = ("", 0)
+    if grants and kind == "nice":
+        monkeypatch.setattr(os, "setpriority", lambda *_: None)
+    name, granted, refused, remedy = {
+        "scheduling": ("real-time priority", "SCHED_RR 40", "no", "@machine - rtprio 60"),
+        "memory": ("locked memory", "all", "no", "@machine - memlock unlimited"),
+        "nice": ("nice value", "-10", "0", "@machine - nice -10"),
+        "autogroup": ("process groups by session", None, "on", "kernel.sched_autogroup_enabled = 0"),
+    }[kind]
+    found = {right.name: right for right in check_rights()}
+    if grants and granted is None:
+        assert name not in found
+    elif grants:
+        assert (found[name].granted, found[name].missing) == (granted, "")
+    else:
+        assert found[name].granted == refused
+        assert remedy in found[name].missing
+
+
+@pytest.mark.parametrize("failed", ["lock_process_memory", "_check_autogroup"])
+def test_rights_are_released_although_the_check_fails(monkeypatch: pytest.MonkeyPatch, failed: str) -> None:
+    system = System(monkeypatch, grants=False)
+
+    def fail(**_values: object) -> None:
+        raise RuntimeError(failed)
+
+    monkeypatch.setattr(process_rights_check, failed, fail)
+    with pytest.raises(RuntimeError, match=failed):
+        check_rights()
+    assert system.asked[-2:] == [(os.SCHED_OTHER, 0), 0]
+    assert not system.locked
+
+
+def test_memory_can_be_unlocked_repeatedly_and_without_the_system_call(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    unlock_process_memory()
+    unlock_process_memory()
+    locked = next(line for line in Path("/proc/self/status").read_text().splitlines() if "VmLck" in line)
+    assert locked.split()[1] == "0"
+    monkeypatch.setattr(ctypes, "CDLL", lambda *_: object())
+    unlock_process_memory()
 
 
 @pytest.mark.parametrize("policy", [os.SCHED_RR, os.SCHED_FIFO])

@@ -9,7 +9,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from core.message import Message
-from drivers.process_rights import lock_process_memory, request_scheduling_policy
+from drivers.process_rights import (
+    lock_process_memory,
+    request_scheduling_policy,
+    unlock_process_memory,
+)
 
 USES_OWN_PROCESS = (
     sys.platform == "linux"
@@ -46,11 +50,13 @@ def check_rights() -> tuple[ProcessRight, ...]:
         os.sched_getparam(0),
         os.getpriority(os.PRIO_PROCESS, 0),
     )
-    rights = (_scheduling(), _nice(), *_check_autogroup())
-    os.sched_setscheduler(0, policy, priority)
-    with suppress(OSError):
-        os.setpriority(os.PRIO_PROCESS, 0, nice)
-    return rights
+    try:
+        return acquire_rights()
+    finally:
+        os.sched_setscheduler(0, policy, priority)
+        with suppress(OSError):
+            os.setpriority(os.PRIO_PROCESS, 0, nice)
+        unlock_process_memory()
 
 
 def _scheduling() -> ProcessRight:
@@ -87,11 +93,15 @@ def _nice() -> ProcessRight:
 
 
 def _check_autogroup() -> tuple[ProcessRight, ...]:
-    """Return a warning if the kernel groups processes by session (autogroup), and otherwise ().
+    """Return a missing right if the kernel groups processes by session (autogroup), and otherwise ().
 
-    With autogroup, nice values apply only within one session.
+    With autogroup, a nice value applies only among the programs of one login session.
     """
+    words = (
+        "the nice value has no effect on programs of other login sessions. To change this, add the line "
+        "'kernel.sched_autogroup_enabled = 0' to /etc/sysctl.d/turndesk.conf and restart the computer"
+    )
     with suppress(OSError):
         if _AUTOGROUP.read_text().strip() == "1":
-            return (ProcessRight("automatic groups", "on"),)
+            return (ProcessRight("process groups by session", "on", words),)
     return ()
