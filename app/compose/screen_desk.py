@@ -28,7 +28,6 @@ from core.closing_steps import ClosingStep
 from core.executor.commands import ReportInterruptedJob
 from core.executor.safety.watchdog import ExecutorThread, ThreadMonitor, Watchdog
 from core.machine.machine_model import Machine
-from core.message import Message
 from core.ports import DriverError
 from drivers.wakeups import RealClock
 
@@ -155,9 +154,6 @@ def _create_process_desk(
         )
     )
     desk = create_desk(machine, used, events, offsets, replace(closing, control=control_closing))
-    for right in client.hello_message.process_rights:
-        words = Message("control process: {name}: {granted}", name=right.name, granted=right.granted)
-        events.report_event("rights", right.missing or words)
     desk.page_registry.add_frame_watcher(live.report_screen_alive)
     live.start_threads(
         ControlEventHandlers(

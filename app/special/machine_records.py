@@ -24,7 +24,7 @@ MAX_EVENTS = 500
 RELOAD_INTERVAL_S = 1.0  # seconds between two updates of the open log
 EVENT_FILTERS: Mapping[str, frozenset[str]] = {
     "ALL": frozenset(),
-    "ALARMS": frozenset({"alarm", "estop", "starved"}),
+    "ALARMS": frozenset({"alarm", "estop", "starved", "notice"}),
     "RUNS": frozenset({"load", "start", "end", "part", "uncounted", "stop"}),
     "OPERATOR": frozenset({"switch", "override", "refused", "force", "offsets", "change", "access"}),
 }

@@ -36,6 +36,7 @@ ControlAlarmCode = Literal[
     "control-silent",
     "feeder-tripped",
     "switched-off",
+    "no-real-time",
     # holds not requested by the operator
     "station-silent",
     "pot-jumps",
@@ -75,6 +76,7 @@ class AlarmReaction(Enum):
     )
     HOLD = "the axes stop on the path and the spindle continues to turn; press Cycle Start to resume"
     REQUESTED = "a stop requested by a button or by the program"
+    NOTICE = "a notice in the list of F7; the machine continues"
 
 
 class AlarmEntry(NamedTuple):
@@ -99,7 +101,8 @@ off, stop = (
     partial(AlarmEntry, reaction=AlarmReaction.DRIVES_OFF),
     partial(AlarmEntry, reaction=AlarmReaction.STOP),
 )
-hold, asked = (
+hold, asked, notice = (
     partial(AlarmEntry, reaction=AlarmReaction.HOLD),
     partial(AlarmEntry, reaction=AlarmReaction.REQUESTED),
+    partial(AlarmEntry, reaction=AlarmReaction.NOTICE),
 )

@@ -35,6 +35,7 @@ _KINDS = {
     AlarmReaction.STOP: "alarm",
     AlarmReaction.HOLD: "hold",
     AlarmReaction.REQUESTED: "stop",
+    AlarmReaction.NOTICE: "notice",
 }
 
 

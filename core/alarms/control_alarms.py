@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.alarms.alarm_entry import AlarmEntries, asked, hold, off, stop
+from core.alarms.alarm_entry import AlarmEntries, asked, hold, notice, off, stop
 
 CONTROL_ALARMS: AlarmEntries = {
     "internal": off(
@@ -48,6 +48,12 @@ CONTROL_ALARMS: AlarmEntries = {
         "PRESS E-STOP: the display is out of date. Close other programs and stop backups and "
         "updates. Press R to restart the control, or exit and restart TurnDesk",
         shows_detail=True,
+    ),
+    "no-real-time": notice(
+        909,
+        "no real-time priority",
+        ("this account is not permitted to run the control ahead of other programs",),
+        "Add the line '@machine - rtprio 60' to /etc/security/limits.d/turndesk.conf and log in again",
     ),
     "feeder-tripped": hold(
         906,

@@ -320,7 +320,7 @@ class LogEvent:
 
     time_s: float
     # state, alarm, disturbed, estop, start, repeat, restart, mdi, end, part, uncounted, stop,
-    # interrupted, late, cleared, refused, override, switch, force, load, offsets, test
+    # interrupted, late, cleared, refused, override, switch, force, load, offsets, test, rights, notice
     kind: str
     text: str
     line_number: int = 0

@@ -5835,6 +5835,11 @@
     </message>
     <message>
       <location filename="app/compose/control/live_control.py" />
+      <source>NO REAL-TIME PRIORITY: A BUSY COMPUTER DELAYS THE CONTROL. SEE F7</source>
+      <translation>SIN PRIORIDAD DE TIEMPO REAL: LA COMPUTADORA OCUPADA RETRASA EL CONTROL. VEA F7</translation>
+    </message>
+    <message>
+      <location filename="app/compose/control/live_control.py" />
       <source>THE CONTROL CANNOT BE ENDED. RESTART THE COMPUTER</source>
       <translation>NO SE PUEDE TERMINAR EL CONTROL. REINICIE LA COMPUTADORA</translation>
     </message>
@@ -5997,11 +6002,6 @@
       <location filename="app/compose/runs/journal.py" />
       <source>the data store is closed</source>
       <translation>el almacén de datos está cerrado</translation>
-    </message>
-    <message>
-      <location filename="app/compose/screen_desk.py" />
-      <source>control process: {name}: {granted}</source>
-      <translation>proceso del control: {name}: {granted}</translation>
     </message>
     <message>
       <location filename="app/compose/stored_offsets.py" />
@@ -17365,6 +17365,11 @@
     </message>
     <message>
       <location filename="core/alarms/alarm_entry.py" />
+      <source>a notice in the list of F7; the machine continues</source>
+      <translation>un aviso en la lista de F7; la máquina continúa</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/alarm_entry.py" />
       <source>a stop requested by a button or by the program</source>
       <translation>un paro pedido por un botón o por el programa</translation>
     </message>
@@ -18155,6 +18160,11 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>Add the line '@machine - rtprio 60' to /etc/security/limits.d/turndesk.conf and log in again</source>
+      <translation>Agregue la línea '@machine - rtprio 60' a /etc/security/limits.d/turndesk.conf y vuelva a iniciar la sesión</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>Check the controller's feed hold and door inputs, then press Cycle Start</source>
       <translation>Revise las entradas de retención y de puerta del controlador, luego pulse arranque de ciclo</translation>
     </message>
@@ -18395,6 +18405,11 @@
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />
+      <source>no real-time priority</source>
+      <translation>sin prioridad de tiempo real</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
       <source>no response from operator station</source>
       <translation>la estación del operador no responde</translation>
     </message>
@@ -18532,6 +18547,11 @@
       <location filename="core/alarms/control_alarms.py" />
       <source>the track of the feed or spindle override pot is worn</source>
       <translation>la pista de la perilla de avance o de husillo está gastada</translation>
+    </message>
+    <message>
+      <location filename="core/alarms/control_alarms.py" />
+      <source>this account is not permitted to run the control ahead of other programs</source>
+      <translation>esta cuenta no tiene permiso para ejecutar el control antes que otros programas</translation>
     </message>
     <message>
       <location filename="core/alarms/control_alarms.py" />

@@ -147,6 +147,23 @@ def test_reset_restarts_a_killed_control_with_its_program_and_no_motion(folder: 
         assert [event.kind for event in screen.events].count("start") == 1
 
 
+def test_rights_of_the_control_are_logged_at_the_start_and_after_reset(folder: Path) -> None:
+    with desk(folder) as screen:
+
+        def logged() -> list[str]:
+            return [event.text for event in screen.events if event.kind == "rights"]
+
+        first = logged()
+        assert len(first) == len(screen.live.client.hello_message.process_rights) >= 2
+        killed = screen.process
+        os.kill(killed, signal.SIGKILL)
+        screen.until(MachineState.FAULT)
+        screen.post(Reset())
+        screen.wait(lambda: not screen.live.is_restarting and screen.process != killed)
+        assert logged() == first * 2  # the same account has the same rights
+        assert "notice" not in [event.kind for event in screen.events]  # it is simulated
+
+
 def test_reset_replaces_a_hanging_control(folder: Path) -> None:
     with desk(folder) as screen:
         screen.run()

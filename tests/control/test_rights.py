@@ -7,20 +7,35 @@ import errno
 import os
 import re
 import sys
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, cast
 
 import pytest
 
+from app.compose.backends.backend_entry import NO_PRIORITY_TEXT
 from app.compose.control import process_rights_check
+from app.compose.control.control_client import ControlEventHandlers
+from app.compose.control.live_control import LiveControl
 from app.compose.control.process_rights_check import (
     NICE_VALUE,
     READING_PRIORITY,
     REAL_TIME_PRIORITY,
+    ProcessRight,
     acquire_rights,
     check_rights,
 )
+from app.compose.machine.machine_files import load_shipped_machine
+from app.desk.status.alarm_log import AlarmLog
+from core.executor.snapshot import LogEvent
+from core.store.store_rows import EventRow
 from drivers.process_rights import lower_thread_priority, unlock_process_memory
+from drivers.wakeups import ManualClock
 from tests.named import ROOT
+from tests.texts import text as wording
+
+if TYPE_CHECKING:
+    from app.compose.control.control_client import ControlClient
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="rights of Linux")
 REFUSED = PermissionError(errno.EPERM, os.strerror(errno.EPERM))
@@ -202,6 +217,79 @@ def test_memory_can_be_unlocked_repeatedly_and_without_the_system_call(
     assert locked.split()[1] == "0"
     monkeypatch.setattr(ctypes, "CDLL", lambda *_: object())
     unlock_process_memory()
+
+
+# --- what the operator reads ------------------------------------------------------------------------------
+
+REFUSED_RIGHTS = (
+    ProcessRight("real-time priority", "no", "other programs can delay the control"),
+    ProcessRight("locked memory", "all"),
+)
+GRANTED_RIGHTS = (ProcessRight("real-time priority", "SCHED_RR 40"), REFUSED_RIGHTS[1])
+
+
+@dataclass
+class FakeClient:
+    """A connection to a control that has these rights and these warnings."""
+
+    process_rights: tuple[ProcessRight, ...]
+    warnings: tuple[str, ...] = ()
+    interrupted_job: None = None
+    has_on_screen_station: bool = False
+
+    @property
+    def hello_message(self) -> FakeClient:
+        return self
+
+    @property
+    def clock(self) -> ManualClock:
+        return ManualClock()
+
+    def start_threads(self, _handlers: ControlEventHandlers) -> None:
+        """Nothing is received."""
+
+
+def start_screen(machine: str, client: FakeClient) -> tuple[list[LogEvent], list[str]]:
+    """The events and the messages of a screen that is connected to this control."""
+    events, shown = list[LogEvent](), list[str]()
+    live = LiveControl(cast("ControlClient", client), load_shipped_machine(machine), Path("unused"))
+    live.start_threads(
+        ControlEventHandlers(lambda event, _: events.append(event), lambda _: None, lambda _: None),
+        shown.append,
+    )
+    return events, shown
+
+
+def test_missing_real_time_priority_of_a_real_machine_is_shown_and_listed() -> None:
+    events, shown = start_screen("gt75-hal", FakeClient(REFUSED_RIGHTS))
+    assert [event.kind for event in events] == ["rights", "rights", "notice"]
+    assert shown == [wording("machine.no-real-time-priority")]
+    log = AlarmLog(lambda: "09:41:07")
+    log.hear(events[-1])
+    (listed,) = log.entries
+    assert listed.alarm.number == 909
+    assert "rtprio 60" in listed.alarm.remedy
+    log.add_stored_entries([EventRow("2020-02-03T04:05:06Z", event.kind, event.text, 0) for event in events])
+    assert [entry.alarm.code for entry in log.entries] == ["no-real-time"] * 2
+
+
+@pytest.mark.parametrize(
+    ("machine", "rights", "number"),
+    [("gt75", REFUSED_RIGHTS, 2), ("gt75-hal", GRANTED_RIGHTS, 2), ("gt75-hal", (), 0)],
+)
+def test_nothing_is_shown_with_priority_or_for_a_simulated_machine(
+    machine: str, rights: tuple[ProcessRight, ...], number: int
+) -> None:
+    events, shown = start_screen(machine, FakeClient(rights))
+    assert [event.kind for event in events] == ["rights"] * number
+    assert shown == []
+
+
+def test_message_about_drives_without_priority_is_not_replaced() -> None:
+    warning = f"{NO_PRIORITY_TEXT}, the axes stop"
+    events, shown = start_screen("gt75-hal", FakeClient(REFUSED_RIGHTS, (warning,)))
+    assert "notice" in [event.kind for event in events]
+    assert shown == []
 
 
 @pytest.mark.parametrize("policy", [os.SCHED_RR, os.SCHED_FIFO])

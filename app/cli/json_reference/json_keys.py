@@ -363,7 +363,7 @@ ALARMS_OUTPUT = JsonOutput(
             """
 number | integer | | Number of the alarm.
 code | string | | Code of the alarm, as in logs.
-kind | string | | alarm with drives off, alarm, hold or stop.
+kind | string | | alarm with drives off, alarm, hold, stop or notice.
 text | string | | Text on the screen.
 causes | list | | Likely causes.
 remedy | string | | What to do.

@@ -11,6 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from socket import AF_UNIX, SOCK_SEQPACKET, socket, socketpair
 
+from app.compose.backends.backend_entry import NO_PRIORITY_TEXT, is_simulated
 from app.compose.control.control_client import (
     ControlClient,
     ControlEventHandlers,
@@ -18,6 +19,7 @@ from app.compose.control.control_client import (
 )
 from app.compose.control.control_start import StartedControl, start_control
 from app.compose.control.posted_state import PostedState
+from app.compose.control.process_rights_check import has_real_time_priority, make_rights_events
 from app.desk.translation import tr
 from core.executor.commands import Command, Reset
 from core.executor.raised_alarm import ErrorReporter
@@ -69,12 +71,13 @@ class LiveControl:
         return self._client
 
     def start_threads(self, handlers: ControlEventHandlers, show_text: ShowText) -> None:
-        """Start the threads that receive and send messages of the control.
+        """Start the threads that receive and send messages of the control, and report its rights.
 
-        ``show_text`` shows the operator the progress of a restart.
+        ``show_text`` shows the operator the progress of a restart, and missing real-time priority.
         """
         self._events = replace(handlers, on_interrupted_job=self._note)
         self._noted, self._say = handlers.on_interrupted_job, show_text
+        self._report_rights(self._events)
         self._client.start_threads(self._events)
 
     def post_command(self, command: Command) -> None:
@@ -210,8 +213,23 @@ class LiveControl:
         self._events.on_event(
             LogEvent(new.clock.now(), "warning", Message("the control was started again")), None
         )
+        self._report_rights(self._events)
         self._say(tr("THE CONTROL HAS STARTED AGAIN. CHECK TOOL, PART AND POSITION"))
         self._events.on_rest_state_change()
+
+    def _report_rights(self, handlers: ControlEventHandlers) -> None:
+        """Log the rights of the control, and show that real-time priority is missing on a real machine.
+
+        The drivers may already have reported that the axes stop without this priority.
+        """
+        hello, simulated = self._client.hello_message, is_simulated(self._machine)
+        for event in make_rights_events(
+            hello.process_rights, self._client.clock.now(), is_simulated=simulated
+        ):
+            handlers.on_event(event, None)
+        is_reported = any(each.startswith(NO_PRIORITY_TEXT) for each in hello.warnings)
+        if not simulated and not is_reported and not has_real_time_priority(hello.process_rights):
+            self._say(tr("NO REAL-TIME PRIORITY: A BUSY COMPUTER DELAYS THE CONTROL. SEE F7"))
 
     def _pass_state(self, new: ControlClient, last: Snapshot) -> None:
         """Send the loaded program and the operator's values, as shown on the screen, to a new control."""

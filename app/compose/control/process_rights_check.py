@@ -8,6 +8,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
+from core.executor.raised_alarm import format_log_line, make_alarm
+from core.executor.snapshot import LogEvent
 from core.message import Message
 from drivers.process_rights import (
     lock_process_memory,
@@ -21,6 +23,7 @@ USES_OWN_PROCESS = (
 REAL_TIME_PRIORITY = 40  # priority of SCHED_RR, below that of the driver host, whose bus has a shorter period
 READING_PRIORITY = 1  # priority of the thread that reads programs, below that of the executor
 NICE_VALUE = -10
+_REAL_TIME = "real-time priority"  # name of the right
 _AUTOGROUP = Path("/proc/sys/kernel/sched_autogroup_enabled")
 
 
@@ -59,15 +62,43 @@ def check_rights() -> tuple[ProcessRight, ...]:
         unlock_process_memory()
 
 
+def has_real_time_priority(rights: tuple[ProcessRight, ...]) -> bool:
+    """Return whether the system has granted real-time priority. Without any rights, return True."""
+    return not any(right.name == _REAL_TIME and right.missing for right in rights)
+
+
+def make_rights_events(
+    rights: tuple[ProcessRight, ...], time_s: float, *, is_simulated: bool
+) -> list[LogEvent]:
+    """Return the events for the event log about the rights of a control that was started.
+
+    On a machine that is not simulated, missing real-time priority is a notice of the alarm catalog, which
+    the list of F7 shows.
+    """
+    events = [
+        LogEvent(
+            time_s,
+            "rights",
+            right.missing
+            or Message("control process: {name}: {granted}", name=right.name, granted=right.granted),
+        )
+        for right in rights
+    ]
+    if not is_simulated and not has_real_time_priority(rights):
+        alarm = make_alarm("no-real-time", "", 0, time_s)
+        events.append(LogEvent(time_s, "notice", format_log_line(alarm), alarm=alarm))
+    return events
+
+
 def _scheduling() -> ProcessRight:
     cause = request_scheduling_policy("SCHED_RR", REAL_TIME_PRIORITY)
     if not cause:
-        return ProcessRight("real-time priority", Message("SCHED_RR {priority}", priority=REAL_TIME_PRIORITY))
+        return ProcessRight(_REAL_TIME, Message("SCHED_RR {priority}", priority=REAL_TIME_PRIORITY))
     words = (
         "other programs can delay the control ({cause}). To prevent this, add the line "
         "'@machine - rtprio 60' to /etc/security/limits.d/turndesk.conf and log in again"
     )
-    return ProcessRight("real-time priority", "no", Message(words, cause=cause))
+    return ProcessRight(_REAL_TIME, "no", Message(words, cause=cause))
 
 
 def _memory() -> ProcessRight:

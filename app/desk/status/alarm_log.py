@@ -1,4 +1,4 @@
-"""Log of alarms, E-stops and other stops, with causes and remedies, newest first (F7).
+"""Log of alarms, E-stops, other stops and notices, with causes and remedies, newest first (F7).
 
 Entries of this session come from the executor's events. Older entries come from the store's event log.
 """
@@ -18,7 +18,7 @@ from core.message import Message
 from core.store.store_rows import EventRow
 
 MAX_ENTRIES = 500
-LOGGED_KINDS = frozenset({"alarm", "estop", "stop"})  # Kinds of events that the log shows.
+LOGGED_KINDS = frozenset({"alarm", "estop", "stop", "notice"})  # Kinds of events that the log shows.
 _LOG_TEXT = re.compile(r"(\d{3}) (.*?): (.*)", re.DOTALL)
 _CODES_BY_NUMBER: dict[int, AlarmCode] = {entry.number: code for code, entry in CATALOG.items()}
 
