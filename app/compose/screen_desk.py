@@ -145,6 +145,7 @@ def _create_process_desk(
         live.open_stop_socket,
         live.restart,
         lambda: live.client.hello_message.control_identity,
+        events.report_event,
     )
     threads = ThreadMonitor(SUPERVISED_THREAD_TEXTS, partial(report_ended_thread, events.report_warning))
     control_closing = ControlClosing(

@@ -7789,6 +7789,21 @@
       <translation>COMPROBANDO SI EL PRIMER MOVIMIENTO CHOCA CON LA PIEZA</translation>
     </message>
     <message>
+      <location filename="app/desk/stop_keys/key_watcher_notice.py" />
+      <source>STOP KEYS MAY ACT LATE: KEY WATCHER ENDED. RESTART TURNDESK</source>
+      <translation>LAS TECLAS DE PARO PUEDEN TARDAR: EL VIGILANTE DE TECLAS TERMINÓ. REINICIE TURNDESK</translation>
+    </message>
+    <message>
+      <location filename="app/desk/stop_keys/key_watcher_notice.py" />
+      <source>the key watcher ended (exit status {status}) and was restarted</source>
+      <translation>el vigilante de teclas terminó (código de salida {status}) y se reinició</translation>
+    </message>
+    <message>
+      <location filename="app/desk/stop_keys/key_watcher_notice.py" />
+      <source>the key watcher ended (exit status {status}): while the screen is blocked, stop keys act late. Install the package libxi6 if it is missing, then restart TurnDesk</source>
+      <translation>el vigilante de teclas terminó (código de salida {status}): mientras la pantalla esté bloqueada, las teclas de paro tardan en actuar. Instale el paquete libxi6 si falta y después reinicie TurnDesk</translation>
+    </message>
+    <message>
       <location filename="app/desk/stop_keys/stop_records.py" />
       <source>Esc key at the screen</source>
       <translation>tecla Esc en la pantalla</translation>

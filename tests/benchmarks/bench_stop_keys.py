@@ -77,8 +77,8 @@ def screen(path: str, words: list[str]) -> int:
         loads.append(_Loads(window))
         QTimer.singleShot(3000, loads[0].begin)
 
-    def watched(keyboard: KeyboardFilter, open_line: Any) -> Any:
-        return watches(keyboard, open_line) if path == "watcher" else None
+    def watched(keyboard: KeyboardFilter, open_line: Any, report_end: Any) -> Any:
+        return watches(keyboard, open_line, report_end) if path == "watcher" else None
 
     sys.argv = ["turndesk", *words]
     with (

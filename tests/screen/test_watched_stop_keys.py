@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+import socket
+from contextlib import closing
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import cast
 
 import pytest
+from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QApplication
 
 from app.desk.stop_keys.key_watcher_client import KeyWatcherClient
+from app.desk.stop_keys.key_watcher_notice import report_watcher_end
 from app.desk.stop_keys.stop_records import FocusRecord, StopKeyPress, StopKind, make_press_number
 from app.screen import page_table
 from core.executor.commands import FeedHold
 from core.executor.snapshot import MachineState
 from tests.screen.hands import Hands, Key
 from tests.screen.test_keyboard import send, window_of
+from tests.texts import text
 
 AT = 10_000
 
@@ -26,6 +32,9 @@ class Watched:
     sent: list[StopKeyPress] = field(default_factory=list)
     told: list[StopKeyPress] = field(default_factory=list)
     shown: list[FocusRecord] = field(default_factory=list)
+
+    def check_process(self) -> None:
+        """It runs."""
 
     def send(self, kind: StopKind, key: int) -> None:
         self.sent.append(StopKeyPress(kind, make_press_number(key, AT)))
@@ -110,8 +119,44 @@ def test_feed_hold_reported_by_watcher_is_not_posted_again(watched: tuple[Hands,
     assert not hands.desk.station_controls.is_estop_pressed
 
 
+@pytest.fixture
+def without_display(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A computer on which the window opens, but the key watcher ends at once."""
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.setattr(QGuiApplication, "platformName", lambda: "xcb")
+
+
+@pytest.mark.usefixtures("without_display")
+def test_ended_watcher_is_logged_and_shown_once_after_its_restart(hands: Hands) -> None:
+    lines, events = list[socket.socket](), list[str]()
+    hands.desk.desk_control.report_event = lambda kind, words: events.append(f"{kind}: {words}")
+
+    def open_line() -> socket.socket:
+        ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        lines.append(theirs)
+        return ours
+
+    report_end = partial(report_watcher_end, hands.desk)
+    client = hands.window.keyboard_filter.start_key_watcher(open_line, report_end)
+    assert client is not None
+    with closing(client):
+        hands.sees(lambda: len(events) == 2)
+    assert events == [
+        "warning: " + text("stories.key-watcher-restarted", status=1),
+        "warning: " + text("stories.key-watcher-ended", status=1),
+    ]
+    assert hands.desk.prompt_line.message == text("stories.stop-keys-late")
+    send(hands, Key.Key_Right)  # a key does not remove it
+    assert hands.desk.prompt_line.message == text("stories.stop-keys-late")
+    for line in lines:
+        line.close()
+
+
 def test_watcher_is_not_started_without_x_server(hands: Hands) -> None:
     def never() -> None:
         raise AssertionError
 
-    assert hands.window.keyboard_filter.start_key_watcher(never) is None
+    def never_ends(_status: int, _is_restarted: bool) -> None:
+        raise AssertionError
+
+    assert hands.window.keyboard_filter.start_key_watcher(never, never_ends) is None

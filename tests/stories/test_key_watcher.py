@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ctypes
+import os
+import signal
 import socket
 import subprocess
 import sys
@@ -12,7 +14,9 @@ from pathlib import Path
 
 import pytest
 
+from app.desk.stop_keys.key_watcher_client import KeyWatcherClient
 from app.desk.stop_keys.stop_records import MAX_RECORD_BYTES, FocusRecord, StopKeyPress, StopKind
+from tests.killed.bench import until
 from tests.stories.x11 import Server, another_client, missing
 
 LIMIT = 20.0  # s
@@ -44,7 +48,7 @@ def bench(tmp_path: Path) -> Iterator[Bench]:
     theirs, screen = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     with another_client(server, "window"), control, screen:
         files = (line.fileno(), theirs.fileno())
-        words = [sys.executable, "-m", "app.desk.stop_keys.key_watcher", *map(str, files)]
+        words = [sys.executable, "-m", "app.compose.control.key_watcher_process", *map(str, files)]
         watcher = subprocess.Popen(words, pass_fds=files, env=server.environment)
         line.close()
         theirs.close()
@@ -102,6 +106,60 @@ def test_nothing_is_sent_for_pointer_elsewhere_or_for_other_keys(bench: Bench) -
         bench.stop()
     bench.server.point(*INSIDE)
     assert press_until_sent(bench, "Scroll_Lock").stop_kind is StopKind.ESTOP
+
+
+@pytest.fixture
+def client(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[Bench, KeyWatcherClient]]:
+    """A window, and the screen's end of a watcher, which can be restarted."""
+    if why := missing():
+        pytest.skip(f"the key watcher needs an X server: {why}")
+    server = Server(tmp_path / "x")
+    for name in ("DISPLAY", "XAUTHORITY"):
+        if name in server.environment:
+            monkeypatch.setenv(name, server.environment[name])
+    line, control = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    with another_client(server, "window"), line, control:
+        made = KeyWatcherClient(line.dup(), line.dup, lambda *_: None)
+        bench = Bench(server, _under(server, INSIDE), made._screen, control)
+        made.send_focus(FocusRecord(frozenset({bench.window}), is_esc_stop_key=False))
+        press_until_sent(bench, "Pause")
+        yield bench, made
+        made.close()
+    server.close()
+
+
+def test_killed_watcher_is_replaced_by_another_that_sends_stop_keys(
+    client: tuple[Bench, KeyWatcherClient],
+) -> None:
+    bench, made = client
+    killed = made._process
+    killed.kill()
+    killed.wait()
+    made.check_process()
+    assert made._process.pid != killed.pid
+    made.send_focus(FocusRecord(frozenset({bench.window}), is_esc_stop_key=False))  # for the new one
+    assert press_until_sent(bench, "Scroll_Lock").stop_kind is StopKind.ESTOP
+
+
+def test_suspended_watcher_sends_the_press_with_its_number_when_it_runs_again(
+    client: tuple[Bench, KeyWatcherClient],
+) -> None:
+    bench, made = client
+    made._process.send_signal(signal.SIGSTOP)
+    os.waitid(os.P_PID, made._process.pid, os.WSTOPPED | os.WNOWAIT)
+    bench.server.down("Pause")
+    bench.server.up("Pause")
+    bench.control.settimeout(0.3)
+    with pytest.raises(TimeoutError):
+        bench.stop()
+    made.check_process()  # it has not ended, so the screen alone acts
+    made.read_sent_stops()
+    made._process.send_signal(signal.SIGCONT)
+    bench.control.settimeout(LIMIT)
+    late = bench.stop()
+    assert late.stop_kind is StopKind.HOLD
+    assert late.press_number != 0
+    until(lambda: made.was_press_sent(late.press_number), lambda: "the screen learns its number")
 
 
 def test_stop_key_held_down_is_sent_once(bench: Bench) -> None:

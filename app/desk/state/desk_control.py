@@ -25,6 +25,7 @@ class DeskControl:
     - ``recordings`` contains the last minutes of samples, or is None if there is no recorder.
     - ``open_stop_channel`` opens a connection that sends stop keys to the control, bypassing the screen.
     - ``restart_control`` replaces a control that does not respond, or is None if this is not possible.
+    - ``report_event`` adds an event of the screen to the event log, with its kind and text.
     - ``read_control_identity`` returns the identity of a control process, or an empty string for a control
       in this process.
     """
@@ -38,4 +39,5 @@ class DeskControl:
     open_stop_channel: OpenStopChannel = lambda: None
     restart_control: Callable[[], object] | None = None
     read_control_identity: Callable[[], str] = str
+    report_event: Callable[[str, str], None] = lambda _kind, _text: None
     silence_watch: ControlSilenceDetector = field(default_factory=ControlSilenceDetector)

@@ -1,9 +1,8 @@
 """Key watcher process for the stop keys.
 
-The command is ``python -m app.desk.stop_keys.key_watcher LINE SCREEN``. LINE and SCREEN are file
-descriptors of two sockets. The watcher sends every press of a stop key to the control over LINE and to the
-screen over SCREEN. It does so only while a window of TurnDesk has the keyboard focus, and it ends when the
-screen ends.
+Its arguments are LINE and SCREEN, the file descriptors of two sockets. The watcher sends every press of a
+stop key to the control over LINE and to the screen over SCREEN. It does so only while a window of TurnDesk
+has the keyboard focus, and it ends when the screen ends.
 
 The watcher is a separate process, because a painting call of Qt holds Python's global interpreter lock,
 which blocks all threads of the screen's process.
@@ -13,7 +12,6 @@ from __future__ import annotations
 
 import select
 import socket
-import sys
 from contextlib import suppress
 
 from app.desk.stop_keys.raw_keys import RawKey, RawKeyReader
@@ -96,7 +94,3 @@ def main(arguments: list[str]) -> int:
         return 1
     KeyWatcher(keys, line, screen).watch_keys()
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

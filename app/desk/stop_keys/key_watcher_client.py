@@ -20,20 +20,35 @@ OpenStopChannel = Callable[[], socket.socket | None]
 
 It returns None if the control does not provide one.
 """
+ReportEnd = Callable[[int, bool], None]
+"""Function that reports that the watcher has ended, with its exit status, and whether it was restarted."""
+_MODULE = "app.compose.control.key_watcher_process"
 _END_TIMEOUT_S = 2.0  # Seconds.
 _MAX_SENT = 64  # Number of presses.
 
 
 class KeyWatcherClient:
-    """Connection of the screen to the key watcher. Only the method ``close`` may block."""
+    """Connection of the screen to the key watcher. Only the method ``close`` may block.
 
-    def __init__(self, stop_channel: socket.socket) -> None:
+    If the watcher ends, it is restarted once, with another stop channel from ``open_stop_channel``.
+    """
+
+    def __init__(
+        self, stop_channel: socket.socket, open_stop_channel: OpenStopChannel, report_end: ReportEnd
+    ) -> None:
+        self._open_stop_channel, self._report_end = open_stop_channel, report_end
+        self._sent: deque[StopKeyPress] = deque(maxlen=_MAX_SENT)
+        self._news: list[StopKeyPress] = []
+        self._can_restart, self._is_watched = True, True
+        self._start_process(stop_channel)
+
+    def _start_process(self, stop_channel: socket.socket) -> None:
         self._screen, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._screen.setblocking(False)
         with stop_channel, theirs:
             files = (stop_channel.fileno(), theirs.fileno())
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "app.desk.stop_keys.key_watcher", *map(str, files)],
+                [sys.executable, "-m", _MODULE, *map(str, files)],
                 env=make_module_environment(),
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
@@ -41,8 +56,20 @@ class KeyWatcherClient:
                 start_new_session=True,  # Ctrl+C must reach the screen only.
             )
         self._shown = NO_FOCUS
-        self._sent: deque[StopKeyPress] = deque(maxlen=_MAX_SENT)
-        self._news: list[StopKeyPress] = []
+
+    def check_process(self) -> None:
+        """Restart the watcher if it has ended for the first time, and report that it has ended."""
+        status = self._process.poll() if self._is_watched else None
+        if status is None:
+            return
+        self._read()
+        restarts, self._can_restart = self._can_restart, False
+        channel = self._open_stop_channel() if restarts else None
+        self._is_watched = channel is not None
+        if channel is not None:
+            self._screen.close()
+            self._start_process(channel)
+        self._report_end(status, self._is_watched)
 
     def send_focus(self, focus: FocusRecord) -> None:
         """Send the focus record to the watcher if it has changed.
@@ -74,6 +101,7 @@ class KeyWatcherClient:
 
     def close(self) -> None:
         """End the watcher process, and kill it if it does not end within 2 s."""
+        self._is_watched = False
         self._screen.close()
         try:
             self._process.wait(_END_TIMEOUT_S)

@@ -30,7 +30,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
 
 from app.desk.late_presses import BlockedLateAction
-from app.desk.stop_keys.key_watcher_client import KeyWatcherClient, OpenStopChannel
+from app.desk.stop_keys.key_watcher_client import KeyWatcherClient, OpenStopChannel, ReportEnd
 from app.desk.stop_keys.stop_records import SOURCE_ESC, FocusRecord, StopKind, make_press_number
 from app.screen.window.input_times import InputTimes
 from app.screen.window.key_table import MODIFIER_KEYS
@@ -170,13 +170,16 @@ class KeyboardFilter(QObject):
         if self._server is None:
             self._server = open_x_server()
 
-    def start_key_watcher(self, open_stop_channel: OpenStopChannel) -> KeyWatcherClient | None:
+    def start_key_watcher(
+        self, open_stop_channel: OpenStopChannel, report_end: ReportEnd
+    ) -> KeyWatcherClient | None:
         """Start the key watcher, or return None if this is not possible.
 
-        The key watcher needs an X server and a control in a separate process.
+        The key watcher needs an X server and a control in a separate process. ``report_end`` reports a key
+        watcher that has ended.
         """
         line = open_stop_channel() if QGuiApplication.platformName() == "xcb" else None
-        self._watched = KeyWatcherClient(line) if line is not None else None
+        self._watched = KeyWatcherClient(line, open_stop_channel, report_end) if line is not None else None
         return self._watched
 
     @property
@@ -228,6 +231,7 @@ class KeyboardFilter(QObject):
         self._stamp = 0
         windows = QGuiApplication.topLevelWindows()
         if self._watched is not None:
+            self._watched.check_process()
             shown = frozenset(window.winId() for window in windows if window.isVisible())
             self._watched.send_focus(FocusRecord(shown, self._behind.is_esc_stop_key()))
             if any(stop.stop_kind is StopKind.ESTOP for stop in self._watched.read_sent_stops()):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from importlib.resources import files
 
 from PySide6.QtCore import QEvent, Qt, QTimer, Signal
@@ -23,6 +24,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 from app.desk.desk import Desk
 from app.desk.late_presses import BlockedLateAction
 from app.desk.status.prompt_line import ACTIVE_STATES, MOVING_STATES
+from app.desk.stop_keys.key_watcher_notice import report_watcher_end
 from app.desk.stop_keys.stop_records import SOURCE_SCREEN
 from app.desk.translation import get_language, tr
 from app.screen.color_palettes import PALETTES
@@ -105,14 +107,14 @@ class MainWindow(QWidget):
             self.keyboard_filter.is_stop_key_held,
             lambda: self.input_times.clock() - self.keyboard_filter.event_time_s,
         )
-        watched = self.keyboard_filter.start_key_watcher(desk.desk_control.open_stop_channel)
+        watched = self.keyboard_filter.start_key_watcher(
+            desk.desk_control.open_stop_channel, partial(report_watcher_end, desk)
+        )
         if watched is not None:
             desk.page_registry.attach_model(watched)
         late = desk.window_state.late_presses
-        late.report_dropped_names, late.on_answer_dropped = (
-            self._show_dropped,
-            self.keyboard_filter.record_dropped_answer,
-        )
+        late.report_dropped_names = self._show_dropped
+        late.on_answer_dropped = self.keyboard_filter.record_dropped_answer
         self.frame.setGeometry(self.rect())
         self.refresh()
         self.frame.show()
@@ -127,9 +129,8 @@ class MainWindow(QWidget):
         """Refresh the screen at the full rate, or only after a change while the machine is at rest."""
         known, frame = self.input_times.has_seen_screen, self.frame
         self.input_times.frame()
-        known = (
-            known and self.input_times.has_seen_screen
-        )  # A stall was just detected, or its changes are not shown yet.
+        # If it is False now, a stall was just detected, or its changes are not shown yet.
+        known = known and self.input_times.has_seen_screen
         if frame is None:
             return
         self.set_event_late(is_late=False)
