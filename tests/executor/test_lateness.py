@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from core.executor.snapshot import MachineState
 from core.executor.tick_lateness import CALM_PERIOD_S, LATE_THRESHOLD_S, QUEUE_DEPTH_STEPS_S, TickLateness
+from tests.executor.rig import Rig
+from tests.texts import text
 
 
 def test_punctual_ticks_retain_the_configured_lookahead() -> None:
@@ -62,3 +65,50 @@ def test_late_tick_restarts_the_calm_period() -> None:
     lateness.record_tick(LATE_THRESHOLD_S, CALM_PERIOD_S - 1.0)
     lateness.record_tick(0.0, CALM_PERIOD_S + 1.0)
     assert lateness.lookahead_s == 0.5 + QUEUE_DEPTH_STEPS_S[1]
+
+
+# --- in the executor --------------------------------------------------------------------------------------
+
+CUT = "G90G94F300\nG01Z-3.F20\nM30\n"  # 9 s at 20 in/min = 8.467 mm/s; the machine file queues 1 s
+SPEED_MM_S = 20 * 25.4 / 60
+
+
+def travel_without_ticks(rig: Rig) -> float:
+    """How far Z moves when the executor does not tick again, mm: the queue is played to its end."""
+    before = rig.sim.machine.get_true_positions()[1]
+    rig.clock.advance(10.0)
+    return abs(float(rig.sim.machine.get_true_positions()[1] - before))
+
+
+@pytest.fixture
+def cutting() -> Rig:
+    rig = Rig()
+    rig.start(CUT)
+    rig.until(MachineState.RUN)
+    rig.run(2.0)
+    return rig
+
+
+def test_late_tick_deepens_the_queue_and_is_in_the_log_and_the_snapshot(cutting: Rig) -> None:
+    cutting.tick(0.62)  # the executor pauses for 0.01 s, so this tick is 0.61 s late: more than half of 1 s
+    assert cutting.shot.hold_delay_s == pytest.approx(0.7)
+    assert cutting.said("late") == [text("executor.busy-computer", seconds="0.7")]
+    cutting.run(0.1)
+    assert cutting.state is MachineState.RUN
+    # 1.5 s to 1.75 s are queued, and a tick of 0.02 s of them may be over
+    assert 1.48 * SPEED_MM_S <= travel_without_ticks(cutting) <= 1.80 * SPEED_MM_S
+
+
+def test_punctual_ticks_change_neither_queue_nor_snapshot(cutting: Rig) -> None:
+    assert cutting.shot.hold_delay_s == 0.0
+    assert cutting.said("late") == []
+    assert 0.98 * SPEED_MM_S <= travel_without_ticks(cutting) <= 1.30 * SPEED_MM_S
+
+
+def test_the_snapshot_shows_no_delay_after_a_calm_time(cutting: Rig) -> None:
+    cutting.tick(0.62)
+    cutting.run(1.0)
+    assert cutting.shot.hold_delay_s == pytest.approx(0.7)
+    cutting.run(CALM_PERIOD_S)
+    assert cutting.shot.hold_delay_s == 0.0
+    assert len(cutting.said("late")) == 1
