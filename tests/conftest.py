@@ -1,7 +1,7 @@
 """The whole suite: the same examples at every run, so that a failure is a change and not a throw of dice.
 
 ``HYPOTHESIS_PROFILE=search pytest …`` looks for new ones. A run of the whole suite fails when a test that
-``docs/safety.md`` names did not run: a rule whose test was skipped is not shown.
+``docs/safety.md`` or ``docs/late.md`` names did not run: a rule whose test was skipped is not shown.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from hypothesis import settings
 from xdist.remote import Producer
 
 from tests import late_computer
-from tests.named import SAFETY, not_run
+from tests.named import all_named, not_run
 from tests.steady_examples import same_examples_whatever_is_loaded
 from tests.store_template import use_template
 from tests.waiting_apart import KINDER, URGENT, WaitingApart, in_order, shuffled, waits_first
@@ -32,7 +32,7 @@ MOST_LATE = 3  # named tests without a verdict in one run; a run at a load of 16
 
 
 class SafetyRan:
-    """Compare the tests that passed with those that the document names.
+    """Compare the tests that passed with those that the two documents name.
 
     A test without a verdict, because the computer was late, is listed. Few of them do not fail the run.
     """
@@ -54,7 +54,7 @@ class SafetyRan:
     def pytest_sessionfinish(self, session: pytest.Session, exitstatus: int) -> None:
         """Fail a run that would have passed if a named test did not run, or if too many have no verdict."""
         if exitstatus == pytest.ExitCode.OK:
-            text = SAFETY.read_text(encoding="utf-8")
+            text = all_named()
             without = set(not_run(text, self._passed))
             never = set(not_run(text, self._passed | self._late))
             self._late = without - never
@@ -65,7 +65,7 @@ class SafetyRan:
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
         """List both kinds."""
         for name in self._missing:
-            terminalreporter.write_line(f"NOT RUN, but named in docs/safety.md: {name}")
+            terminalreporter.write_line(f"NOT RUN, but named in docs/safety.md or docs/late.md: {name}")
         for name in sorted(self._late - set(self._missing)):
             terminalreporter.write_line(f"NO VERDICT, the computer was late: {name}")
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 SAFETY = ROOT / "docs" / "safety.md"
+LATE = ROOT / "docs" / "late.md"
 NAMED = re.compile(r"`([\w/]+\.py)::(\w+)`")
 _FOLDERS = (ROOT / "tests", ROOT / "tests" / "drivers")
 
@@ -15,6 +16,11 @@ _FOLDERS = (ROOT / "tests", ROOT / "tests" / "drivers")
 def named_in(text: str) -> list[tuple[str, str]]:
     """(file, test) of every reference in a text, each once, but those of features that are left out."""
     return sorted({(file, test) for file, test in NAMED.findall(text) if not is_left_out(file)})
+
+
+def all_named() -> str:
+    """The text of both documents whose tests must run: of hazards, and of late, stopped or killed parts."""
+    return "\n".join(page.read_text(encoding="utf-8") for page in (SAFETY, LATE))
 
 
 def is_left_out(path: str) -> bool:

@@ -13,7 +13,18 @@ import pytest
 
 from tests import late_computer
 from tests.conftest import MOST_LATE, SafetyRan
-from tests.named import NAMED, ROOT, SAFETY, file_of, functions_of, is_left_out, named_in, not_run
+from tests.named import (
+    LATE,
+    NAMED,
+    ROOT,
+    SAFETY,
+    all_named,
+    file_of,
+    functions_of,
+    is_left_out,
+    named_in,
+    not_run,
+)
 
 MODULE = re.compile(r"`((?:app|core|drivers)/[\w/]+(?:\.py)?)`")
 
@@ -40,12 +51,29 @@ def test_every_hazard_has_rule_location_test_and_hardware_note(row: list[str]) -
     assert NAMED.search(row[4]), "no test is named"
 
 
-LATE = ROOT / "docs" / "late.md"
+def parts() -> list[list[str]]:
+    """The cells of every part: its name, and what happens when it is late, stopped or killed."""
+    found = [line.strip("|").split("|") for line in LATE.read_text(encoding="utf-8").splitlines()]
+    return [[cell.strip() for cell in cells] for cells in found if cells[0].startswith(" **")]
+
+
+@pytest.mark.parametrize("row", parts(), ids=lambda row: str(row[0]))
+def test_each_cell_of_a_part_describes_a_reaction_and_names_its_test(row: list[str]) -> None:
+    assert len(row) == 4
+    for cell in row[1:]:
+        assert NAMED.search(cell), cell
+        assert NAMED.sub("", cell).strip(" ,`"), cell
+
+
+def test_all_parts_of_the_system_are_in_the_table() -> None:
+    assert [row[0].strip("*") for row in parts()] == [
+        *("screen", "control", "key watcher", "driver host", "HAL bridge", "store", "network"),
+    ]
 
 
 @pytest.mark.parametrize(
     ("file", "test"),
-    [pair for page in (SAFETY, LATE) for pair in named_in(page.read_text(encoding="utf-8"))],
+    named_in(all_named()),
     ids=str,
 )
 def test_what_is_named_exists(file: str, test: str) -> None:
@@ -61,8 +89,8 @@ def test_test_that_did_not_run_is_detected() -> None:
 
 
 def names_of_all() -> list[str]:
-    """Return pytest's name of every test that the document names."""
-    files = ((file_of(file), test) for file, test in named_in(SAFETY.read_text(encoding="utf-8")))
+    """Return pytest's name of every test that the two documents name."""
+    files = ((file_of(file), test) for file, test in named_in(all_named()))
     return [f"{path.relative_to(ROOT).as_posix()}::{test}" for path, test in files if path is not None]
 
 

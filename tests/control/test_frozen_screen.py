@@ -6,10 +6,12 @@ import os
 import signal
 import sys
 from pathlib import Path
+from typing import cast
 
 import pytest
 
 import resources
+from app.desk.status.prompt_line import RESTART_CONTROL
 from core.store.store import Store
 from drivers.wakeups import RealClock
 from tests.killed.bench import Process, process, until
@@ -74,17 +76,34 @@ def test_frozen_screen_lets_parts_continue_with_continue_setting(tmp_path: Path)
         assert kinds.count("part") == store.runs.read_part_count("part.nc") >= made + 2
 
 
+def is_silent(desk: Process) -> bool:
+    """Whether the screen says that the control is silent."""
+    desk.listen()
+    return str(desk.lines[-1]["prompt"]).startswith(RESTART_CONTROL)
+
+
 def test_frozen_control_holds_and_reconnects(tmp_path: Path) -> None:
     home = tmp_path / "home"
     with process(home, OPERATOR, *started(tmp_path, "hold")) as desk:
-        until(lambda: desk.says("state", "RUNNING"), lambda: desk.lines[-3:])
+        until(
+            lambda: desk.says("state", "RUNNING") and desk.lines[-1]["x"] != 0,  # in the cut
+            lambda: desk.lines[-3:],
+        )
         control = desk.control()
         os.kill(control, signal.SIGSTOP)
+        until(lambda: is_silent(desk), lambda: desk.lines[-3:])
         clock = RealClock()
-        until(lambda: clock.now() > 3.0, lambda: "")
+        until(lambda: clock.now() > FROZEN, lambda: "")  # no queue is longer than 3.25 s
         os.kill(control, signal.SIGCONT)
-        now = parts(desk)
-        until(lambda: parts(desk) > now or desk.says("state", "FEED HOLD"), lambda: desk.lines[-3:])
+        until(lambda: desk.says("state", "FEED HOLD"), lambda: desk.lines[-3:])
+        clock = RealClock()
+        until(lambda: clock.now() > 0.5, lambda: "")
+        assert desk.says("state", "FEED HOLD"), desk.lines[-3:]
+        places = [line["held_at"] for line in desk.lines if line["held_at"]]
+        assert places == places[:1] * len(places)  # at rest
+        x, z = cast("list[float]", places[0])
+        assert abs(x + z) < 0.02  # both blocks of the program lie on X = -Z
+        assert 0.0 < x < 0.2 * 25.4
         assert desk.control() == control
         desk.popen.terminate()
         until(lambda: not desk.family(), desk.family)

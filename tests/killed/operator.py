@@ -138,6 +138,8 @@ class Operator:
             "state": shot.state.value,
             "parts": shot.parts,
             "x": round(shot.actual[0]),  # mm
+            # where the axes rest in a feed hold, mm
+            "held_at": [round(each, 3) for each in shot.actual[:2] if shot.state is MachineState.HOLD],
             "prompt": self._frame.prompt_line.main_text,
             "alarms": [f"{alarm.text}: {alarm.cause}" for alarm in shot.alarms],
         }

@@ -77,6 +77,9 @@ def test_reset_restarts_hal_after_the_bridge_was_killed(running: LiveLathe) -> N
     told(running, "hal-bridge")
     assert running.shot.unknown == ALL_UNKNOWN_PARTS
     assert running.shot.alarms[0].cause == text("drivers.bridge-ended")
+    while not off(running):  # HAL alone
+        pass
+    running.ready()  # Reset, then the drives are on
 
 
 def test_ctrl_c_that_reaches_the_bridge_stops_nothing(running: LiveLathe) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import socket
+import struct
 import sys
 import threading
 import time
@@ -359,6 +360,20 @@ def test_connections_per_address_are_limited_and_the_oldest_is_closed() -> None:
         assert askers[0].recv(1) == b""
         askers[1].sendall(b"GET /status.json HTTP/1.0\r\n\r\n")
         assert askers[1].recv(12) == b"HTTP/1.0 200"
+
+
+def test_browser_that_is_killed_is_forgotten() -> None:
+    """The kernel of a killed browser resets its connections, here in the middle of a request."""
+    with served(page()) as address:
+        for request in (b"GET /?tok", b"GET /status.json HTTP/1.0\r\n\r\n") * MAX_CONNECTIONS_PER_HOST:
+            browser = connected(address)
+            browser.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+            browser.sendall(request)
+            browser.close()
+        assert read_turndesk_status(address).error_text == ""
+        with connected(address) as next_browser:
+            next_browser.sendall(b"GET /status.json HTTP/1.0\r\n\r\n")
+            assert next_browser.recv(12) == b"HTTP/1.0 200"
 
 
 def test_request_has_an_overall_deadline() -> None:
