@@ -2,7 +2,9 @@
 
 Run with ``python -m tests.benchmarks.bench_late [WORD …]``: every row, or those with one of the words in
 their name. It starts the desk without its window (executor, watchdog, store, with and without the driver
-host) as processes of its own, stops and kills them, and prints a table. Nothing is asserted.
+host) as processes of its own, stops and kills them, and prints a table. Nothing is asserted. The executor
+runs in a thread of the screen's process, as on systems other than Linux; ``tests/control`` and
+``tests/killed`` check the process of the control.
 """
 
 from __future__ import annotations
