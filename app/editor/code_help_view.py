@@ -195,7 +195,7 @@ class CodeList(CodeChoiceList):
         """Look up the code at the cursor and return its entry, or None if no code is there."""
         field = self._field
         self._codes.update_for_cursor(
-            self._proof.current_findings.code_book, field.textCursor().block().text(), field.cursor_column
+            self._proof.current_findings.code_book, field.cursor_line_text, field.cursor_column
         )
         return self._codes.current_entry
 

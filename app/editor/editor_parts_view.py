@@ -18,7 +18,8 @@ from app.editor.editor_model import EditorModel
 from app.editor.editor_modes import ENTRY_MODES, EditorMode
 from app.editor.live_proof import ProofFindings
 from app.editor.question_view import QuestionLine
-from app.editor.text_view import SEVERITY_COLORS, SEVERITY_NAMES, ProgramTextField, TextSynchronizer
+from app.editor.text_synchronizer_view import TextSynchronizer
+from app.editor.text_view import SEVERITY_COLORS, SEVERITY_NAMES, ProgramTextField
 from app.editor.versions_view import VersionList
 from app.path.path_aspects import TipPosition
 from app.path.path_view import PathView

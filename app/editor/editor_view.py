@@ -30,7 +30,8 @@ from app.editor.editor_parts_view import EditorHeadLine, EditorParts, EditorPath
 from app.editor.live_proof import describe_finding
 from app.editor.panel_text_view import PanelSynchronizer
 from app.editor.question_view import QuestionLine, TextFinder, show_mode_question
-from app.editor.text_view import ProgramTextField, TextSynchronizer
+from app.editor.text_synchronizer_view import TextSynchronizer
+from app.editor.text_view import ProgramTextField
 from app.editor.version_history import VersionHistory
 from app.editor.versions_view import VersionList
 from app.path.measuring import make_measuring_prompt
@@ -398,8 +399,7 @@ class EditorPage(EditorParts):
     def find_marked_help(self) -> Sequence[GuideBlock]:
         """Return the explanation of the codes in the line of the cursor."""
         book = self.editor.live_proof.current_findings.code_book
-        line = self.text_field.textCursor().block().text()
-        return make_code_blocks(book, book.list_codes(line)) if book is not None else ()
+        return make_code_blocks(book, book.list_codes(self.text_field.cursor_line_text)) if book else ()
 
     def _jump_to_line(self) -> None:
         """Move the cursor to the program line that produces the path at the crosshair."""

@@ -6,7 +6,8 @@ The text of the panel is proved as a preview and then copied into the text field
 from __future__ import annotations
 
 from app.editor.editor_model import EditorModel
-from app.editor.text_view import ProgramTextField, TextSynchronizer
+from app.editor.text_synchronizer_view import TextSynchronizer
+from app.editor.text_view import ProgramTextField
 from app.screen.page_base import EditorPanel
 
 

@@ -177,8 +177,8 @@ class TextFinder:
 
     def find_initial_text(self) -> str:
         """Return the selected text if it is within one line, and otherwise the previous search text."""
-        marked = self._field.textCursor().selectedText()
-        return marked if marked and "\u2029" not in marked else self._ask.first_field.text()
+        marked = self._field.selected_text
+        return marked if marked and "\n" not in marked else self._ask.first_field.text()
 
     @property
     def _search(self) -> TextSearch:
@@ -187,24 +187,21 @@ class TextFinder:
     def count_matches(self) -> None:
         """Count the matches and select the first match at or after the cursor."""
         if self._ask.isVisible():
-            cursor = self._field.textCursor()
-            self._show(following(self._places(), cursor.selectionStart()))
+            self._show(following(self._places(), self._field.selection.start))
 
     def select_match(self, direction: int) -> None:
         """Select the next match if ``direction`` is 1, or the previous match if it is -1."""
-        cursor, places = self._field.textCursor(), self._places()
+        selection, places = self._field.selection, self._places()
         if direction > 0:
-            after = cursor.selectionEnd() if cursor.hasSelection() else cursor.position()
-            self._show(following(places, after))
+            self._show(following(places, selection.end))
         else:
-            self._show(find_preceding_position(places, cursor.selectionStart()))
+            self._show(find_preceding_position(places, selection.start))
 
     def replace_match(self) -> None:
         """Replace the selected match and select the next one."""
-        cursor, places = self._field.textCursor(), self._places()
-        start = cursor.selectionStart()
+        (start, end), places = sorted(self._field.selection), self._places()
         length = len(self._search.search_text)
-        if cursor.hasSelection() and start in places and cursor.selectionEnd() - start == length:
+        if end - start == length and following(places, start) == start:
             by = self._ask.second_field.text()
             self._field.replace_text_ranges((start,), length, by)
             self._show(following(self._places(), start + len(by)))

@@ -20,6 +20,8 @@ from shiboken6 import VoidPtr, isValid
 
 from app.desk.translation import tr
 from app.screen.panel import Panel, TouchTarget, ignore_press
+from app.screen.text_area.accessible_text import AccessibleTextArea
+from app.screen.text_area.text_area import TextArea
 
 Role, Text = QAccessible.Role, QAccessible.Text
 MaybeInterface = Any  # Or None, which Qt accepts although its type stubs do not.
@@ -32,10 +34,12 @@ def register_accessibility() -> None:
 
 
 def _make_interface(kind: str, shown: QObject) -> QAccessibleInterface | None:
-    """Return the accessible interface of a plain QWidget, or None for all other classes.
+    """Return the accessible interface of a plain QWidget or a text area, or None for all other classes.
 
     Qt has its own interfaces for the other classes.
     """
+    if kind == TextArea.__name__ and isinstance(shown, TextArea):
+        return AccessibleTextArea(shown)
     if kind != "QWidget" or not isinstance(shown, QWidget):
         return None
     return AccessiblePanel(shown) if isinstance(shown, Panel) else AccessibleContainer(shown)

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import QCoreApplication, QMimeData, QPoint, QPointF, Qt, QUrl
 from PySide6.QtGui import QDragEnterEvent, QDropEvent
-from PySide6.QtWidgets import QLineEdit, QPlainTextEdit, QWidget
+from PySide6.QtWidgets import QLineEdit, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.compose.runs.journal import Journal
@@ -19,6 +19,7 @@ from app.desk.programs.program_loading import LoadingPhase
 from app.editor.editor_model import EditorModel, EditorStage
 from app.editor.editor_view import EditorPage
 from app.screen import page_table
+from app.screen.text_area.text_area import TextArea
 from app.screen.window.file_opening import FileOpener
 from app.screen.window.key_table import HELP_KEY
 from core.executor.snapshot import MachineState
@@ -66,16 +67,16 @@ def middle_of(hands: Hands, widget: QWidget) -> QPoint:
     return widget.mapTo(hands.window, widget.rect().center())
 
 
-def text_fields(hands: Hands) -> list[QLineEdit | QPlainTextEdit]:
+def text_fields(hands: Hands) -> list[QLineEdit | TextArea]:
     """Return the text fields that are visible."""
-    lines, texts = hands.window.findChildren(QLineEdit), hands.window.findChildren(QPlainTextEdit)
+    lines, texts = hands.window.findChildren(QLineEdit), hands.window.findChildren(TextArea)
     return [
         *(field for field in lines if field.isVisible()),
         *(field for field in texts if field.isVisible()),
     ]
 
 
-def read_text(field: QLineEdit | QPlainTextEdit) -> str:
+def read_text(field: QLineEdit | TextArea) -> str:
     return field.text() if isinstance(field, QLineEdit) else field.toPlainText()
 
 

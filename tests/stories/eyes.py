@@ -20,11 +20,12 @@ from typing import Any
 from PySide6.QtCore import QEvent, QObject, QPoint, QRectF, Qt, QTimer, Signal, Slot
 from PySide6.QtGui import QFontMetricsF, QKeyEvent, QPainter, QPaintEvent, QWindow
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QLineEdit, QMenu, QPlainTextEdit, QWidget
+from PySide6.QtWidgets import QApplication, QLineEdit, QMenu, QWidget
 
 from app.cli.main import run_console
 from app.desk.desk import Desk
 from app.screen.panel import Panel, TouchPanel
+from app.screen.text_area.text_area import TextArea
 from app.screen.window.keyboard import KeyboardFilter
 from app.screen.window.main_window import MainWindow
 from drivers.simulators.plant_controls import PlantControls
@@ -254,7 +255,7 @@ def _kill(_told: Told) -> None:
 def _field(widget: QWidget | None) -> str:
     if isinstance(widget, QLineEdit):
         return widget.text()
-    return widget.toPlainText() if isinstance(widget, QPlainTextEdit) else ""
+    return widget.toPlainText() if isinstance(widget, TextArea) else ""
 
 
 def _window() -> MainWindow | None:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtWidgets import QLineEdit, QPlainTextEdit, QWidget
+from PySide6.QtWidgets import QLineEdit, QWidget
 
 from app.desk.status.alarm_log import LoggedStop
 from app.desk.status.machine_status import StatusTone
@@ -17,6 +17,7 @@ from app.desk.translation import tr
 from app.screen.panel import FocusHolder, Panel, RedrawingAttribute
 from app.screen.screen_theme import MIN_TEXT_SIZE, ScreenTheme, ThemedPainter, draw_state_symbol
 from app.screen.table_panel import RowPanel
+from app.screen.text_area.text_area import TextArea
 from core.alarms import CATALOG, AlarmReaction
 from core.executor.snapshot import Alarm
 from core.message import Message, join_messages
@@ -184,7 +185,7 @@ class AlarmList(RowPanel):
     @property
     def covers_focus_field(self) -> bool:
         """Return whether a standard text field had the keyboard focus when the list opened."""
-        return self.isVisible() and isinstance(self._focus.covered_field, QLineEdit | QPlainTextEdit)
+        return self.isVisible() and isinstance(self._focus.covered_field, QLineEdit | TextArea)
 
     def close_list(self) -> None:
         """Hide the list, and return the keyboard focus to the input field that had it."""

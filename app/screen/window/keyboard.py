@@ -27,11 +27,12 @@ from PySide6.QtGui import (
     QTouchEvent,
     QWindow,
 )
-from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
+from PySide6.QtWidgets import QApplication, QLineEdit, QWidget
 
 from app.desk.late_presses import BlockedLateAction
 from app.desk.stop_keys.key_watcher_client import KeyWatcherClient, OpenStopChannel, ReportEnd
 from app.desk.stop_keys.stop_records import SOURCE_ESC, FocusRecord, StopKind, make_press_number
+from app.screen.text_area.text_area import TextArea
 from app.screen.window.input_times import InputTimes
 from app.screen.window.key_table import MODIFIER_KEYS
 from app.screen.window.x_server import XServer, open_x_server
@@ -477,9 +478,9 @@ def _find_clock(event: QInputEvent) -> str:
 def _find_focus_field() -> QWidget | None:
     """Return the standard text field that has the keyboard focus, or None."""
     at = QApplication.focusWidget()
-    return at if isinstance(at, QLineEdit | QPlainTextEdit) and shiboken6.isValid(at) else None
+    return at if isinstance(at, QLineEdit | TextArea) and shiboken6.isValid(at) else None
 
 
 def _inserts_break(field: QWidget, event: QKeyEvent) -> bool:
     """Return whether the key inserts a line break or tab in a multi-line text field."""
-    return isinstance(field, QPlainTextEdit) and event.key() in {Key.Key_Return, Key.Key_Enter, Key.Key_Tab}
+    return isinstance(field, TextArea) and event.key() in {Key.Key_Return, Key.Key_Enter, Key.Key_Tab}

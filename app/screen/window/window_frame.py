@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from functools import partial
 
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
+from PySide6.QtWidgets import QApplication, QLineEdit, QWidget
 
 from app.automatic.automatic_view import AutomaticPage
 from app.desk.desk import Desk
@@ -23,6 +23,7 @@ from app.screen.page_help import make_page_help
 from app.screen.page_table import find_replacement_page, make_page
 from app.screen.panel import Panel
 from app.screen.screen_theme import ScreenTheme
+from app.screen.text_area.text_area import TextArea
 from app.screen.window.alarm_panels import AlarmList, AlarmNotice
 from app.screen.window.help_panel import HelpPanel
 from app.screen.window.key_table import AUTOMATIC_KEYS, HELP_KEY, SEARCH_KEY
@@ -470,7 +471,7 @@ class WindowFrame(QWidget):
 
     def _stock_field(self) -> bool:
         at = QApplication.focusWidget()
-        return isinstance(at, QLineEdit | QPlainTextEdit) and self.isAncestorOf(at)
+        return isinstance(at, QLineEdit | TextArea) and self.isAncestorOf(at)
 
     def _show_bars(self, snapshot: Snapshot, view: MachineStatus, loaded: LoadedProgram) -> None:
         desk = self.desk

@@ -40,12 +40,11 @@ def field(qtbot: QtBot) -> Iterator[ProgramTextField]:
 
 def inks(field: ProgramTextField, line: int) -> list[tuple[str, str]]:
     """What is written in which colour."""
-    block = field.document().findBlockByNumber(line - 1)
-    text, found = block.text(), []
-    for part in block.layout().formats():
-        ink = part.format.foreground().color()
-        found.append((text[part.start : part.start + part.length], QColor(ink).name()))
-    return found
+    text = field.buffer.read_line(line - 1)
+    return [
+        (text[start : start + length], QColor(ink.foreground().color()).name())
+        for start, length, ink in field.find_line_colors(line - 1, text)
+    ]
 
 
 def test_words_are_colored_as_lexer_reads_them(field: ProgramTextField) -> None:
@@ -146,7 +145,7 @@ def test_times_are_shown_in_local_time() -> None:
 
 
 def test_sinumerik_words_are_colored_by_sinumerik_rules(field: ProgramTextField) -> None:
-    field.highlighter.set_dialect(Dialect.SINUMERIK)
+    field.set_dialect(Dialect.SINUMERIK)
     field.replace_text("N10 G1 X=IC(5) F100 ; (in)\nNUT P2\nG0 T1\nG0 H1", as_new=True)
     field.apply_theme()
     assert inks(field, 1) == [
@@ -164,9 +163,9 @@ def test_sinumerik_words_are_colored_by_sinumerik_rules(field: ProgramTextField)
 def test_change_of_language_recolors_text(field: ProgramTextField) -> None:
     field.replace_text("G0X1(a)", as_new=True)
     before = inks(field, 1)
-    field.highlighter.set_dialect(Dialect.SINUMERIK)
+    field.set_dialect(Dialect.SINUMERIK)
     assert inks(field, 1) != before
-    field.highlighter.set_dialect(Dialect.OMNITURN)
+    field.set_dialect(Dialect.OMNITURN)
     assert inks(field, 1) == before
 
 

@@ -1,0 +1,1 @@
+"""Multi-line text area for texts of any length."""
