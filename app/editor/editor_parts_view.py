@@ -144,11 +144,16 @@ class FindingList(RowPanel):
         self._go_to = jump_to_line
         self.findings = ProofFindings()
         self._line = 0
+        self._proved_blocks: int | None = None
 
-    def show_findings(self, findings: ProofFindings, line: int) -> None:
-        """Show the findings, and highlight the finding in the line of the cursor."""
-        if findings is not self.findings or line != self._line:
-            self.findings, self._line = findings, line
+    def show_findings(self, findings: ProofFindings, line: int, proved_blocks: int | None = None) -> None:
+        """Show the findings, and highlight the finding in the line of the cursor.
+
+        ``proved_blocks`` is the progress of the proof of a long text, or None.
+        """
+        shown = findings, line, proved_blocks
+        if findings is not self.findings or shown[1:] != (self._line, self._proved_blocks):
+            self.findings, self._line, self._proved_blocks = shown
             self.update()
 
     @property
@@ -157,6 +162,8 @@ class FindingList(RowPanel):
         found = self.findings
         if found.error_text:
             return found.error_text
+        if self._proved_blocks is not None:
+            return Message("PROVING  ·  {blocks} BLOCKS", blocks=self._proved_blocks)
         if not found.number:
             return "PROVING"
         if not found.diagnostics:
@@ -202,9 +209,10 @@ class FindingList(RowPanel):
         patch = QRectF(box.x() + 0.4 * u, box.center().y() - 1.6 * u, 3.2 * u, 3.2 * u)
         painter.fill_rect(patch, SEVERITY_COLORS[found.severity])
         painter.draw_text_line(patch, tr(SEVERITY_NAMES[found.severity])[0], 2.0, "on_state", at=ALIGN_CENTER)
-        line = QRectF(box.x() + 4.4 * u, box.y(), 8 * u, box.height())
+        more = 1.2 * u * max(0, len(str(found.line)) - 5)  # for long line numbers
+        line = QRectF(box.x() + 4.4 * u, box.y(), 8 * u + more, box.height())
         painter.draw_text_line(line, str(found.line or "FILE"), 1.8, "text")
-        room = box.adjusted(10.4 * u, 0.2 * u, -0.4 * u, -box.height() / 2)
+        room = box.adjusted(10.4 * u + more, 0.2 * u, -0.4 * u, -box.height() / 2)
         painter.draw_text_line(room, found.text, 1.8, "text", bold=False)
         painter.draw_text_line(room.translated(0, room.height()), found.hint, 1.6, "soft", bold=False)
         self.add_target(box, lambda: self._go_to(found), kind="row", is_on=found.line == self._line)
@@ -368,7 +376,7 @@ class EditorParts(Page):
         self.code_list.dialect = guess_dialect(editor.name)
         findings = editor.live_proof.current_findings
         self.text_field.show_findings(findings.line_findings)
-        self.finding_list.show_findings(findings, line)
+        self.finding_list.show_findings(findings, line, self.text_synchronizer.proved_blocks)
         if self.mode is EditorMode.TEXT:
             self.code_strip.code_entry = self.code_list.update_code()
         self._show_path(findings.picture, line)

@@ -109,6 +109,15 @@ class LiveProof:
         self._number += 1
         self._now = ProofFindings(self._number)
 
+    def cancel_proof(self) -> None:
+        """Cancel the current proof, because its text has changed."""
+        self.worker.cancel_request()
+        self._number += 1  # An undelivered result must not replace the adjusted findings.
+
+    def show_adjusted_findings(self, findings: ProofFindings) -> None:
+        """Show adjusted findings until the next proof."""
+        self._now = findings
+
     def close(self) -> None:
         """Cancel the current proof and stop the worker."""
         self.worker.close()

@@ -2,96 +2,23 @@
 
 from __future__ import annotations
 
-import re
-from bisect import bisect_left
-from dataclasses import dataclass
 from functools import partial
 
-from PySide6.QtCore import QObject, QRectF, Qt
+from PySide6.QtCore import QObject, QRectF, Qt, QTimer
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QLineEdit, QWidget
 
 from app.desk.pages.table_content import FunctionKey
 from app.desk.translation import tr
 from app.editor.editor_modes import EditorMode
+from app.editor.text_search import LONG_TEXT_LENGTH, TextSearch, find_preceding_position, following
 from app.editor.text_view import ProgramTextField
 from app.screen.entry_panel import style_line_edit
 from app.screen.panel import Panel, RedrawingAttribute
 from app.screen.screen_theme import ALIGN_RIGHT, ScreenTheme, ThemedPainter
 from core.message import Message
 
-
-@dataclass(frozen=True, slots=True)
-class TextSearch:
-    """Case-insensitive search for ``search_text``.
-
-    ``matches_whole_words`` excludes matches inside longer words and numbers. A search for F100 then skips
-    F1000 and F100.5, and replacing F100 does not change them.
-    """
-
-    search_text: str
-    matches_whole_words: bool = True
-
-    def find_matches(self, text: str) -> tuple[int, ...]:
-        """Return the start positions of the matches in the text.
-
-        Positions count from 0, and matches do not overlap.
-        """
-        if not self.search_text:
-            return ()
-        return tuple(match.start() for match in re.finditer(self._pattern, text))
-
-    @property
-    def _pattern(self) -> str:
-        pattern = "(?i)" + re.escape(self.search_text)
-        if not self.matches_whole_words:
-            return pattern
-        if self.search_text[0] in "0123456789.":
-            pattern = "(?i)(?<![0-9.])" + re.escape(self.search_text)
-        elif self.search_text[0].isalpha():
-            pattern = "(?i)(?<![A-Za-z])" + re.escape(self.search_text)
-        if self.search_text[-1] in "0123456789.":
-            return pattern + r"(?![0-9]|\.[0-9])"
-        return pattern + "(?![A-Za-z])" if self.search_text[-1].isalpha() else pattern
-
-    def inside(self, text: str) -> int:
-        """Return the number of matches that are part of longer words or numbers."""
-        return len(TextSearch(self.search_text, matches_whole_words=False).find_matches(text)) - len(
-            self.find_matches(text)
-        )
-
-    def words(self, text: str) -> str:
-        """Return a message for the operator with the number of matches."""
-        count = len(self.find_matches(text))
-        found = Message("{count} FOUND", count=count) if count else "NOT FOUND"
-        if not self.matches_whole_words:
-            return Message("{value}, INCLUDING PARTS OF WORDS", value=found)
-        more = self.inside(text)
-        return (
-            Message("{value}; {more} MORE ARE PARTS OF LONGER WORDS", value=found, more=more)
-            if more
-            else found
-        )
-
-
-def following(positions: tuple[int, ...], start: int) -> int | None:
-    """Return the first match position at or after ``start``, wrapping to the first position.
-
-    Returns None if there are no positions.
-    """
-    if not positions:
-        return None
-    return positions[bisect_left(positions, start) % len(positions)]
-
-
-def find_preceding_position(positions: tuple[int, ...], start: int) -> int | None:
-    """Return the last match position before ``start``, wrapping to the last position.
-
-    Returns None if there are no positions.
-    """
-    return positions[bisect_left(positions, start) - 1] if positions else None
-
-
+SEARCH_PAUSE_MS = 250  # pause in typing after which a long text is searched
 LABEL_WIDTH = 15.0  # units: width of a label
 MESSAGE_WIDTH = 34.0  # units: width of the message
 
@@ -173,7 +100,14 @@ class TextFinder:
     def __init__(self, text_field: ProgramTextField, question_line: QuestionLine) -> None:
         self._field, self._ask = text_field, question_line
         self.matches_whole_words = True
-        question_line.first_field.textEdited.connect(lambda _text: self.count_matches())
+        # search and revision of the text to which the stored results belong
+        self._searched: tuple[TextSearch, int] | None = None
+        self._matches: tuple[int, ...] = ()
+        self._count_text = ""
+        self._pause = QTimer(question_line)
+        self._pause.setSingleShot(True)
+        self._pause.timeout.connect(self.count_matches)
+        question_line.first_field.textEdited.connect(lambda _text: self._handle_typing())
 
     def find_initial_text(self) -> str:
         """Return the selected text if it is within one line, and otherwise the previous search text."""
@@ -183,6 +117,13 @@ class TextFinder:
     @property
     def _search(self) -> TextSearch:
         return TextSearch(self._ask.first_field.text(), self.matches_whole_words)
+
+    def _handle_typing(self) -> None:
+        """Count the matches at once, or in a long text after a pause in typing."""
+        if self._field.buffer.length > LONG_TEXT_LENGTH:
+            self._pause.start(SEARCH_PAUSE_MS)
+        else:
+            self.count_matches()
 
     def count_matches(self) -> None:
         """Count the matches and select the first match at or after the cursor."""
@@ -235,13 +176,20 @@ class TextFinder:
         }
 
     def _places(self) -> tuple[int, ...]:
-        return self._search.find_matches(self._field.toPlainText())
+        """Return the positions of the matches. The text is searched once after each change."""
+        search, buffer = self._search, self._field.buffer
+        if self._searched != (search, buffer.revision):
+            self._matches, count_with_parts = search.find_and_count_matches(buffer.text)
+            found = search.describe_count(len(self._matches), count_with_parts)
+            self._count_text = found if search.search_text else ""
+            self._searched = search, buffer.revision
+        return self._matches
 
     def _show(self, place: int | None) -> None:
-        search = self._search
-        self._ask.message_text = search.words(self._field.toPlainText()) if search.search_text else ""
+        self._places()
+        self._ask.message_text = self._count_text
         if place is not None:
-            self._field.select_range(place, len(search.search_text))
+            self._field.select_range(place, len(self._search.search_text))
 
 
 def show_mode_question(

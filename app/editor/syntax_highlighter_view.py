@@ -9,6 +9,8 @@ from PySide6.QtGui import QFont, QTextCharFormat
 from app.screen.screen_theme import ScreenTheme
 from app.screen.text_area.line_view import LineColors
 from app.screen.text_area.text_buffer import TextBuffer
+from core.language.diagnostics import Diagnostic
+from core.language.line_errors import find_line_errors
 from core.language.program_colors import color_program_line, find_coloring_start
 from core.language.source import Dialect
 from core.language.syntax_colors import PLAIN_STATE, ColoredSpan, SyntaxKind
@@ -89,6 +91,10 @@ class SyntaxHighlighter:
                 found.append((at, length, self._format(*_TOKEN_COLORS[each])))
             at += length
         return found
+
+    def find_line_errors(self, line: int, text: str) -> tuple[Diagnostic, ...]:
+        """Return the syntax errors of a line. The line counts from 0."""
+        return find_line_errors(self._dialect, line + 1, text, self.find_state_before(line))
 
     def _color(self, text: str, state_before: int) -> tuple[list[ColoredSpan], int]:
         key = text, state_before

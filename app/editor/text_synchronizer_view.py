@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+import time
+
+from app.editor.changed_lines import adjust_findings
 from app.editor.editor_model import EditorModel, EditorStage
+from app.editor.text_search import LONG_TEXT_LENGTH
 from app.editor.text_view import ProgramTextField
 from core.language.source import guess_dialect
+
+TYPING_PAUSE_S = 0.4
+MAX_CHECKED_LINES = 200  # changed lines whose syntax is checked at once
 
 
 class TextSynchronizer:
@@ -18,13 +25,32 @@ class TextSynchronizer:
         self._taken = 0  # number of the editor's text that is in the field
         self.is_stale = False  # the text has changed since it was passed to the editor
         self._taking = False  # the field is being changed by this object
-        self._text = ""
+        self._last_change_s = 0.0
         text_field.text_changed.connect(self._changed)
 
     def _changed(self) -> None:
         self.is_stale = True
+        if self._is_long:
+            self._last_change_s = time.monotonic()
+            self._check_changed_lines()
         if not self._taking:
             self._editor.clear_message()  # Typing clears the message and cancels a question.
+
+    def _check_changed_lines(self) -> None:
+        """Show the syntax errors of the changed lines of a long text, and cancel the present proof."""
+        proof, change = self._editor.live_proof, self._field.buffer.last_change
+        proof.cancel_proof()
+        if not self._taking:
+            count = min(change.new_line_count, MAX_CHECKED_LINES)
+            errors = self._field.find_line_errors(change.first_line, count)
+            found = adjust_findings(
+                proof.current_findings,
+                change.first_line + 1,
+                change.old_line_count,
+                change.new_line_count,
+                errors,
+            )
+            proof.show_adjusted_findings(found)
 
     def read_text(self) -> str:
         """Return the current text of the field."""
@@ -38,8 +64,26 @@ class TextSynchronizer:
         """
         seen = (self._field.buffer.revision, self._editor.document)
         if seen != self._seen:
-            self._seen, self._dirty = seen, self._editor.is_dirty(self.read_text())
+            document = self._editor.document
+            is_other_length = document is not None and self._field.buffer.length != len(document.text)
+            self._seen, self._dirty = seen, is_other_length or self._editor.is_dirty(self.read_text())
         return self._dirty
+
+    @property
+    def proved_blocks(self) -> int | None:
+        """Return the progress of the proof of a long text, or None for a short or proved text."""
+        proof = self._editor.live_proof
+        is_pending = self.is_stale or proof.is_outdated
+        return proof.worker.progress_count if self._is_long and is_pending else None
+
+    @property
+    def _is_long(self) -> bool:
+        return self._field.buffer.length > LONG_TEXT_LENGTH
+
+    @property
+    def _is_typing(self) -> bool:
+        """Return whether the operator is typing in a long text, which is proved only after a pause."""
+        return time.monotonic() < self._last_change_s + TYPING_PAUSE_S
 
     def synchronize(self) -> None:
         """Copy a new text of the editor model into the field, or submit typed text to the live proof.
@@ -55,10 +99,9 @@ class TextSynchronizer:
             self._taking = False
             field.setFocus()
             self.is_stale = True
-        if self.is_stale:
+        if self.is_stale and not self._is_typing:
             self.is_stale = False
-            self._text = self.read_text()
-            editor.update_text(self._text)
+            editor.update_text(self.read_text())
         field.setReadOnly(editor.stage is not EditorStage.OPEN)
 
     def _update_dialect(self) -> None:
@@ -73,7 +116,7 @@ class TextSynchronizer:
         document = self._editor.document
         if document is None:
             return ""
-        dirty = self._editor.is_dirty(self._text)
+        dirty = self.is_dirty
         if document.is_read_only:
             return "SAMPLE, CHANGED" if dirty else "SAMPLE"
         if document.is_new:

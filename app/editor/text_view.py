@@ -91,6 +91,14 @@ class ProgramTextField(TextArea):
         if self.highlighter.set_dialect(dialect):
             self.forget_layouts()
 
+    def find_line_errors(self, first: int, count: int) -> list[Diagnostic]:
+        """Return the syntax errors of ``count`` lines, beginning with ``first``, which counts from 0."""
+        return [
+            error
+            for line, text in enumerate(self.buffer.read_lines(first, count), first)
+            for error in self.highlighter.find_line_errors(line, text)
+        ]
+
     def show_findings(self, line_findings: Mapping[int, Diagnostic]) -> None:
         """Show each finding next to the line that it concerns."""
         if line_findings is not self._found:

@@ -60,6 +60,7 @@ class NullVersionArchive:
 
 CONTEXT_LINES = 2  # unchanged lines shown around a change
 MAX_COMPARED_LINES = 20_000  # number of lines above which only the first and last difference are searched
+MAX_SHOWN_LINES = 10_000  # lines of one difference that are shown
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,8 +109,15 @@ def _rows(
     if tag == "equal":
         shift = new[0] - old[0]
         return [DifferenceRow(" ", n + 1, n + 1 + shift, before[n]) for n in range(*old)]
-    gone = [DifferenceRow("-", n + 1, 0, before[n]) for n in range(*old)]
-    return gone + [DifferenceRow("+", 0, n + 1, after[n]) for n in range(*new)]
+    gone = [DifferenceRow("-", n + 1, 0, before[n]) for n in range(*old)[:MAX_SHOWN_LINES]]
+    added = [DifferenceRow("+", 0, n + 1, after[n]) for n in range(*new)[:MAX_SHOWN_LINES]]
+    omitted = [DifferenceRow("…", 0, 0, "")]
+    return [
+        *gone,
+        *(omitted if len(range(*old)) > MAX_SHOWN_LINES else ()),
+        *added,
+        *(omitted if len(range(*new)) > MAX_SHOWN_LINES else ()),
+    ]
 
 
 # --- versions of the edited program ------------------------------------------------------------------------

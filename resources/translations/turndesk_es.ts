@@ -8090,6 +8090,11 @@
     </message>
     <message>
       <location filename="app/editor/editor_parts_view.py" />
+      <source>PROVING  ·  {blocks} BLOCKS</source>
+      <translation>COMPROBANDO  ·  {blocks} BLOQUES</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_parts_view.py" />
       <source>VIEW</source>
       <translation>VISTA</translation>
     </message>
@@ -8245,28 +8250,38 @@
     </message>
     <message>
       <location filename="app/editor/question_view.py" />
-      <source>{count} FOUND</source>
-      <translation>{count} ENCONTRADOS</translation>
-    </message>
-    <message>
-      <location filename="app/editor/question_view.py" />
       <source>{places_count} REPLACED</source>
       <translation>{places_count} CAMBIADOS</translation>
     </message>
     <message>
-      <location filename="app/editor/question_view.py" />
+      <location filename="app/editor/text_search.py" />
+      <source>{count} FOUND</source>
+      <translation>{count} ENCONTRADOS</translation>
+    </message>
+    <message>
+      <location filename="app/editor/text_search.py" />
       <source>{value}, INCLUDING PARTS OF WORDS</source>
       <translation>{value}, INCLUIDAS PARTES DE PALABRAS</translation>
     </message>
     <message>
-      <location filename="app/editor/question_view.py" />
+      <location filename="app/editor/text_search.py" />
       <source>{value}; {more} MORE ARE PARTS OF LONGER WORDS</source>
       <translation>{value}; {more} MÁS SON PARTES DE PALABRAS MÁS LARGAS</translation>
     </message>
     <message>
-      <location filename="app/editor/text_view.py" />
+      <location filename="app/editor/text_synchronizer_view.py" />
       <source>CHANGED</source>
       <translation>CAMBIADO</translation>
+    </message>
+    <message>
+      <location filename="app/editor/text_synchronizer_view.py" />
+      <source>SAMPLE</source>
+      <translation>MUESTRA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/text_synchronizer_view.py" />
+      <source>SAMPLE, CHANGED</source>
+      <translation>MUESTRA, CAMBIADA</translation>
     </message>
     <message>
       <location filename="app/editor/text_view.py" />
@@ -8277,16 +8292,6 @@
       <location filename="app/editor/text_view.py" />
       <source>PROGRAM</source>
       <translation>PROGRAMA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/text_view.py" />
-      <source>SAMPLE</source>
-      <translation>MUESTRA</translation>
-    </message>
-    <message>
-      <location filename="app/editor/text_view.py" />
-      <source>SAMPLE, CHANGED</source>
-      <translation>MUESTRA, CAMBIADA</translation>
     </message>
     <message>
       <location filename="app/editor/version_history.py" />

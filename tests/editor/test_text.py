@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.editor.edited_document import InvalidProgramNameError, make_program_name
-from app.editor.question_view import TextSearch, find_preceding_position, following
+from app.editor.text_search import TextSearch, find_preceding_position, following
 from app.editor.version_history import DifferenceRow as Row
 from app.editor.version_history import compare_texts
 from core.language.source import Dialect, get_default_extension, guess_dialect

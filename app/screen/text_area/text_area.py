@@ -41,7 +41,7 @@ class TextArea(PointerInput, LineView):
         self.setAttribute(Qt.WidgetAttribute.WA_InputMethodEnabled)
         self.viewport().setCursor(Qt.CursorShape.IBeamCursor)
         self._moves = self._make_moves()
-        self._commands = {
+        self._commands: dict[QKeySequence.StandardKey, Callable[[], None]] = {
             Keys.SelectAll: self.selectAll,
             Keys.Copy: self.copy,
             Keys.Cut: self.cut,
