@@ -51,7 +51,10 @@ class Document:
 
     def encode_text(self, text: str) -> bytes:
         """Return ``text`` as bytes with the line ending that the file uses."""
-        return add_final_newline(text).replace("\n", self.line_ending).encode("utf-8", "replace")
+        text = add_final_newline(text)
+        if self.line_ending != "\n":
+            text = text.replace("\n", self.line_ending)
+        return text.encode("utf-8", "replace")
 
 
 def add_final_newline(text: str) -> str:

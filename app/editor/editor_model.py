@@ -230,7 +230,7 @@ class EditorModel:
         self._leaving = leave_after
         if why := self.find_save_refusal():
             self.message = why
-        elif not text.strip():
+        elif not text or text.isspace():
             self.message = messages.EMPTY_NOT_SAVED
         elif document.is_read_only:
             self.stage, self.message, self._unnamed = EditorStage.NAMING, messages.SAMPLE_READ_ONLY, text

@@ -28,6 +28,9 @@ class PointerInput(LineView):
         self._scrolled_from = (0, 0)  # values of the vertical and the horizontal scroll bar
         self._last_point = QPointF()
         self._double_clicked_at: QPointF | None = None
+        self._triple_click_time = QTimer(self)
+        self._triple_click_time.setSingleShot(True)
+        self._triple_click_time.timeout.connect(self._forget_double_click)
         self._auto_scroll = QTimer(self)
         self._auto_scroll.setInterval(_DRAG_INTERVAL_MS)
         self._auto_scroll.timeout.connect(self._scroll_to_mouse)
@@ -75,7 +78,7 @@ class PointerInput(LineView):
         start, end = words[-1] if words else (column, column)
         self.select(position - column + start, position - column + end)
         self._double_clicked_at = event.position()
-        QTimer.singleShot(QApplication.doubleClickInterval(), self._forget_double_click)
+        self._triple_click_time.start(QApplication.doubleClickInterval())
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Extend the selection to the mouse, or scroll the text by touch."""
