@@ -19,6 +19,8 @@ def find_byte_matches(text: bytes, word: bytes, *, matches_whole_words: bool) ->
     """
     text, word = text.upper() + b"\0\0", word.upper()
     count = text.count(word)
+    if not count:
+        return (), 0
     places = _find_few(text, word) if count <= _FEW else _find_many(np.frombuffer(text, np.uint8), word)
     if matches_whole_words:
         places = _select_whole_words(np.frombuffer(text, np.uint8), places, word)
