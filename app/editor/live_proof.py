@@ -112,7 +112,6 @@ class LiveProof:
     def cancel_proof(self) -> None:
         """Cancel the current proof, because its text has changed."""
         self.worker.cancel_request()
-        self._number += 1  # An undelivered result must not replace the adjusted findings.
 
     def show_adjusted_findings(self, findings: ProofFindings) -> None:
         """Show adjusted findings until the next proof."""
