@@ -164,7 +164,7 @@ def test_each_tool_begins_at_the_tool_change_with_coolant() -> None:
     group = SimpleNamespace(Group=[turn])
     text = omniturn_post.post([controller(1), group, hidden, controller(2), drill], "--no-comments")
     assert text.splitlines()[3:] == [
-        *("G00X10Z2", "G94F60Z-1", "G00Z8", "T2", "G97M03S1200", "M08", "X0Z8", "G94F60Z-1"),
+        *("G00X10Z2", "G94F60Z-1", "G00Z8", "T2", "G97M03S1200", "M08", "G00X0Z8", "G94F60Z-1"),
         *("G00Z8", "M09", "M05", "M30"),
     ]
 
@@ -246,10 +246,11 @@ def test_file_name_minus_writes_no_file(tmp_path: Path, monkeypatch: pytest.Monk
         (("G76", {"Z": -1.0, "P": 1.0, "I": -1.0, "J": 0.1}), "K"),
         (("G76", {"Z": -1.0, "P": 1.0, "I": -1.0, "J": 0.9, "K": 0.5}), "J <= K"),
         (("G76", {"Z": -1.0, "P": 1.0, "I": -1.0, "J": 0.1, "K": 0.5, "Q": 45.0}), "30 degrees"),
-        (("G84", {"Z": -1.0, "R": 1.0}), "tapping"),
+        (("G84", {"X": 0.0, "Z": -1.0, "R": 1.0}), "pitch is unknown"),
         (("G41", {"D": 1}), "nose radius"),
         (("G91", {}), "incremental"),
-        (("G55", {}), "does not exist"),
+        (("G55", {}), "use --shift G55"),
+        (("G85", {"X": 0.0, "Z": -1.0, "R": 1.0}), "does not exist"),
         (("M6", {"T": 33}), "T33"),
         (("M6", {"T": 1.5}), "T1.5"),
         (("M3", {"S": 0.0}), "speed is 0"),
