@@ -12,11 +12,11 @@ const lines = [];
 class PostError extends Error {}
 
 const names = [
-  "MM IN PLANE_XY PLANE_ZX PLANE_YZ CAPABILITY_TURNING TYPE_TURNING TYPE_MILLING",
+  "MM IN PLANE_XY PLANE_ZX PLANE_YZ CAPABILITY_TURNING CAPABILITY_MILLING TYPE_TURNING TYPE_MILLING",
   "FEED_PER_MINUTE FEED_PER_REVOLUTION SPINDLE_CONSTANT_SURFACE_SPEED SPINDLE_CONSTANT_SPINDLE_SPEED",
   "COOLANT_OFF COOLANT_FLOOD COOLANT_MIST RADIUS_COMPENSATION_OFF RADIUS_COMPENSATION_LEFT COMMAND_STOP",
   "COMMAND_OPTIONAL_STOP COMMAND_STOP_SPINDLE COMMAND_COOLANT_ON COMMAND_COOLANT_OFF COMMAND_START_SPINDLE",
-  "COMMAND_END COMMAND_TOOL_MEASURE",
+  "COMMAND_END COMMAND_TOOL_MEASURE TOOL_TAP_RIGHT_HAND TOOL_TAP_LEFT_HAND",
 ].join(" ").split(" ");
 const context = { console, Math };
 names.forEach((name, index) => { context[name] = index; });
@@ -26,6 +26,7 @@ context.unit = named(job.unit);
 context.programComment = job.comment || "";
 context.setCodePage = () => {};
 context.toRad = (degrees) => (degrees * Math.PI) / 180;
+context.toDeg = (radians) => (radians * 180) / Math.PI;
 context.spatial = (value, unit) => (unit === context.unit ? value : unit === named("MM") ? value / 25.4 : value * 25.4);
 context.writeln = (text) => lines.push(text);
 context.error = (text) => { throw new PostError(text); };
@@ -39,14 +40,23 @@ context.getCommandStringId = (command) => names[command];
 
 let current = {};
 
+const vector = ([x, y, z]) => ({ x, y, z });
+
 function makeSection(section) {
+  const [right, up, forward] = section.workPlane || [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+  const [x, z, y] = [...section.start, 0];
   return {
+    workPlane: { right: vector(right), up: vector(up), forward: vector(forward) },
+    getTool: () => ({ isLiveTool: () => Boolean(section.tool.live) }),
+    hasParameter: (name) => name in (section.parameters || {}),
+    getParameter: (name) => section.parameters[name],
+    getNumberOfCyclePoints: () => section.calls.filter(([name]) => name === "onCyclePoint").length,
     getType: () => named(section.type || "TYPE_TURNING"),
     isMultiAxis: () => Boolean(section.multiAxis),
     workOffset: section.workOffset || 0,
     feedMode: named(section.feedMode || "FEED_PER_REVOLUTION"),
-    getInitialPosition: () => ({ x: section.start[0], y: 0, z: section.start[1] }),
-    getGlobalZRange: () => ({ getMaximum: () => section.start[1], getMinimum: () => -1 }),
+    getInitialPosition: () => ({ x, y, z }),
+    getGlobalZRange: () => ({ getMaximum: () => section.top ?? section.start[1], getMinimum: () => -1 }),
   };
 }
 
@@ -56,6 +66,7 @@ function makeTool(tool) {
     clockwise: true,
     description: "",
     ...tool,
+    type: named(tool.type),
     coolant: named(tool.coolant || "COOLANT_OFF"),
     getSpindleMode: () => named(isSurface ? "SPINDLE_CONSTANT_SURFACE_SPEED" : "SPINDLE_CONSTANT_SPINDLE_SPEED"),
   };
