@@ -22130,6 +22130,11 @@
     </message>
     <message>
       <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>A peck of {peck} reaches the end of the cut at once: enter a smaller peck depth, or 0.</source>
+      <translation>Una picada de {peck} llega de una vez al final del corte: introduzca una profundidad de picada menor, o 0.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>BAR FEED PER MINUTE</source>
       <translation>AVANCE DE BARRA POR MINUTO</translation>
     </message>
@@ -22185,8 +22190,18 @@
     </message>
     <message>
       <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>FEED NEAR THE CENTER</source>
+      <translation>AVANCE CERCA DEL CENTRO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>FEED THE BAR</source>
       <translation>SACAR LA BARRA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>LOWER FEED FROM DIAMETER</source>
+      <translation>AVANCE MENOR DESDE EL DIÁMETRO</translation>
     </message>
     <message>
       <location filename="core/extras/shapes/forms/bar_work.py" />
@@ -22202,6 +22217,11 @@
       <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>PART SUBROUTINE NUMBER</source>
       <translation>NÚMERO DE SUBRUTINA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>PECK DEPTH</source>
+      <translation>PROFUNDIDAD DE PICADA</translation>
     </message>
     <message>
       <location filename="core/extras/shapes/forms/bar_work.py" />
@@ -22225,8 +22245,23 @@
     </message>
     <message>
       <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>The feed cannot change at diameter {slow}, because the cut runs from {top} to {end}: enter a diameter between them, or 0.</source>
+      <translation>El avance no puede cambiar en el diámetro {slow}, porque el corte va de {top} a {end}: introduzca un diámetro entre los dos, o 0.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>The feed near the center is higher than FEED: enter a lower feed.</source>
+      <translation>El avance cerca del centro es mayor que AVANCE: introduzca un avance menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
       <source>This machine has no M codes that open and close the chuck: assign two M codes to the output named collet under [m_codes] in the machine file.</source>
       <translation>Esta máquina no tiene códigos M que abran y cierren el plato: asigne dos códigos M a la salida llamada collet bajo [m_codes] en el archivo de máquina.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/bar_work.py" />
+      <source>With a peck depth of {peck}, the cut needs more than {count} pecks: enter a larger depth.</source>
+      <translation>Con una profundidad de picada de {peck}, el corte necesita más de {count} picadas: introduzca una profundidad mayor.</translation>
     </message>
     <message>
       <location filename="core/extras/shapes/forms/bar_work.py" />
@@ -22235,8 +22270,8 @@
     </message>
     <message>
       <location filename="core/extras/shapes/forms/bar_work.py" />
-      <source>parts off to the center or to a bore, with chamfers on both sides of the cut</source>
-      <translation>tronza hasta el centro o hasta un taladro, con chaflanes a ambos lados del corte</translation>
+      <source>parts off to the center or to a bore, with chamfers on both sides of the cut, pecks, and a lower feed near the center</source>
+      <translation>tronza hasta el centro o hasta un agujero, con chaflanes a los dos lados del corte, picadas y un avance menor cerca del centro</translation>
     </message>
     <message>
       <location filename="core/extras/shapes/forms/drilling.py" />

@@ -81,6 +81,7 @@ STEPS: dict[str, list[Step]] = {
     ],
     "bore": [DRILLED, ("B", {"HOLE": 9.0, "DIAM": 12.0, "DEEP": 12.0, "EDGE": 1.0, "ROUGH": 0.5}, ())],
     "part off": [("P", {"FROM": 30.0, "LONG": 20.0, "WIDE": 3.0, "BACK": 1.0, "NEXT": 1.0}, ())],
+    "part off in pecks": [("P", {"FROM": 30.0, "LONG": 20.0, "WIDE": 3.0, "PECK": 4.0, "SLOW": 8.0}, ())],
 }  # fmt: skip
 
 

@@ -45,6 +45,8 @@ from core.sketch import (
 
 FRONT, REAR, INSIDE = "FRONT", "REAR", "BORE"
 LEFT, RIGHT = "LEFT", "RIGHT"
+_MOST_PECKS = 200
+_SLOWER = 0.5  # proposed feed near the center, as a fraction of the feed
 BLADE_CLEARANCE = {False: 0.02, True: 0.5}
 """Clearance between a blade and the diameter, in the program unit, by whether the program is metric."""
 
@@ -173,9 +175,28 @@ def _part_off(filled: ShapeInstance, setting: ProgramSettings, code: CodeWriter)
     if own:
         blade.write_rapid(z=kerf + own + free)
         blade.write_cut(bar_r - own, kerf, feed=feed)
-    blade.write_cut(filled.get_number("TO") / 2.0, feed=feed)
-    blade.write_rapid(bar_r + free)
+    _write_parting_cut(filled, blade, bar_r, free)
     write_spindle_end(filled, code)
+
+
+def _write_parting_cut(filled: ShapeInstance, blade: BladeWriter, bar_r: float, free: float) -> None:
+    """Write the cut to the end diameter, with pecks and a lower feed near the center if specified.
+
+    After each peck, the blade leaves the cut, so that the chips fall out. It returns to ``free`` before the
+    bottom of the cut.
+    """
+    end, peck = filled.get_number("TO") / 2.0, filled.get_number("PECK")
+    slow_r = filled.get_number("SLOW") / 2.0
+    count = math.ceil((bar_r - end) / peck - 1e-9) if peck else 1
+    for k in range(1, count + 1):
+        start, goal = bar_r - (k - 1) * peck, end if k == count else bar_r - k * peck
+        if k > 1:
+            blade.write_rapid(min(start + free, bar_r + free))
+        if start > slow_r:
+            blade.write_cut(max(goal, slow_r), feed=filled.get_number("FEED"))
+        if goal < slow_r:
+            blade.write_cut(goal, feed=filled.get_number("CFEED"))
+        blade.write_rapid(bar_r + free)
 
 
 def _part_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[FieldError]:
@@ -200,9 +221,45 @@ def _part_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator[Fi
             )
     if filled.get_number("BACK") > filled.get_number("LONG"):
         yield FieldError("BACK", "The chamfer is longer than the part: enter a smaller chamfer.")
+    yield from _check_parting_cut(filled)
     yield from check_blade(filled, setting, (top - end) / 2.0, "FROM")
     yield from check_rpm(filled, setting)
     yield from check_feeds(filled, setting, "FEED")
+
+
+def _check_parting_cut(filled: ShapeInstance) -> Iterator[FieldError]:
+    """Yield errors of the pecks and of the lower feed near the center."""
+    top, end, peck, slow = (filled.get_number(word) for word in ("FROM", "TO", "PECK", "SLOW"))
+    if peck >= (top - end) / 2.0 > 0.0:
+        yield FieldError(
+            "PECK",
+            Message(
+                "A peck of {peck} reaches the end of the cut at once: enter a smaller peck depth, or 0.",
+                peck=f"{peck:g}",
+            ),
+        )
+    if peck and (top - end) / 2.0 > _MOST_PECKS * peck:
+        yield FieldError(
+            "PECK",
+            Message(
+                "With a peck depth of {peck}, the cut needs more than {count} pecks: enter a larger depth.",
+                peck=f"{peck:g}",
+                count=_MOST_PECKS,
+            ),
+        )
+    if slow and not end < slow < top:
+        yield FieldError(
+            "SLOW",
+            Message(
+                "The feed cannot change at diameter {slow}, because the cut runs from {top} to {end}: "
+                "enter a diameter between them, or 0.",
+                slow=f"{slow:g}",
+                top=f"{top:g}",
+                end=f"{end:g}",
+            ),
+        )
+    if slow and filled.get_number("CFEED") > filled.get_number("FEED"):
+        yield FieldError("CFEED", "The feed near the center is higher than FEED: enter a lower feed.")
 
 
 def _part_sketch(_filled: ShapeInstance) -> Sketch:
@@ -224,9 +281,18 @@ def _part_sketch(_filled: ShapeInstance) -> Sketch:
     )
 
 
+def _slows_down(values: FieldValues) -> bool:
+    return number(values, "SLOW") > 0.0
+
+
+def _propose_center_feed(values: FieldValues, _setting: ProgramSettings) -> FieldValue | None:
+    return round(_SLOWER * number(values, "FEED"), 5) or None
+
+
 PARTING_SHAPE = Shape(
     "PART OFF",
-    "parts off to the center or to a bore, with chamfers on both sides of the cut",
+    "parts off to the center or to a bore, with chamfers on both sides of the cut, "
+    "pecks, and a lower feed near the center",
     (
         make_tool_field(ToolKind.PARTING, ToolKind.GROOVING),
         ShapeField("SIDE", "SIDE", FieldKind.CHOICE, FRONT, (FRONT, REAR)),
@@ -237,7 +303,12 @@ PARTING_SHAPE = Shape(
         BLADE_CORNER_FIELD,
         ShapeField("BACK", "CHAMFER ON THE PART", FieldKind.LENGTH, 0.0, allows_zero=True),
         ShapeField("NEXT", "CHAMFER ON THE BAR", FieldKind.LENGTH, 0.0, allows_zero=True),
+        ShapeField("PECK", "PECK DEPTH", FieldKind.LENGTH, 0.0, allows_zero=True),
         make_feed_field(Operation.PART_OFF),
+        ShapeField("SLOW", "LOWER FEED FROM DIAMETER", FieldKind.DIAMETER, 0.0, allows_zero=True),
+        ShapeField(
+            "CFEED", "FEED NEAR THE CENTER", FieldKind.FEED, _propose_center_feed, applies_to=_slows_down
+        ),
         make_rpm_field(Operation.PART_OFF, make_diameter_reader("FROM")),
         make_surface_speed_field(),
     ),
