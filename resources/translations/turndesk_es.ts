@@ -22660,6 +22660,21 @@
     </message>
     <message>
       <location filename="core/extras/shapes/forms/turning.py" />
+      <source>A separate allowance in Z is not possible if the contour cuts deeper toward the chuck: enter 0.</source>
+      <translation>Un sobrante propio en Z no es posible si el contorno corta más hondo hacia el plato: introduzca 0.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/turning.py" />
+      <source>ALLOWANCE IN Z (0: SAME AS X)</source>
+      <translation>SOBRANTE EN Z (0: COMO EN X)</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/turning.py" />
+      <source>An allowance of {leave} in Z is more than the approach distance of {near}: enter a smaller allowance.</source>
+      <translation>Un sobrante de {leave} en Z es mayor que la distancia de aproximación de {near}: introduzca un sobrante menor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/turning.py" />
       <source>CONTOUR NUMBER</source>
       <translation>NÚMERO DEL CONTORNO</translation>
     </message>

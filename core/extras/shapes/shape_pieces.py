@@ -301,6 +301,7 @@ def _contours(
         rows = read_contour(there[first + 1 : there.index("RF", first)], settings)
         if rows:
             yield rows
+        yield from _bare_contours(there[there.index("RF", first) :], settings)  # G75 may have a shifted one
     else:
         yield from _bare_contours(there, settings)
     yield ()

@@ -59,6 +59,9 @@ STEPS: dict[str, list[Step]] = {
     "face": [("F", {"FROM": 30.0, "AT": -1.5, "STOCK": 1.5}, ())],
     "face by surface speed": [("F", {"FROM": 30.0, "AT": -0.5, "SURF": 90.0}, ())],
     "profile": [("T", {"FROM": 30.0, "ROUGH": 1.0, "LEAVE": 0.25}, PROFILE)],
+    "profile with two allowances": [
+        ("T", {"FROM": 30.0, "ROUGH": 1.0, "LEAVE": 0.25, "ZLEAVE": 0.1}, PROFILE[:5])
+    ],
     "profile at one go": [("T", {"FROM": 30.0}, PROFILE)],
     "profile in a bore": [DRILLED, ("T", {"SIDE": "BORE", "HOLE": 9.0, "ROUGH": 0.5}, BORED)],
     "taper": [("A", {"FROM": 30.0, "SMALL": 10.0, "LONG": 12.0, "ANGLE": 10.0, "ROUGH": 1.0}, ())],

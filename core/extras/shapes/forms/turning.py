@@ -119,6 +119,9 @@ ROUGHING_DEPTH_FIELD = ShapeField(
 ALLOWANCE_FIELD = ShapeField(
     "LEAVE", "FINISHING ALLOWANCE", FieldKind.LENGTH, _leave, allows_zero=True, applies_to=_roughs
 )
+Z_ALLOWANCE_FIELD = ShapeField(
+    "ZLEAVE", "ALLOWANCE IN Z (0: SAME AS X)", FieldKind.LENGTH, 0.0, allows_zero=True, applies_to=_roughs
+)
 ROUGHING_FEED_FIELD = make_feed_field(Operation.TURN, "RFEED", "ROUGHING FEED", only=_roughs)
 COMPENSATION_FIELD = ShapeField(
     "COMP", "NOSE COMPENSATION: D NUMBER", FieldKind.OFFSET, 0.0, allows_zero=True, maximum=32
@@ -189,6 +192,7 @@ def write_contour(
             filled_shape.get_number("RFEED"),
             comp,
             filled_shape.get_number("LABEL"),
+            filled_shape.get_number("ZLEAVE"),
         )
     )
     write_spindle_end(filled_shape, code)
@@ -204,6 +208,8 @@ def _calculate_clear_radius(
 ) -> float:
     """Return the radius, clear of the stock, at which roughing starts and the contour ends."""
     free, radii = _BESIDE[settings.metric], [r for _, r in there]
+    if filled_shape.get_number("ZLEAVE"):
+        free += filled_shape.get_number("LEAVE")  # the shifted contour also ends below this radius
     if is_inside:
         hole = filled_shape.get_number("HOLE") / 2.0 or min(radii)
         return max(0.0, min(hole, *radii) - free)
@@ -228,6 +234,7 @@ def _contour_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator
                 yield FieldError(make_point_label(at), text_)
                 break
         yield from _check_first_move(there, is_inside=inside)
+        yield from _check_z_allowance(filled, setting, is_inside=inside)
     if (
         not inside
         and filled.get_number("FROM")
@@ -240,6 +247,33 @@ def _contour_checks(filled: ShapeInstance, setting: ProgramSettings) -> Iterator
             number=f"{filled.get_number('FROM'):g}",
         )
         yield FieldError(make_point_label(at + 1), words)
+
+
+def _check_z_allowance(
+    filled: ShapeInstance, settings: ProgramSettings, *, is_inside: bool
+) -> Iterator[FieldError]:
+    """Yield an error if roughing cannot leave the separate allowance in Z.
+
+    Roughing follows the shifted contour. If the contour falls toward the chuck, the shifted contour would
+    cut into the part.
+    """
+    leave, side = filled.get_number("ZLEAVE"), -1.0 if is_inside else 1.0
+    if leave > settings.near:
+        yield FieldError(
+            "ZLEAVE",
+            Message(
+                "An allowance of {leave} in Z is more than the approach distance of {near}: "
+                "enter a smaller allowance.",
+                leave=f"{leave:g}",
+                near=f"{settings.near:g}",
+            ),
+        )
+    radii = [side * radius for _, radius in make_outline(filled.contour_points)]
+    if leave and any(b < a - POINT_TOLERANCE for a, b in pairwise(radii)):
+        yield FieldError(
+            "ZLEAVE",
+            "A separate allowance in Z is not possible if the contour cuts deeper toward the chuck: enter 0.",
+        )
 
 
 def _check_first_move(there: Sequence[tuple[float, float]], *, is_inside: bool) -> Iterator[FieldError]:
@@ -352,6 +386,7 @@ TURNING_SHAPE = Shape(
         ShapeField("HOLE", "HOLE DIAMETER", FieldKind.DIAMETER, None, applies_to=lambda v: not _outside(v)),
         ROUGHING_DEPTH_FIELD,
         ALLOWANCE_FIELD,
+        Z_ALLOWANCE_FIELD,
         ROUGHING_FEED_FIELD,
         make_feed_field(Operation.FINISH),
         make_rpm_field(Operation.TURN, make_diameter_reader("FROM")),

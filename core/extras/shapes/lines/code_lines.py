@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -105,6 +106,8 @@ class ContourTurning(NamedTuple):
     ``clear_radius``, which is clear of the stock. ``compensation_number`` is the offset number of the nose
     compensation; 0 means no compensation. ``contour_label_number`` is a number for the contour in languages
     that label contours.
+    ``finish_allowance`` is left at a right angle to the contour. If ``finish_allowance_z`` is not 0, it is
+    the allowance in Z, and ``finish_allowance`` is the allowance in X, as a radius.
     """
 
     points: Sequence[ContourPoint]
@@ -116,6 +119,22 @@ class ContourTurning(NamedTuple):
     roughing_feed: float = 0.0
     compensation_number: float = 0.0
     contour_label_number: float = 0.0
+    finish_allowance_z: float = 0.0
+
+    def shift_points_by_allowances(self) -> list[ContourPoint]:
+        """Return the points shifted by the allowances in X (a radius) and Z, away from the finished part."""
+        shift_x = -self.finish_allowance if self.is_inside else self.finish_allowance
+        shifted = [
+            replace(
+                row,
+                x=None if row.x is None else row.x + 2.0 * shift_x,
+                z=None if row.z is None else row.z + self.finish_allowance_z,
+            )
+            for row in self.points
+        ]
+        z, radius = resolve_contour_points(self.points)[0]
+        first = replace(shifted[0], x=2.0 * (radius + shift_x), z=z + self.finish_allowance_z)
+        return [first, *shifted[1:]]
 
 
 class TappingCycle(NamedTuple):
@@ -261,14 +280,7 @@ class CodeWriter:
         there = resolve_contour_points(turning.points)
         first = there[0]
         if turning.roughing_depth:
-            self.write_feed_line(turning.roughing_feed)
-            self.append_lines(
-                f"G75{self.format_z(turning.roughing_depth, 'I')}"
-                f"{self.format_z(turning.finish_allowance, 'U')}F{_feed(turning.roughing_feed)}"
-            )
-            self.append_lines(self.format_point(first[1], first[0]))
-            self.write_contour(turning.points)
-            self.append_lines("RF")
+            self._write_roughing(turning)
             self.write_rapid(x=first[1])
         if turning.compensation_number:
             self.write_feed_line(turning.feed)
@@ -281,6 +293,21 @@ class CodeWriter:
         self.write_contour(turning.points)
         if abs(turning.clear_radius - there[-1][1]) > 1e-9:
             self.write_cut(x=turning.clear_radius)
+
+    def _write_roughing(self, turning: ContourTurning) -> None:
+        """Write G75 and its contour, which is shifted if the allowances in X and Z differ."""
+        points, allowance = turning.points, turning.finish_allowance
+        if turning.finish_allowance_z:
+            points, allowance = turning.shift_points_by_allowances(), 0.0
+        z, radius = resolve_contour_points(points)[0]
+        self.write_feed_line(turning.roughing_feed)
+        self.append_lines(
+            f"G75{self.format_z(turning.roughing_depth, 'I')}"
+            f"{self.format_z(allowance, 'U')}F{_feed(turning.roughing_feed)}"
+        )
+        self.append_lines(self.format_point(radius, z))
+        self.write_contour(points)
+        self.append_lines("RF")
 
     def write_contour(self, points: Sequence[ContourPoint]) -> None:
         """Write the lines of a contour from its first point, which the tool has already reached."""

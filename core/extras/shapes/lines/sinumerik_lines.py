@@ -140,8 +140,8 @@ class SinumerikCodeWriter(CodeWriter):
         if turning.roughing_depth:
             fast = format_sinumerik_number(turning.roughing_feed, 6)
             words = (
-                f"{format_sinumerik_number(turning.roughing_depth)}, , , "
-                f"{format_sinumerik_number(turning.finish_allowance)}, {fast}, {fast}"
+                f"{format_sinumerik_number(turning.roughing_depth)}, {_format_allowances(turning)}, "
+                f"{fast}, {fast}"
             )
             self.append_lines(
                 Message(
@@ -252,3 +252,11 @@ class SinumerikCodeWriter(CodeWriter):
     def write_constant_rpm(self) -> None:
         """Write the switch back to constant rpm before the next tool call."""
         self.append_lines("G97")
+
+
+def _format_allowances(turning: ContourTurning) -> str:
+    """Return FALZ, FALX and FAL of CYCLE95; FALZ and FALX are empty if one allowance applies to both axes."""
+    leave = format_sinumerik_number(turning.finish_allowance)
+    if not turning.finish_allowance_z:
+        return f", , {leave}"
+    return f"{format_sinumerik_number(turning.finish_allowance_z)}, {leave}, "
