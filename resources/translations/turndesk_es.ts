@@ -2005,6 +2005,21 @@
     </message>
     <message>
       <location filename="" />
+      <source>POINT USED FOR TOUCH-OFF: INNER</source>
+      <translation>INTERIOR</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>POINT USED FOR TOUCH-OFF: MIDDLE</source>
+      <translation>CENTRO</translation>
+    </message>
+    <message>
+      <location filename="" />
+      <source>POINT USED FOR TOUCH-OFF: OUTER</source>
+      <translation>EXTERIOR</translation>
+    </message>
+    <message>
+      <location filename="" />
       <source>PROGRAM BY SHAPES</source>
       <translation>PROGRAMA CON FORMAS</translation>
     </message>
@@ -22314,6 +22329,61 @@
       <translation>un agujero en el centro del husillo, de una vez o con picoteo</translation>
     </message>
     <message>
+      <location filename="core/extras/shapes/forms/face_grooving.py" />
+      <source>DWELL AT BOTTOM</source>
+      <translation>PAUSA EN EL FONDO</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/face_grooving.py" />
+      <source>FACE AT Z</source>
+      <translation>CARA EN Z</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/face_grooving.py" />
+      <source>FACE GROOVE</source>
+      <translation>RANURA FRONTAL</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/face_grooving.py" />
+      <source>INNER DIAMETER</source>
+      <translation>DIÁMETRO INTERIOR</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/face_grooving.py" />
+      <source>OUTER DIAMETER</source>
+      <translation>DIÁMETRO EXTERIOR</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/face_grooving.py" />
+      <source>POINT USED FOR TOUCH-OFF</source>
+      <translation>PUNTO DE REFERENCIA</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/face_grooving.py" />
+      <source>The groove is {groove} wide, but the blade is {blade} wide: use a narrower blade.</source>
+      <translation>La ranura tiene un ancho de {groove}, pero la cuchilla tiene {blade}: use una cuchilla más estrecha.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/face_grooving.py" />
+      <source>The inner diameter {inner} must be less than the outer diameter {outer}.</source>
+      <translation>El diámetro interior {inner} debe ser menor que el diámetro exterior {outer}.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/face_grooving.py" />
+      <source>The tool data of T{tool} describes a blade that cuts diameters: use another blade, or enter tip quadrant 7 for a blade that cuts faces.</source>
+      <translation>Los datos de T{tool} describen una cuchilla que corta diámetros: use otra cuchilla, o introduzca el cuadrante de punta 7 para una cuchilla que corta caras.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/face_grooving.py" />
+      <source>With a peck depth of {peck}, the groove needs more than {count} pecks: enter a larger depth.</source>
+      <translation>Con una profundidad de picada de {peck}, la ranura necesita más de {count} picadas: introduzca una profundidad mayor.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/shapes/forms/face_grooving.py" />
+      <source>a ring groove or a recess in the face, cut along Z from the outer to the inner diameter</source>
+      <translation>una ranura anular o un rebaje en la cara, cortados a lo largo de Z desde el diámetro exterior hasta el interior</translation>
+    </message>
+    <message>
       <location filename="core/extras/shapes/forms/grooving.py" />
       <source>A blade cannot reach under a wall that overhangs the groove: enter 0 or more.</source>
       <translation>Una cuchilla no llega debajo de una pared que cubre la ranura: introduzca 0 o más.</translation>
@@ -22367,11 +22437,6 @@
       <location filename="core/extras/shapes/forms/grooving.py" />
       <source>DISTANCE FROM Z0 TO START</source>
       <translation>DISTANCIA DE Z0 AL INICIO</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/grooving.py" />
-      <source>DWELL AT BOTTOM</source>
-      <translation>PAUSA EN EL FONDO</translation>
     </message>
     <message>
       <location filename="core/extras/shapes/forms/grooving.py" />
@@ -22677,11 +22742,6 @@
       <location filename="core/extras/shapes/forms/turning.py" />
       <source>CONTOUR NUMBER</source>
       <translation>NÚMERO DEL CONTORNO</translation>
-    </message>
-    <message>
-      <location filename="core/extras/shapes/forms/turning.py" />
-      <source>FACE AT Z</source>
-      <translation>CARA EN Z</translation>
     </message>
     <message>
       <location filename="core/extras/shapes/forms/turning.py" />
@@ -32970,8 +33030,8 @@
     </message>
     <message>
       <location filename="core/proving/checks/cut_checks.py" />
-      <source>{tool} turns {depth} deep along Z; this type of blade allows at most {limit}.</source>
-      <translation>{tool} cilindra {depth} de profundidad a lo largo de Z; este tipo de cuchilla admite como máximo {limit}.</translation>
+      <source>{tool} turns {depth} deep along {axis}; this type of blade allows at most {limit}.</source>
+      <translation>{tool} cilindra {depth} de profundidad a lo largo de {axis}; este tipo de cuchilla admite como máximo {limit}.</translation>
     </message>
     <message>
       <location filename="core/proving/checks/edge_checks.py" />
@@ -33755,8 +33815,8 @@
     </message>
     <message>
       <location filename="core/proving/checks/part_checks.py" />
-      <source>The blade turns along Z by more than its width. The depth of cut is more than .01 in for a parting blade, or more than .8 of the blade width for a grooving blade (Ingersoll's limit).</source>
-      <translation>La cuchilla cilindra a lo largo de Z más que su ancho. La profundidad de corte es de más de .01 in en una cuchilla de tronzar, o de más de .8 del ancho en una de ranurar (límite de Ingersoll).</translation>
+      <source>The blade turns along Z by more than its width. The depth of cut is more than .01 in for a parting blade, or more than .8 of the blade width for a grooving blade (Ingersoll's limit). For a face grooving blade (tip quadrant 7), the same applies to X.</source>
+      <translation>La cuchilla cilindra a lo largo de Z más que su ancho. La profundidad de corte es de más de .01 in en una cuchilla de tronzar, o de más de .8 del ancho en una de ranurar (límite de Ingersoll). En una cuchilla de ranura frontal (cuadrante de punta 7), lo mismo vale para X.</translation>
     </message>
     <message>
       <location filename="core/proving/checks/part_checks.py" />

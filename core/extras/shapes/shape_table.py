@@ -8,6 +8,7 @@ from core.extras.shapes.calculators import SPEED_CALCULATOR, TAPER_CALCULATOR, T
 from core.extras.shapes.editor_shape import Shape
 from core.extras.shapes.forms.bar_work import BAR_LOOP_SHAPE, PARTING_SHAPE, SINUMERIK_BAR_LOOP_SHAPE
 from core.extras.shapes.forms.drilling import DRILLING_SHAPE
+from core.extras.shapes.forms.face_grooving import FACE_GROOVE_SHAPE
 from core.extras.shapes.forms.grooving import GROOVE_SHAPE, SINUMERIK_GROOVE_SHAPE
 from core.extras.shapes.forms.live_tools import (
     CROSS_HOLES_SHAPE,
@@ -46,6 +47,7 @@ SHAPES_BY_KEY: dict[str, Shape] = {
     "A": TAPER_SHAPE,
     "K": EDGE_SHAPE,
     "G": GROOVE_SHAPE,
+    "V": FACE_GROOVE_SHAPE,
     "R": THREAD_SHAPE,
     "D": DRILLING_SHAPE,
     "B": BORE_SHAPE,
@@ -96,6 +98,7 @@ SINUMERIK_SHAPES: dict[str, Shape] = {
     "A": _labelled(TAPER_SHAPE),
     "K": EDGE_SHAPE,
     "G": SINUMERIK_GROOVE_SHAPE,
+    "V": FACE_GROOVE_SHAPE,
     "R": SINUMERIK_THREAD_SHAPE,
     "D": DRILLING_SHAPE,
     "B": _labelled(BORE_SHAPE),

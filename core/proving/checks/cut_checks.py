@@ -290,7 +290,7 @@ def check_cut_size(
     if move.block_kind is BlockKind.THREAD:
         return
     if shape.kind in GROOVING_TOOLS:
-        yield from _check_blade_turning(move, cut, shape, tool)
+        yield from _check_blade_turning(move, cut, shape, tool, is_face=cutter.side is CutSide.FACE)
     elif shape.kind in INSERT_TOOLS:
         yield from _check_depth(move, cut, shape, cutter, tool, is_stock_specified=is_stock_specified)
 
@@ -360,22 +360,29 @@ def _is_z_move(move: TipMove) -> bool:
     return abs(z1 - z0) > abs(r1 - r0)
 
 
-def _check_blade_turning(move: TipMove, cut: Cut, shape: ToolShape, tool: int) -> Iterator[Found]:
-    """Check that a blade does not turn too far along Z.
+def _check_blade_turning(
+    move: TipMove, cut: Cut, shape: ToolShape, tool: int, *, is_face: bool
+) -> Iterator[Found]:
+    """Check that a blade does not turn too far along Z, or a face grooving blade (``is_face``) along X.
 
-    A cut along Z that is longer than the width of the blade must not be deeper than the blade can bend. A
-    chamfer at 45° and the finishing cut on the wall of a groove are permitted.
+    A cut to the side that is longer than the width of the blade must not be deeper than the blade can bend.
+    A chamfer at 45° and the finishing cut on the wall of a groove are permitted.
     """
     (z0, r0), (z1, r1) = move.points[0], move.points[-1]
-    if abs(z1 - z0) <= 2.0 * abs(r1 - r0):
+    along, across = abs(z1 - z0), abs(r1 - r0)
+    deep, long = cut.depth_mm, cut.width_mm
+    if is_face:
+        along, across, deep, long = across, along, cut.width_mm, across
+    if along <= 2.0 * across:
         return
     limit = _BLADE_FINISH if shape.kind is ToolKind.PARTING else _TURNING_WIDTH_FRACTION * shape.width
-    if cut.depth_mm > limit > 0.0 and cut.width_mm > shape.width:
+    if deep > limit > 0.0 and long > shape.width:
         text = move.modal.format_length
         words = Message(
-            "{tool} turns {depth} deep along Z; this type of blade allows at most {limit}.",
+            "{tool} turns {depth} deep along {axis}; this type of blade allows at most {limit}.",
             tool=format_edge_name(tool),
-            depth=text(cut.depth_mm),
+            depth=text(deep),
+            axis="X" if is_face else "Z",
             limit=text(limit),
         )
         yield Found("blade-turns", words)

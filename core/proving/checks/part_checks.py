@@ -280,7 +280,8 @@ PART_CHECKS: Mapping[str, PartCheck] = {
         "A parting or grooving blade turns along Z.",
         "The blade turns along Z by more than its width. The depth of cut is more than .01 "
         "in for a parting blade, or more than .8 of the blade width for a grooving blade "
-        "(Ingersoll's limit).",
+        "(Ingersoll's limit). For a face grooving blade (tip quadrant 7), the same applies to "
+        "X.",
         "Check the tool number; widen a groove with adjacent plunges.",
     ),
     "chip-load": PartCheck(
