@@ -20750,6 +20750,11 @@
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />
+      <source>Set block delete as on the other control.</source>
+      <translation>Ajuste el salto de bloque como en el otro control.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
       <source>Set the tool offset for part zero and remove this G92, or move to an absolute X and Z before it.</source>
       <translation>Ajuste el corrector de herramienta para el cero de pieza y elimine este G92, o muévase antes a una X y una Z absolutas.</translation>
     </message>
@@ -21337,6 +21342,11 @@
       <location filename="core/extras/convert/conversion_messages.py" />
       <source>{word}: the line is converted as if block delete were off, and / is left out.</source>
       <translation>{word}: la línea se convierte como si el salto de bloque estuviera desactivado, y / se omite.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/convert/conversion_messages.py" />
+      <source>{word}: the new lines are skipped if block delete is on, as in the old program.</source>
+      <translation>{word}: las líneas nuevas se omiten si el salto de bloque está activo, como en el programa original.</translation>
     </message>
     <message>
       <location filename="core/extras/convert/conversion_messages.py" />

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from core.extras.convert.conversion_messages import make_error
+from core.extras.convert.conversion_messages import make_error, make_note
 from core.extras.convert.omniturn_writer import OmniTurnWriter, WrittenLine
 from core.extras.convert.path_steps import MOVE_KINDS
 from core.extras.convert.proof.conversion_proof import Proof, ReportLine, ignore_line, prove
+from core.extras.convert.source_lines import split_lines
 from core.extras.convert.source_options import ConversionOptions
 from core.extras.convert.source_reader import read_source
 from core.interpreter.shared.job_setup import ControlLimits
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
+
+_SWITCH = re.compile(r"/\d?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +70,10 @@ def convert_program(
         return Conversion((), tuple(findings), Proof())
     if not any(step.kind in MOVE_KINDS for step in state.steps):
         return Conversion((), (*findings, make_error(0, 0, "file-empty").diagnostic), Proof())
+    deletable = find_deletable_lines(texts, options)
+    kept = _convert_with_block_delete(texts, options, limits, deletable, report_line) if deletable else None
+    if kept is not None:
+        return kept
     metric = bool(state.is_metric)
     writer = OmniTurnWriter(metric, options)
     try:
@@ -82,3 +90,53 @@ def convert_program(
         report_line=report_line,
     )
     return Conversion(lines, (*findings, *writer.warnings, *proof.errors), proof)
+
+
+def find_deletable_lines(texts: Sequence[str], options: ConversionOptions) -> frozenset[int]:
+    """Return the lines that begin with /, or none if they have several numbers, such as /2 and /3.
+
+    OmniTurn has only one switch for block delete.
+    """
+    lines = [each for each in split_lines(texts, options.control) if each.has_block_delete]
+    switches = {_SWITCH.match(each.code.strip())[0] for each in lines}  # type: ignore[index]
+    return frozenset(each.line_number for each in lines) if len(switches) == 1 else frozenset()
+
+
+def _convert_with_block_delete(
+    texts: Sequence[str],
+    options: ConversionOptions,
+    limits: ControlLimits,
+    deletable: frozenset[int],
+    report_line: ReportLine,
+) -> Conversion | None:
+    """Convert a program whose lines with / keep their /, or return None if this cannot be proved.
+
+    The program is proved twice: with all lines, and without the lines that block delete skips.
+    """
+    without = ["" if line in deletable else text for line, text in enumerate(texts, start=1)]
+    (state, findings), (other, other_findings) = read_source(texts, options), read_source(without, options)
+    metric = bool(state.is_metric)
+    if any(each.severity is Severity.ERROR for each in other_findings) or bool(other.is_metric) is not metric:
+        return None
+    for repeats_axes in (True, False):  # a move after these lines has both axes, or only those of its line
+        writer = OmniTurnWriter(metric, options, deletable_lines=deletable, repeats_axes=repeats_axes)
+        try:
+            writer.write_steps(state.steps)
+        except ProgramError:
+            return None
+        text = "".join(f"{each.text}\n" for each in writer.lines)
+        sources = [each.source_line_number for each in writer.lines]
+        proof = prove(text, sources, state.steps, limits, is_metric=metric, report_line=report_line)
+        skipped = prove(text, sources, other.steps, limits, is_metric=metric, has_block_delete=True)
+        if not proof.errors and not skipped.errors:
+            shown = [_note_block_delete(each, texts) for each in findings]
+            return Conversion(tuple(writer.lines), (*shown, *writer.warnings), proof)
+    return None
+
+
+def _note_block_delete(finding: Diagnostic, texts: Sequence[str]) -> Diagnostic:
+    """Return a note instead of the warning that / is left out, and any other finding unchanged."""
+    if finding.code != "block-delete":
+        return finding
+    word = texts[finding.line - 1].strip()
+    return make_note(finding.line, finding.column, "block-delete-kept", word=word)

@@ -340,6 +340,10 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
     ),
 }
 NOTES: Mapping[str, tuple[str, str]] = {
+    "block-delete-kept": (
+        "{word}: the new lines are skipped if block delete is on, as in the old program.",
+        "Set block delete as on the other control.",
+    ),
     "no-change": (
         "{word} changes nothing at this point, so the converted program does not contain it.",
         "No action is needed.",

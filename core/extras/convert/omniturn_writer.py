@@ -54,6 +54,9 @@ class OmniTurnWriter:
         None  # last rapid: line, start, G00
     )
 
+    deletable_lines: frozenset[int] = frozenset()  # source lines that block delete skips
+    repeats_axes: bool = True  # after these lines, the next move has both axes
+
     # --- numbers
 
     def round_length(self, value: float, *, is_diameter: bool = False) -> float:
@@ -91,9 +94,21 @@ class OmniTurnWriter:
         unit = "G71" if self.is_metric else "G70"
         first = PathStep(StepKind.M, steps[0].line if steps else 0)
         self.append_line(f"G90G94F{number(rate, 3)}{unit}G72", first)
-        at = 0
+        at, was_deletable = 0, False
         while at < len(steps):
+            if (steps[at].line in self.deletable_lines) is not was_deletable:
+                was_deletable = not was_deletable
+                self._forget_modes()
             at += self._step(steps, at)
+        self.lines[1:] = [
+            each._replace(text=f"/{each.text}") if each.source_line_number in self.deletable_lines else each
+            for each in self.lines[1:]
+        ]
+
+    def _forget_modes(self) -> None:
+        """Write the axes and the feed again, because block delete may skip the lines before."""
+        self.needs_both_axes = self.needs_both_axes or self.repeats_axes
+        self.is_rapid, self.feed, self.is_feed_per_rev = False, None, None
 
     def _step(self, steps: Sequence[PathStep], at: int) -> int:
         """Write the lines for the step at index ``at``; return how many steps these lines cover."""

@@ -126,9 +126,9 @@ def test_each_letter_of_each_line_is_used_or_reported(control: str) -> None:
     ("body", "found"),
     [
         ("T0211", ("tool-of-offset", 6, 1)),
-        ("/G01Z0", ("block-delete", 6, 1)),
+        ("/G01Z0", ("block-delete-kept", 6, 1)),
         ("N10 /G01Z0", ("bad-word", 6, 5)),
-        ("/IF[1EQ1]GOTO9\nN9", ("block-delete", 6, 1)),
+        ("/IF[1EQ1]GOTO9\nN9", ("block-delete-kept", 6, 1)),
         ("G04P50", ("dwell-short", 6, 4)),
         ("G04P0", ("no-change", 6, 4)),
         ("G04P-5", ("dwell-negative", 6, 4)),

@@ -61,13 +61,14 @@ def prove(
     is_metric: bool,
     dialect: Dialect = Dialect.OMNITURN,
     resolution_mm: float = 0.0,
+    has_block_delete: bool = False,
     report_line: ReportLine = ignore_line,
 ) -> Proof:
     """Interpret the converted program and compare it with the steps of the source.
 
     ``source_line_numbers`` contains the source line of each line of ``text``. ``resolution_mm`` is the
-    resolution of the coordinates; 0 means the resolution of OmniTurn. ``report_line`` is called with the
-    source line of each interpreted block.
+    resolution of the coordinates; 0 means the resolution of OmniTurn. If ``has_block_delete`` is True, lines
+    that begin with / are skipped. ``report_line`` is called with the source line of each interpreted block.
     """
     # Fixed point 1 replaces machine home; its odd values differ from any programmed position.
     home = _FIXED_POINT if dialect is Dialect.SINUMERIK else (0.0, 0.0)
@@ -78,7 +79,7 @@ def prove(
     nose = dict.fromkeys(range(1, 33), SecondaryOffset())
     done = interpret_program(
         ProgramSource("converted", text, dialect),
-        InterpreterSetup(tools=tools, secondary=nose, limits=limits),
+        InterpreterSetup(tools=tools, secondary=nose, limits=limits, block_delete=has_block_delete),
     )
     blocks = []
     for block in done.generate_blocks():
