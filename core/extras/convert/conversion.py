@@ -75,7 +75,7 @@ def convert_program(
     if kept is not None:
         return kept
     metric = bool(state.is_metric)
-    writer = OmniTurnWriter(metric, options)
+    writer = OmniTurnWriter(metric, options, title=find_program_title(texts, options))
     try:
         writer.write_steps(state.steps)
     except ProgramError as error:
@@ -90,6 +90,14 @@ def convert_program(
         report_line=report_line,
     )
     return Conversion(lines, (*findings, *writer.warnings, *proof.errors), proof)
+
+
+def find_program_title(texts: Sequence[str], options: ConversionOptions) -> str:
+    """Return the program number of the main program, such as O1000, or an empty string."""
+    for line in split_lines(texts, options.control):
+        if line.code.strip():
+            return f"O{line.o_word}" if line.o_word.isdecimal() and not line.o_keyword else ""
+    return ""
 
 
 def find_deletable_lines(texts: Sequence[str], options: ConversionOptions) -> frozenset[int]:
@@ -118,8 +126,11 @@ def _convert_with_block_delete(
     metric = bool(state.is_metric)
     if any(each.severity is Severity.ERROR for each in other_findings) or bool(other.is_metric) is not metric:
         return None
+    title = find_program_title(texts, options)
     for repeats_axes in (True, False):  # a move after these lines has both axes, or only those of its line
-        writer = OmniTurnWriter(metric, options, deletable_lines=deletable, repeats_axes=repeats_axes)
+        writer = OmniTurnWriter(
+            metric, options, deletable_lines=deletable, repeats_axes=repeats_axes, title=title
+        )
         try:
             writer.write_steps(state.steps)
         except ProgramError:

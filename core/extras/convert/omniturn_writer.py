@@ -55,6 +55,7 @@ class OmniTurnWriter:
     )
 
     deletable_lines: frozenset[int] = frozenset()  # source lines that block delete skips
+    title: str = ""  # program number, for the comment of the first line
     repeats_axes: bool = True  # after these lines, the next move has both axes
 
     # --- numbers
@@ -92,7 +93,7 @@ class OmniTurnWriter:
         """Append the lines of all steps. Raises ProgramError if a step cannot be written."""
         rate = self.options.rapid / (1.0 if self.is_metric else MM_PER_INCH)
         unit = "G71" if self.is_metric else "G70"
-        first = PathStep(StepKind.M, steps[0].line if steps else 0)
+        first = PathStep(StepKind.END, steps[0].line if steps else 0, comment=self.title)
         self.append_line(f"G90G94F{number(rate, 3)}{unit}G72", first)
         at, was_deletable = 0, False
         while at < len(steps):

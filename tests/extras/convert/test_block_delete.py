@@ -1,11 +1,15 @@
-"""Lines with / of other controls: they keep their / if both settings of block delete can be proved."""
+"""Block delete and program numbers of other controls.
+
+Lines with / keep their / if both settings of block delete can be proved.
+"""
 
 from __future__ import annotations
 
 import pytest
 
-from core.extras.convert.conversion import find_deletable_lines
+from core.extras.convert.conversion import convert_program, find_deletable_lines
 from core.extras.convert.source_options import ConversionOptions, SourceControl
+from core.interpreter.shared.job_setup import ControlLimits
 from tests.extras.convert.sources import FANUC, converted
 
 
@@ -60,3 +64,23 @@ def test_lines_with_one_switch_are_deletable() -> None:
     assert find_deletable_lines(["/X1", "X2", "/N30X3"], options) == {1, 3}
     assert find_deletable_lines(["/1X1", "/2X2"], options) == set()
     assert find_deletable_lines(["X1"], options) == set()
+
+
+@pytest.mark.parametrize(
+    ("begin", "comment"),
+    [
+        ("%\nO1000(PIN)\n", "(L4 O1000)"),
+        ("O0042\n", "(L3 O0042)"),
+        ("(PIN)\n:77\n", "(L4 O77)"),
+        ("N5G40\nO9\n", "(L4)"),  # not at the start of the program
+        ("", "(L2)"),
+    ],
+)
+def test_first_line_names_the_program_number(begin: str, comment: str) -> None:
+    """L is the line of T0101, the second line of ``FANUC``, because it is the first with an effect."""
+    options = ConversionOptions(SourceControl("fanuc-a"))
+    text = f"{begin}{FANUC}G01Z0\nM30\n"
+    done = convert_program(text.splitlines(), options, ControlLimits())
+    first = done.lines[0].text
+    assert first[first.index("(") :] == comment
+    assert "O" not in converted(text).lines[0].text

@@ -28,7 +28,7 @@ def test_the_program_is_written_once_and_can_be_proved(
 ) -> None:
     made = tmp_path / "part.nc"
     assert turndesk("convert", part, "--out", made).status == 0
-    assert made.read_text().splitlines()[0] == "G90G94F300G70G72(L4)"
+    assert made.read_text().splitlines()[0] == "G90G94F300G70G72(L4 O1)"
     assert turndesk("prove", made).status == 0
     again = turndesk("convert", part, "--out", made)
     assert (again.status, again.code) == (2, "file-exists")
