@@ -9530,6 +9530,11 @@
     </message>
     <message>
       <location filename="app/extras/drawings/drawing_plan.py" />
+      <source>{drawing} is only {wrong}. Its unit may be {wrong2}: choose MM or INCH.</source>
+      <translation>{drawing} mide sólo {wrong}. Su unidad puede ser {wrong2}: elija MM o INCH.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/drawings/drawing_plan.py" />
       <source>{drawing} is {wrong}, which is too large for this machine. The drawing fits if its unit is {wrong2}: choose {wrong3}.</source>
       <translation>{drawing} mide {wrong}, demasiado para esta máquina. El dibujo cabe si su unidad es {wrong2}: elija {wrong3}.</translation>
     </message>
@@ -21485,6 +21490,16 @@
     </message>
     <message>
       <location filename="core/extras/drawings/drawing_file.py" />
+      <source>{path} ends too early: copy the file or save the drawing again.</source>
+      <translation>{path} termina demasiado pronto: copie el archivo o guarde el dibujo de nuevo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_file.py" />
+      <source>{path} is damaged at line {line} of the file: save the drawing again.</source>
+      <translation>{path} está dañado en la línea {line} del archivo: guarde el dibujo de nuevo.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_file.py" />
       <source>{path} is damaged or is not a {kind} file: save the drawing again.</source>
       <translation>{path} está dañado o no es un archivo {kind}: guarde el dibujo otra vez.</translation>
     </message>
@@ -21509,6 +21524,11 @@
       <translation>{path} necesita más memoria de la permitida para un dibujo. Guarde solo el contorno de la pieza.</translation>
     </message>
     <message>
+      <location filename="core/extras/drawings/drawing_file.py" />
+      <source>{path} uses the block {block}, but does not contain it: explode the blocks in the CAD program, and save the drawing again.</source>
+      <translation>{path} usa el bloque {block}, pero no lo contiene: descomponga los bloques en el programa de CAD y guarde el dibujo de nuevo.</translation>
+    </message>
+    <message>
       <location filename="core/extras/drawings/drawing_placement.py" />
       <source>CENTRE LINE {found_count}</source>
       <translation>LÍNEA DE EJE {found_count}</translation>
@@ -21520,8 +21540,18 @@
     </message>
     <message>
       <location filename="core/extras/drawings/drawing_placement.py" />
+      <source>PROFILE ENDS</source>
+      <translation>EXTREMOS DEL PERFIL</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_placement.py" />
       <source>{drawing} has no axis {name}: choose {present}, or LINE and a line number.</source>
       <translation>{drawing} no tiene el eje {name}: elija {present}, o LINE y un número de línea.</translation>
+    </message>
+    <message>
+      <location filename="core/extras/drawings/drawing_placement.py" />
+      <source>{drawing} has no center line, and both ends of the profile are at the same distance from Y 0: choose the axis {ends} if the profile ends on the spindle axis, or else Y 0.</source>
+      <translation>{drawing} no tiene línea de eje, y los dos extremos del perfil están a la misma distancia de Y 0: elija el eje {ends} si el perfil termina en el eje del husillo, o si no Y 0.</translation>
     </message>
     <message>
       <location filename="core/extras/drawings/drawing_placement.py" />

@@ -25,6 +25,7 @@ from core.extras.drawings.drawing_placement import (
     find_axes,
     find_contours,
     place_elements,
+    require_clear_axis,
     select_axis,
 )
 from core.extras.drawings.profile_description import propose_program_fields
@@ -234,6 +235,9 @@ class _PlanBuilder:
 
     def _view(self, layer: str, unit: float) -> None:
         known = find_axes(self.drawing, layer)
+        self.choices["AXIS"] = tuple(each.name for each in known)
+        if "AXIS" not in self.request.entered_values:
+            require_clear_axis(self.drawing, layer)
         axis = select_axis(self.drawing, self.get_entry_text("AXIS", known[0].name), layer)
         self.choices["AXIS"] = tuple(dict.fromkeys([*(each.name for each in known), axis.name]))
         front = FaceEnd(self.get_entry_text("FRONT", FaceEnd.RIGHT))
@@ -266,20 +270,25 @@ class _PlanBuilder:
         return self.nets[int(number) - 1]
 
     def _check_unit(self, net: ElementGroup) -> None:
-        """Raise DrawingError if the contour fits the machine only in a unit other than the file's unit."""
+        """Raise DrawingError if the size of the contour suggests a unit other than the file's unit."""
         assert self.view is not None
         if "DUNIT" in self.request.entered_values:
             return
         if (
             wrong := detect_wrong_unit(net, self.view.unit, self.request.settings.shop.travel_mm)
         ) is not None:
-            words = Message(
+            template = (
                 "{drawing} is {wrong}, which is too large for this machine. The drawing fits if its "
-                "unit is {wrong2}: choose {wrong3}.",
+                "unit is {wrong2}: choose {wrong3}."
+                if wrong.is_too_large
+                else "{drawing} is only {wrong}. Its unit may be {wrong2}: choose MM or INCH."
+            )
+            words = Message(
+                template,
                 drawing=self.drawing.name,
-                wrong=wrong[0],
-                wrong2=wrong[1],
-                wrong3=wrong[1],
+                wrong=wrong.size,
+                wrong2=wrong.unit_name,
+                wrong3=wrong.unit_name,
             )
             raise DrawingError(words, "wrong-unit")
 

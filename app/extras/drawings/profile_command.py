@@ -176,6 +176,10 @@ def _run(args: argparse.Namespace) -> int:
             ),
             "no-layer",
         )
+    if not args.list and not args.axis:
+        from core.extras.drawings.drawing_placement import require_clear_axis
+
+        require_clear_axis(drawing, args.layer)
     view = _view(drawing, args)
     found = _contours(drawing, view, args)
     if args.list:
@@ -198,20 +202,19 @@ def _run(args: argparse.Namespace) -> int:
 
 
 def _check_unit(drawing: Drawing, view: DrawingPlacement, net: ElementGroup, machine: Machine) -> None:
-    """Raise CommandError if the contour fits the machine only in a unit other than that of its file."""
+    """Raise CommandError if the size of the contour suggests a unit other than that of its file."""
     from app.extras.shapes.shapes_setup import make_shop_data
     from core.extras.drawings.unit_check import detect_wrong_unit
 
     if (wrong := detect_wrong_unit(net, view.unit, make_shop_data(machine, {}).travel_mm)) is not None:
-        size, name = wrong[0], wrong[1].lower()
-        words = Message(
+        name = wrong.unit_name.lower()
+        template = (
             "{drawing} is {size}, which is too large for this machine; with {name} as the "
-            "unit, the drawing would fit, so use --unit {name2}",
-            drawing=drawing.name,
-            size=size,
-            name=name,
-            name2=name,
+            "unit, the drawing would fit, so use --unit {name2}"
+            if wrong.is_too_large
+            else "{drawing} is only {size}; its unit may be {name}, so use --unit mm or --unit {name2}"
         )
+        words = Message(template, drawing=drawing.name, size=wrong.size, name=name, name2=name)
         raise CommandError(words, "wrong-unit")
 
 

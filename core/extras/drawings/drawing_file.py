@@ -5,6 +5,7 @@ Empty and oversized files are rejected before they are read.
 
 from __future__ import annotations
 
+import re
 from functools import partial
 from pathlib import Path
 
@@ -13,6 +14,10 @@ from core.input_file import BYTES_PER_MB, TooLargeError, convert_exceptions, rea
 from core.message import Message
 
 DRAWING_SUFFIXES = (".dxf", ".svg")
+
+_MISSING_BLOCK = re.compile(r'Required block definition for "(.+?)"')  # texts of ezdxf
+_TRUNCATED = re.compile(r"missing (ENDSEC|EOF)")
+_DAMAGED_LINE = re.compile(r"(?:at|near) line:? (\d+)")
 
 
 def has_drawing_suffix(name: str) -> bool:
@@ -62,6 +67,9 @@ def _unreadable(path: Path, error: Exception) -> DrawingError:
             path=path.name,
         )
         return DrawingError(words, "out-of-memory")
+    damage = _find_damage(path, error)
+    if damage is not None:
+        return DrawingError(damage, "damaged")
     kind = path.suffix[1:].upper()
     return DrawingError(
         Message(
@@ -69,3 +77,23 @@ def _unreadable(path: Path, error: Exception) -> DrawingError:
         ),
         "damaged",
     )
+
+
+def _find_damage(path: Path, error: Exception) -> Message | None:
+    """Return the message for damage whose place the library names, or None if it names no place."""
+    if (block := _MISSING_BLOCK.search(str(error))) is not None:
+        return Message(
+            "{path} uses the block {block}, but does not contain it: explode the blocks in the CAD program, "
+            "and save the drawing again.",
+            path=path.name,
+            block=block[1],
+        )
+    if (line := _DAMAGED_LINE.search(str(error))) is not None:
+        return Message(
+            "{path} is damaged at line {line} of the file: save the drawing again.",
+            path=path.name,
+            line=line[1],
+        )
+    if _TRUNCATED.search(str(error)):
+        return Message("{path} ends too early: copy the file or save the drawing again.", path=path.name)
+    return None

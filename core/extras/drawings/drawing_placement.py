@@ -58,6 +58,10 @@ class DrawingAxis(NamedTuple):
     direction: Point
 
 
+PROFILE_ENDS = "PROFILE ENDS"
+_MOST_END_POINTS = 2000  # of a profile whose free ends are searched
+
+
 @dataclass(frozen=True, slots=True)
 class DrawingPlacement:
     """Placement of a drawing on the lathe.
@@ -100,12 +104,57 @@ def find_axes(drawing: Drawing, layer: str = "") -> list[DrawingAxis]:
         found.append(flat)
     if lowest is not None:
         found.append(DrawingAxis("LOWEST LINE", (lowest, 0.0), (0.0, 1.0)))
+    ends = _find_axis_of_ends(there, near)
+    if ends is not None and not any(_same(ends, each) for each in (*found, flat)):
+        found = [*found, *([] if found else [flat]), ends]
     others = (
         flat,
         DrawingAxis("MIDDLE", ((low + high) / 2.0, 0.0), (0.0, 1.0)),
         DrawingAxis("X 0", (0.0, 0.0), (1.0, 0.0)),
     )
     return found + [each for each in others if each not in found]
+
+
+def require_clear_axis(drawing: Drawing, layer: str = "") -> None:
+    """Raise DrawingError if nothing in the drawing shows which of two axes is the spindle axis.
+
+    This applies to a half profile without a center line whose two ends have the same distance from Y 0. The
+    profile may end on the spindle axis, or the spindle axis may be Y 0.
+    """
+    known = find_axes(drawing, layer)
+    if len(known) < 2 or (known[0].name, known[1].name) != ("Y 0", PROFILE_ENDS):
+        return
+    raise DrawingError(
+        Message(
+            "{drawing} has no center line, and both ends of the profile are at the same distance from Y 0: "
+            "choose the axis {ends} if the profile ends on the spindle axis, or else Y 0.",
+            drawing=drawing.name,
+            ends=PROFILE_ENDS,
+        ),
+        "which-axis",
+    )
+
+
+def _find_axis_of_ends(there: Sequence[DrawnElement], near: float) -> DrawingAxis | None:
+    """Return the horizontal line through both ends of an open profile, if the profile is on one side of it.
+
+    Return None if the drawing does not have exactly two free ends.
+    """
+    points = [point for each in there for point in (each.element.start, each.element.end)]
+    if len(points) > _MOST_END_POINTS:
+        return None
+    free = [
+        point for n, point in enumerate(points)
+        if not any(math.dist(point, other) <= near for k, other in enumerate(points) if k != n)
+    ]  # fmt: skip
+    if len(free) != 2:
+        return None
+    (y, x), (other_y, other_x) = free
+    boxes = [each.element.bounding_box for each in there]
+    is_on_one_side = min(b[0] for b in boxes) >= y - near or max(b[1] for b in boxes) <= y + near
+    if abs(y - other_y) > near or abs(x - other_x) <= near or not is_on_one_side:
+        return None
+    return DrawingAxis(PROFILE_ENDS, (y, 0.0), (0.0, 1.0))
 
 
 def _contour_lines(drawing: Drawing, layer: str) -> list[DrawnElement]:

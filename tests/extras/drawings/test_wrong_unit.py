@@ -46,8 +46,29 @@ def test_implausibly_large_unit_is_rejected(
 
 
 @pytest.mark.parametrize(
+    ("unit", "long", "radius", "size"),
+    [
+        (MM, 2.5, 0.375, "0.75 mm across"),  # 3/4 in across and 2-1/2 in long
+        (MM, 0.5, 0.9, "1.8 mm across"),
+    ],
+)
+def test_unusually_small_drawing_is_asked_about(
+    unit: int, long: float, radius: float, size: str, tmp_path: Path
+) -> None:
+    path = shaft(tmp_path / "x.dxf", unit, long, radius)
+    said = trouble(path)
+    assert size in said
+    assert "choose MM or INCH" in said
+    assert not trouble(path, DUNIT="MM")
+    assert not trouble(path, DUNIT="INCH")
+
+
+@pytest.mark.parametrize(
     ("unit", "long", "radius"),
     [
+        (MM, 6.0, 0.9),  # long enough
+        (MM, 5.0, 1.0),  # thick enough
+        (INCH, 0.1, 0.03),  # small, but the unit is already inches
         (INCH, 5.0, 1.0),  # 127 mm, fits
         (MM, 400.0, 10.0),  # too long, and no smaller unit
         (INCH, 400.0, 10.0),  # 400 mm would not fit either
