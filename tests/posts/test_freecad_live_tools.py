@@ -170,6 +170,36 @@ def test_machine_positions_are_the_positions_of_the_side_path(turndesk: Turndesk
         assert move["c"] == pytest.approx(-360.0 * y / (30.0 * math.pi), abs=0.01)
 
 
+def test_program_of_freecad_mills_its_hexagon(turndesk: Turndesk) -> None:
+    """The file was posted by FreeCAD 0.20.2 from a hexagon with its corners 12 mm from the axis.
+
+    The center of the cutter of 5 mm is 2.5 mm from the hexagon, and the holes are at a radius of 7 mm.
+    """
+    path = Path(__file__).with_name("face-hexagon.nc")
+    proof = turndesk("prove", path)
+    assert (proof.status, "error" in proof.out) == (0, False), proof.out + proof.err
+    moves = [json.loads(line) for line in turndesk("expand", path, "--json").out.splitlines()]
+    low = [each for each in moves if each.get("z", 1.0) * 25.4 < -1.9 and each["kind"] != "dwell"]
+    milled = [find_part_point(each)[:2] for each in low if each["kind"].startswith("plane")]
+    drilled = [find_part_point(each)[:2] for each in low if not each["kind"].startswith("plane")]
+    corners = [(12.0 * math.cos(math.pi * n / 3.0), 12.0 * math.sin(math.pi * n / 3.0)) for n in range(7)]
+    assert len(milled) == 28
+    for point in milled:
+        away = min(find_distance(point, *edge) for edge in pairwise(corners))
+        assert away == pytest.approx(2.5, abs=0.001)
+    assert {round(math.hypot(*point), 3) for point in drilled} == {7.0}
+    angles = {round(math.degrees(math.atan2(y, x)) % 360.0) for x, y in drilled}
+    assert angles == {45, 135, 225, 315}
+
+
+def find_distance(point: tuple[float, float], start: tuple[float, float], end: tuple[float, float]) -> float:
+    """Return the distance of a point from the line between two points."""
+    (px, py), (ax, ay), (bx, by) = point, start, end
+    share = ((px - ax) * (bx - ax) + (py - ay) * (by - ay)) / ((bx - ax) ** 2 + (by - ay) ** 2)
+    share = min(max(share, 0.0), 1.0)
+    return math.hypot(px - ax - share * (bx - ax), py - ay - share * (by - ay))
+
+
 def test_helix_becomes_lines_on_its_cylinder() -> None:
     """One turn of 3 mm around X 9 Y 0, from Z 0 to Z -2."""
     lines = body(
