@@ -59,7 +59,6 @@ class Writer(CycleWriter):
         self.heights = heights
         self.live: LiveTool | None = None
         self.tool_pitch = 0.0  # mm, of the tool of the operation
-        self.is_locked = False
 
     def prepare_tool(self) -> None:
         """Stop the live tool before, and lock the spindle if the next tool is a live tool."""
@@ -87,6 +86,9 @@ class Writer(CycleWriter):
             return
         if name == "M4" or speed <= 0.0:
             self.reject(name, "the live tool has no reverse and needs a speed; use M3 with S")
+        if self.live.is_running and speed != self.speed:
+            self.reject(name, "the speed of a live tool is set by hand; use another tool number for it")
+        self.speed = speed
         if not self.live.is_running:
             self.note(f"LIVE TOOL {number(speed, 1)} RPM")
             self.add(f"M{self.options.live[0]:02d}")

@@ -223,6 +223,7 @@ def test_helix_becomes_lines_on_its_cylinder() -> None:
         (("G76", {"Z": -1.0, "P": 1.0}), "cannot tap"),
         (("M4", {"S": 100.0}), "no reverse"),
         (("M3", {"S": 0.0}), "needs a speed"),
+        (("M3", {"S": 2000.0}), "set by hand"),
         (("G81", {"X": 6.0, "Y": 0.0, "Z": -1.0}), "no Z or no R"),
         (("G81", {"X": 6.0, "Y": 0.0, "Z": 2.0, "R": 1.0}), "not below R"),
         (("G81", {"X": 6.0, "Z": -2.0, "R": 1.0}), "position of the hole"),
