@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from app.desk.background_work import ProgressCallback
     from core.executor.job import Job
     from core.machine.machine_model import Machine
-    from core.part.part_scene import ImageArray
+    from core.part.picture.part_scene import ImageArray
     from core.proving.program_tools import PartSettings
 
 WIDE, HIGH = 168, 112  # pixels
@@ -61,8 +61,8 @@ class ThumbnailCache:
         return Thumbnail(pixels, self.width_px, self.height_px)
 
     def _made(self, job: Job, setting: PartSettings, watch: ProgressCallback) -> ImageArray | None:
-        from core.part.solid_picture import SolidPicture
-        from core.part.solid_view import SolidView, fit_view
+        from core.part.picture.solid_picture import SolidPicture
+        from core.part.picture.solid_view import SolidView, fit_view
         from core.proving.finished_part import make_finished_part
         from core.proving.part_history import StepCollector
         from core.proving.program_timeline import Timeline
@@ -82,7 +82,7 @@ class ThumbnailCache:
             part.back_z_mm, part.front_z_mm, part.radius_mm, self.width_px, self.height_px, _AZIMUTH
         )
         view = SolidView(_AZIMUTH, _TILT, 0.0, scale, centre)
-        return SolidPicture().draw_picture(part.solid, view, self.width_px, self.height_px)
+        return SolidPicture().draw_fine_picture(part.solid, view, self.width_px, self.height_px)
 
     def _cache_key(self, job: Job, setting: PartSettings) -> str:
         """Return the file name of the thumbnail, which is a hash of all data that affects the picture."""

@@ -1,4 +1,4 @@
-"""Panes that show the part as a section with collisions in red, or as a solid."""
+"""Pane that shows the part as a section with collisions in red."""
 
 from __future__ import annotations
 
@@ -6,12 +6,11 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QBrush, QImage, QPainter, QPolygonF
+from PySide6.QtGui import QBrush, QPainter, QPolygonF
 
-from app.path.part_player import PartPlayer, PlaybackResult, SolidImageRequest
-from app.path.path_aspects import PathViewKind, TipPosition
+from app.path.part_player import PartPlayer, PlaybackResult
+from app.path.path_aspects import PathViewKind
 from app.path.path_layers_view import make_polygon
 from app.path.path_pane_view import FIT_MARGIN, PathPane, PlanePosition
 from app.path.path_picture import ProgramPicture
@@ -29,8 +28,6 @@ from app.path.path_projection import (
 from app.path.path_stock_view import SIDE_MARGIN_RATIO, StockAndClamping
 from app.path.polyline import Polyline
 from app.screen.screen_theme import ALIGN_CENTER, ALIGN_RIGHT, ScreenTheme, draw_text
-from core.part.solid_view import SolidView
-from core.part.solid_view import fit_view as fitted_solid
 from core.part.stock import Stock
 
 _X_BAND, _Z_BAND = 4.2, 2.6  # units: width of the scale of X, and height of the scale of Z
@@ -88,7 +85,7 @@ class PartPane(PathPane):
         z0, z1, x0, x1 = self.polyline.bounds
         shown = self.part_player.latest_result
         if shown is not None and (stock := shown.part_instant.stock) is not None:
-            left = self._left_of(shown, stock)
+            left = self.find_left_z_mm(shown, stock)
             margin_mm = SIDE_MARGIN_RATIO * (stock.front_z_mm - left + 2.0 * stock.max_radius_mm)
             z0, z1, x0, x1 = left, stock.front_z_mm + margin_mm, 0.0, stock.max_radius_mm + 0.5 * margin_mm
         u = self.theme.unit_px
@@ -99,7 +96,7 @@ class PartPane(PathPane):
         return whole.shift(left_band / 2, -low_band / 2)
 
     @staticmethod
-    def _left_of(shown: PlaybackResult, stock: Stock) -> float:
+    def find_left_z_mm(shown: PlaybackResult, stock: Stock) -> float:
         """Return the Z at the left edge of the visible stock.
 
         Most of the stock inside a chuck is not shown.
@@ -327,132 +324,3 @@ def _placed(shape: FloatArray, projection: Projection) -> QPolygonF:
             for z, r in shape.tolist()
         ]
     )
-
-
-_DEGREES_PER_PIXEL = 0.4  # degrees per pixel
-_DEGREES_PER_KEY = 10.0  # degrees per key press
-_MAX_TILT_DEG = 85.0  # maximum rotation from the side view, in degrees
-_VIEW_RADIUS_RATIO = 1.25  # ratio to the radius of the stock
-
-
-class SolidPane(PartPane):
-    """Pane that shows the latest 3D image of the part, rendered at the size of the pane."""
-
-    def __init__(
-        self, theme: ScreenTheme, aspect: PathViewKind, polyline: Polyline, player: PartPlayer
-    ) -> None:
-        self._azimuth, self._tilt, self._roll = 30.0, 35.0, 0.0
-        self._view: SolidView | None = None  # the view of the last request
-        super().__init__(theme, aspect, polyline, player)
-
-    # --- projection ----------------------------------------------------------------------------------
-
-    def make_full_projection(self) -> Projection:
-        """Return the projection that shows the whole stock."""
-        flat, shown = super().make_full_projection(), self.part_player.latest_result
-        if shown is None or (stock := shown.part_instant.stock) is None:
-            return flat
-        wide, high = flat.width_px, max(flat.height_px - round(3.0 * self.theme.unit_px), 1)
-        room = _VIEW_RADIUS_RATIO * stock.max_radius_mm  # leaves room for the tool
-        left = self._left_of(shown, stock)
-        scale, centre = fitted_solid(left, stock.front_z_mm, room, wide, high, self._azimuth)
-        return Projection(centre, 0.0, scale, flat.width_px, flat.height_px)
-
-    def set_projection(self, projection: Projection) -> None:
-        """Set the projection, and request an image for it."""
-        self.projection = projection
-        self._want()
-
-    def _want(self) -> None:
-        projection = self.projection
-        if projection is None or projection.width_px < 1 or projection.height_px < 1:
-            return
-        opening = find_removed_quarter(self._tilt) if self.aspect is PathViewKind.OPEN_SOLID else None
-        view = SolidView(
-            self._azimuth, self._tilt, self._roll, projection.pixels_per_mm, projection.center_z, opening
-        )
-        self._view = view
-        self.part_player.set_image_request(SolidImageRequest(view, projection.width_px, projection.height_px))
-
-    def find_tip_position(self, tip: TipPosition) -> PlanePosition | None:
-        """Return the position of the tool tip in the picture.
-
-        If the C axis is locked, the picture is first rotated to its position.
-        """
-        if tip.c is not None and tip.c != self._roll:
-            self._roll = tip.c
-            self._want()
-        return super().find_tip_position(tip)
-
-    # --- navigation ----------------------------------------------------------------------------------
-
-    def handle_drag(self, pixels: QPointF) -> None:
-        """Rotate the 3D picture by a drag in pixels."""
-        self._turn(pixels.x() * _DEGREES_PER_PIXEL, pixels.y() * _DEGREES_PER_PIXEL)
-
-    def pan_view(self, steps_right: int, steps_down: int) -> None:
-        """Rotate the 3D picture by a number of steps of the pan keys."""
-        self._turn(-steps_right * _DEGREES_PER_KEY, -steps_down * _DEGREES_PER_KEY)
-
-    def pan_to_point(self, z: float, x: float) -> None:
-        """Do nothing, because measuring is not possible in this pane."""
-
-    def _turn(self, across: float, down: float) -> None:
-        self._azimuth = min(max(self._azimuth - across, -_MAX_TILT_DEG), _MAX_TILT_DEG)
-        self._tilt = (self._tilt + down + 180.0) % 360.0 - 180.0
-        self._want()
-
-    def magnify(self, factor: float, position: QPointF) -> None:
-        """Magnify the view by a factor.
-
-        The part axis remains in place, and so does the pixel column at ``position``.
-        """
-        if self.projection is not None:
-            self.is_adjusted = True
-            across = (position - self.area.topLeft()).x()
-            self.set_projection(self.projection.magnify(factor, across, self.projection.height_px / 2))
-
-    # --- drawing -------------------------------------------------------------------------------------
-
-    def draw_path(self, painter: QPainter) -> None:
-        """Draw the latest image.
-
-        The origin of the painter is the corner of the pane.
-        """
-        shown = self.part_player.latest_result
-        if shown is not None and shown.image is not None:
-            image = shown.image
-            high, wide = image.shape
-            painter.drawImage(
-                QPointF(0, 0), QImage(image.tobytes(), wide, high, 4 * wide, QImage.Format.Format_ARGB32)
-            )
-
-    def draw_run_state(self, painter: QPainter) -> None:
-        """Draw the travel limits of the machine in the turning plane.
-
-        The tool is part of the image.
-        """
-        shown, view, projection = self.part_player.latest_result, self._view, self.projection
-        if shown is None or shown.part_instant.tip_range is None or view is None or projection is None:
-            return
-        (z0, x0), (z1, x1) = shown.part_instant.tip_range
-        # In the frame of the part, the operator's side is at 180 degrees minus C.
-        places = [
-            [x, z, 180.0 - view.roll_deg] for z, x in ((z0, x0), (z1, x0), (z1, x1), (z0, x1), (z0, x0))
-        ]
-        wide, high = (
-            (self.projection.width_px, self.projection.height_px) if self.projection is not None else (1, 1)
-        )
-        corners = view.project_to_screen(np.array(places), wide, high)
-        draw_travel_limits(painter, self.theme, [QPointF(x, y) for x, y in corners.tolist()])
-
-
-def find_removed_quarter(tilt_deg: float) -> tuple[float, float]:
-    """Return the start and end angles of the quarter that is cut away from the displayed solid.
-
-    The angles are in degrees, measured from the direction of the viewer towards the top. One edge is in the
-    turning plane on the operator's side, where the tool is. The other edge is perpendicular to it, on the
-    visible side.
-    """
-    first = -tilt_deg if tilt_deg >= 0.0 else -tilt_deg - 90.0
-    return first, first + 90.0

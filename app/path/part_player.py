@@ -7,7 +7,7 @@ the material removal. The screen polls the result once a frame and never waits.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
@@ -22,15 +22,19 @@ from core.proving.checks.part_checks import is_serious_finding
 if TYPE_CHECKING:
     from app.desk.desk import Desk
     from app.path.path_picture import ProgramPicture
-    from core.part.part_scene import ImageArray
-    from core.part.solid_picture import SolidPicture
-    from core.part.solid_view import SolidView
-    from core.part.surface_points import Solid
+    from core.part.picture.part_scene import ImageArray
+    from core.part.picture.solid_picture import SolidPicture
+    from core.part.picture.solid_view import SolidView
+    from core.part.picture.surface_points import Solid
     from core.proving.part_history import PartHistory
     from core.proving.part_instant import PartState
 
 FAST_FACTOR = 10.0  # times the program speed
-_REST_TIME_S = 0.25  # seconds after which an image that no longer moves is drawn in full resolution
+_REST_TIME_S = 0.1  # seconds after which an image that no longer moves is drawn in full resolution
+_SMALL_FRAME_TIME_S = 0.028  # seconds to draw one of 30 images/s, less the time to show it
+_LARGE_FRAME_TIME_S = 0.055  # seconds to draw one of 15 images/s
+_LARGE_IMAGE_PX = 1_000_000  # pixels from which 15 images/s are enough
+_MAX_PIXEL_SIZE = 4  # pixels
 _IMAGE_INTERVAL_S = 0.08  # seconds between two images during a long calculation
 
 ZRadius = tuple[float, float]
@@ -67,6 +71,7 @@ class PlaybackResult(NamedTuple):
     part_instant: PartState
     findings: tuple[Diagnostic, ...] = ()
     image: ImageArray | None = None  # image of the solid, if a 3D view is shown
+    pixel_size: int = 1  # width and height of a pixel of the image in pixels of the screen
 
 
 @dataclass(slots=True, eq=False)
@@ -87,6 +92,7 @@ class PartPlayer:
     _wanted: ProgramInstant = field(default_factory=ProgramInstant)
     _asked: ProgramInstant | None = None
     _played: PlaybackResult | None = None
+    _reported: PlaybackResult | None = None  # result at the last update
     _looked: float = 0.0
     _turned: float = 0.0  # time of the last change of the view
     # used only on the worker, as are the following attributes
@@ -95,6 +101,7 @@ class PartPlayer:
     _painter: SolidPicture | None = None
     _solid: tuple[PartState, Solid] | None = None
     _draws: int = 0
+    _pixel_size: int = 2  # of coarse images; adapted to the time that the images take
 
     # --- selection of the program --------------------------------------------------------------------
 
@@ -140,15 +147,16 @@ class PartPlayer:
 
     def update(self) -> bool:
         """Fetch the result of the worker, request the next result, and return whether the view changed."""
-        shown, now = self._played, self.read_time_s()
+        shown, now = self._reported, self.read_time_s()
         gone, self._looked = now - self._looked, now
         self.worker.deliver_results()
         if self.is_playing:
             self._play(gone)
         self._request_image()
-        if not self.worker.is_busy:
+        if not self.worker.is_busy or self._is_drawing_old_image():
             self._ask()
-        return self._played is not shown or self.is_playing
+        self._reported = self._played
+        return self._reported is not shown or self.is_playing
 
     def wait_for_result(self, timeout_s: float) -> None:
         """Wait until the requested state of the part is calculated.
@@ -179,6 +187,16 @@ class PartPlayer:
             moving = self.is_playing or self.follows_run or self.read_time_s() - self._turned < _REST_TIME_S
             if solid.is_coarse is not moving:
                 self._wanted = self._wanted._replace(image_request=solid._replace(is_coarse=moving))
+
+    def _is_drawing_old_image(self) -> bool:
+        """Return whether the worker is drawing an image in full resolution for a view that has changed."""
+        asked, wanted = self._asked, self._wanted
+        return (
+            asked is not None
+            and asked.image_request is not None
+            and not asked.image_request.is_coarse
+            and wanted != asked
+        )
 
     # --- following the run ---------------------------------------------------------------------------
 
@@ -303,11 +321,13 @@ class PartPlayer:
             share = history.find_executed_fraction(
                 wanted.finished_block_count + 1, wanted.block_end_offset_mm
             )
-        image = None
         instant = self._find_instant(history, wanted.finished_block_count, share, watch)
+        result = PlaybackResult(instant, self._findings)
         if wanted.image_request is not None:
-            image = self._render_image(history, instant, wanted.image_request)
-        return PlaybackResult(instant, self._findings, image)
+            for image_result in self._render_images(history, result, wanted.image_request, request):
+                request.publish_result(partial(self._take, image_result))
+                result = image_result
+        return result
 
     def _find_instant(
         self, history: PartHistory, block: int, share: float, watch: Callable[[], None]
@@ -324,41 +344,52 @@ class PartPlayer:
                 return last
         return history.at(block, share, watch)
 
-    def _render_image(
-        self, history: PartHistory, instant: PartState, look: SolidImageRequest
-    ) -> ImageArray | None:
-        """Return the 3D image of the part, or None without a solid.
+    def _render_images(
+        self, history: PartHistory, shown: PlaybackResult, look: SolidImageRequest, request: WorkRequest
+    ) -> Iterator[PlaybackResult]:
+        """Yield the result with its 3D image, and again with smooth edges if the view is at rest.
 
-        This runs on the worker.
+        This runs on the worker. Nothing is yielded without a solid.
         """
-        from core.part.solid_picture import SolidPicture
+        from core.part.picture.solid_picture import SolidPicture
+        from core.part.picture.solid_view import make_coarse_view
 
+        instant = shown.part_instant
         if self._painter is None:
             self._painter = SolidPicture()
         if self._solid is None or self._solid[0] is not instant:
             solid = history.make_solid(instant)
             if solid is None:
-                return None
+                return
             self._solid, self._draws = (instant, solid), self._draws + 1
         # While the run leads, the view uses the measured C position.
         view = look.view if self.follows_run else replace(look.view, roll_deg=instant.c_angle_deg)
-        spans = tuple(
-            (
-                float(hit.z_positions.min()) - hit.column_width_mm / 2,
-                float(hit.z_positions.max()) + hit.column_width_mm / 2,
-            )
-            for hit in instant.material_hits
-        )
-        return self._painter.draw_picture(
+        pixel_size = self._pixel_size if look.is_coarse else 1
+        seen = make_coarse_view(view, look.width_px, look.height_px, pixel_size)
+        begin = self.read_time_s()
+        images = self._painter.refine_picture(
             self._solid[1],
-            view,
-            look.width_px,
-            look.height_px,
+            *seen,
             version=self._draws,
-            hit_z_spans=spans,
-            is_preview=look.is_coarse,
+            hit_z_spans=_find_hit_spans(instant),
             scene=history.make_scene_at(instant),
+            check_canceled=None if look.is_coarse else request,
         )
+        for image in images:
+            yield shown._replace(image=image, pixel_size=pixel_size)
+            if look.is_coarse:
+                self._adapt_pixel_size(look, self.read_time_s() - begin)
+                return
+
+    def _adapt_pixel_size(self, look: SolidImageRequest, duration_s: float) -> None:
+        """Change the pixel size of coarse images so that they are drawn fast enough."""
+        is_large = look.width_px * look.height_px > _LARGE_IMAGE_PX
+        limit = _LARGE_FRAME_TIME_S if is_large else _SMALL_FRAME_TIME_S
+        size = self._pixel_size
+        if duration_s > limit:
+            self._pixel_size = min(size + 1, _MAX_PIXEL_SIZE)
+        elif size > 1 and duration_s * (size / (size - 1)) ** 2 < 0.8 * limit:
+            self._pixel_size = size - 1
 
     def _history_of(self, picture: ProgramPicture) -> PartHistory:
         from core.proving.part_history import PartHistory
@@ -386,6 +417,17 @@ class PartPlayer:
 
     def _failed(self, why: str) -> None:
         self.error_text, self._played = why, None
+
+
+def _find_hit_spans(instant: PartState) -> tuple[tuple[float, float], ...]:
+    """Return the ranges of Z in which a tool has hit the part."""
+    return tuple(
+        (
+            float(hit.z_positions.min()) - hit.column_width_mm / 2,
+            float(hit.z_positions.max()) + hit.column_width_mm / 2,
+        )
+        for hit in instant.material_hits
+    )
 
 
 class PartPlayers(list[PartPlayer]):

@@ -182,7 +182,8 @@ class PathView(Panel):
 
     def _make(self, aspect: PathViewKind, polyline: Polyline, before: Polyline | None) -> PathPane:
         if aspect in PART_ASPECTS and self.part_player is not None:
-            from app.path.part_pane_view import PartPane, SolidPane
+            from app.path.part_pane_view import PartPane
+            from app.path.solid_pane_view import SolidPane
 
             made = PartPane if aspect is PathViewKind.SECTION else SolidPane
             return made(self.theme, aspect, polyline, self.part_player)

@@ -74,7 +74,7 @@ class ProgramDetailPanel(Panel):
         if self.part_thumbnail is None or height <= 0.0:
             return
         pixels, columns, rows = self.part_thumbnail
-        room, form = self.inside(), QImage.Format.Format_ARGB32
+        room, form = self.inside(), QImage.Format.Format_ARGB32_Premultiplied
         scale = min(1.0, height / rows, 0.5 * room.width() / columns)
         wide, tall = columns * scale, rows * scale
         at = QRectF(room.right() - wide, room.y() + (height - tall) / 2, wide, tall)

@@ -32,7 +32,7 @@ _PATH_CLASSES = (
     "app.path.path_marks_view.ViewButton",
     "app.path.measuring_view.Measurement",
     "app.path.part_pane_view.PartPane",
-    "app.path.part_pane_view.SolidPane",
+    "app.path.solid_pane_view.SolidPane",
     "app.path.part_bar_view.PartTimeline",
     "app.path.path_projection.project_section",
 )

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from core.interpreter.shared.actions import ColletSwitch
-from core.part.surface_points import Solid
+from core.part.picture.surface_points import Solid
 from core.proving.part_history import PartHistory, ProgramSteps, ReportProgress
 from core.proving.part_instant import PartState, SectionHalf
 from core.proving.tip_moves import LiveToolStep, TipMove

@@ -13,10 +13,10 @@ from itertools import pairwise
 import numpy as np
 
 from core.message import Message
-from core.part.part_scene import PartScene
-from core.part.solid_bodies import SymmetryAxis, ToolBody, make_chuck_solid
+from core.part.picture.part_scene import PartScene
+from core.part.picture.solid_bodies import SymmetryAxis, ToolBody, make_chuck_solid
+from core.part.picture.surface_points import Solid, make_milled_solid, make_turned_solid
 from core.part.stock_spec import StockSpec
-from core.part.surface_points import Solid, make_milled_solid, make_turned_solid
 from core.part.swept_edge import FloatArray, Point
 from core.part.tool_outline import ToolOutline, make_tool_outline
 from core.part.tool_shape import ToolShape

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from core.language.diagnostics import Diagnostic
+from core.part.picture.solid_bodies import SymmetryAxis
 from core.part.polar_field import FieldCopy, RemovedMaterial, make_compact_copy, restore_field
-from core.part.solid_bodies import SymmetryAxis
 from core.part.stock import Clamping, Stock
 from core.part.swept_edge import FloatArray, Point
 from core.part.turned_part import Cut, TurnedPart

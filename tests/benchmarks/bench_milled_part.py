@@ -16,11 +16,11 @@ from dataclasses import replace
 import numpy as np
 
 from core.part.milled_part import MilledPart
+from core.part.picture.solid_picture import SolidPicture
+from core.part.picture.solid_view import SolidView, fit_view, make_coarse_view
+from core.part.picture.surface_points import Solid, make_milled_solid, make_turned_solid
 from core.part.polar_field import make_field_from_section
 from core.part.ray_cuts import FloatArray
-from core.part.solid_picture import SolidPicture
-from core.part.solid_view import SolidView, fit_view
-from core.part.surface_points import Solid, make_milled_solid, make_turned_solid
 
 FINE, LENGTH, RADIUS = 7500, 60.0, 18.0
 WIDTH, HEIGHT, FRAMES = 720, 400, 15
@@ -103,12 +103,13 @@ def removal(edges: FloatArray, low: FloatArray, high: FloatArray) -> Solid:
     return make_milled_solid(field)
 
 
-def frame_ms(solid: Solid, view: SolidView, *, changes: bool, quick: bool) -> float:
+def frame_ms(solid: Solid, view: SolidView, *, changes: bool, coarse: bool) -> float:
     """Median processor time of a picture, ms; ``changes``: the metal changes before each."""
     picture, taken = SolidPicture(), []
+    seen = make_coarse_view(view, WIDTH, HEIGHT, 2 if coarse else 1)
     for count in range(FRAMES):
         begin = time.process_time()
-        picture.draw_picture(solid, view, WIDTH, HEIGHT, version=count * changes, is_preview=quick)
+        picture.draw_picture(solid, *seen, version=count * changes)
         taken.append(time.process_time() - begin)
     return 1000.0 * statistics.median(taken[1:])
 
@@ -118,15 +119,15 @@ def main() -> None:
     sys.stdout.write(f"{'removal':<32}{'ms':>9}\n")
     edges, low, high = section()
     milled, turned = removal(edges, low, high), make_turned_solid(edges, low, high)
-    heads = ("same", "new metal", "new, quick")
+    heads = ("same", "new metal", "new, coarse")
     sys.stdout.write(f"{'picture, ms':<24}" + "".join(f"{head:>12}" for head in heads * 2) + "\n")
     for name, looked in VIEWS:
         scale, centre = fit_view(-LENGTH, 0.0, RADIUS, WIDTH, HEIGHT, looked.azimuth_deg)
         view = replace(looked, pixels_per_mm=scale, center_z_mm=centre)
         sys.stdout.write(f"{name:<24}")
         for solid in (turned, milled):
-            for changes, quick in ((False, False), (True, False), (True, True)):
-                sys.stdout.write(f"{frame_ms(solid, view, changes=changes, quick=quick):>12.1f}")
+            for changes, coarse in ((False, False), (True, False), (True, True)):
+                sys.stdout.write(f"{frame_ms(solid, view, changes=changes, coarse=coarse):>12.1f}")
         sys.stdout.write("\n")
 
 

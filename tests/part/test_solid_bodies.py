@@ -7,12 +7,12 @@ import math
 import numpy as np
 import pytest
 
-from core.part.part_scene import ImageArray, PartColors, PartScene
-from core.part.solid_bodies import SymmetryAxis, ToolBody, make_chuck_solid
-from core.part.solid_picture import SolidPicture
-from core.part.solid_view import SolidView
+from core.part.picture.part_scene import ImageArray, PartColors, PartScene
+from core.part.picture.solid_bodies import SymmetryAxis, ToolBody, make_chuck_solid
+from core.part.picture.solid_picture import SolidPicture
+from core.part.picture.solid_view import SolidView
+from core.part.picture.surface_points import Solid, make_turned_solid
 from core.part.stock import Clamping, make_bar_stock
-from core.part.surface_points import Solid, make_turned_solid
 
 WIDTH, HEIGHT = 400, 300
 GOLD, GREY, BROWN = PartColors().insert, PartColors().holder, PartColors().chuck

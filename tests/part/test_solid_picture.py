@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from core.part.milled_part import MilledPart
-from core.part.part_scene import ImageArray, PartColors
+from core.part.picture.part_scene import ImageArray, PartColors
+from core.part.picture.solid_picture import SolidPicture
+from core.part.picture.solid_view import SolidView, fit_view, make_coarse_view
+from core.part.picture.surface_points import Solid, make_milled_solid, make_turned_solid
 from core.part.polar_field import make_field_from_section
-from core.part.solid_picture import SolidPicture
-from core.part.solid_view import SolidView, fit_view
-from core.part.surface_points import Solid, make_milled_solid, make_turned_solid
 
 WIDTH, HEIGHT = 420, 300
 RED = ((-1e9, 1e9),)
@@ -156,6 +156,8 @@ def test_projected_point_matches_picture(azimuth: float, roll: float) -> None:
     plain, drilled = (draw(solid, view) for solid in (make_milled_solid(milled().field), hole_at(angle)))
     rows, columns = np.nonzero(plain != drilled)
     rim = view.project_to_screen(np.array([[10.0, -10.0, angle]]), WIDTH, HEIGHT)[0]
+    near = np.abs(columns - rim[0]) < 40.0  # The rim of the end face is also drawn slightly differently.
+    rows, columns = rows[near], columns[near]
     assert rows.mean() == pytest.approx(rim[1], abs=2.0)
     assert columns.mean() == pytest.approx(rim[0], abs=8.0)
 
@@ -235,12 +237,76 @@ def test_fitted_part_is_within_picture(azimuth: float) -> None:
     assert max(np.ptp(rows) / HEIGHT, np.ptp(columns) / WIDTH) > 0.9
 
 
-def test_quick_picture_has_the_same_outline() -> None:
-    view = SolidView(azimuth_deg=30.0, pixels_per_mm=9.0, center_z_mm=-10.0)
+@pytest.mark.parametrize("pixel_size", [2, 3])
+def test_coarse_picture_shows_the_part_at_the_same_place(pixel_size: int) -> None:
+    view = SolidView(azimuth_deg=30.0, pixels_per_mm=9.0, center_z_mm=-10.0, offset_px=(8.0, -5.0))
+    coarse_view, width, height = make_coarse_view(view, 421, 301, pixel_size)
     picture, solid = SolidPicture(), hole_at(150.0)
-    fine, quick = (picture.draw_picture(solid, view, 421, 301, is_preview=quick) for quick in (False, True))
-    assert quick.shape == fine.shape == (301, 421)
-    assert np.count_nonzero((fine != 0) != (quick != 0)) < 0.02 * np.count_nonzero(fine)
+    fine, coarse = (
+        picture.draw_picture(solid, *seen) for seen in ((view, 421, 301), (coarse_view, width, height))
+    )
+    assert coarse.shape == (-(-301 // pixel_size), -(-421 // pixel_size))
+    larger = coarse.repeat(pixel_size, axis=0).repeat(pixel_size, axis=1)[:301, :421]
+    assert np.count_nonzero((fine != 0) != (larger != 0)) < 0.01 * pixel_size * np.count_nonzero(fine)
+    for found in (np.nonzero(fine), np.nonzero(larger)):
+        # The middle of the part is at Z-10, so it is displaced only by the offset.
+        assert found[0].mean() == pytest.approx(150.0 - 5.0, abs=1.0)
+        assert found[1].mean() == pytest.approx(210.0 + 8.0, abs=1.0)
+
+
+def transparencies(image: ImageArray) -> set[int]:
+    return set(np.unique(image >> 24).tolist())
+
+
+def test_outline_of_fine_picture_has_intermediate_steps() -> None:
+    """A cone whose outline crosses the pixels: 4 samples give the opacities 64, 128 and 191."""
+    count = 500
+    edges = np.linspace(-20.0, 0.0, count + 1)
+    cone = make_turned_solid(edges, np.zeros((1, count)), np.linspace(9.0, 3.0, count)[None])
+    view = SolidView(azimuth_deg=0.0, pixels_per_mm=9.0, center_z_mm=-10.0)
+    first, fine = SolidPicture().refine_picture(cone, view, WIDTH, HEIGHT)
+    assert transparencies(first) == {0, 255}
+    assert transparencies(fine) == {0, 64, 128, 191, 255}
+    assert fine[HEIGHT // 2, WIDTH // 2] >> 24 == 255
+
+
+def test_corner_of_profile_is_drawn_as_dark_edge() -> None:
+    """A chamfer of 45°: its corners are at Z-8 and Z-4, and the cone between them is evenly bright."""
+    count = 2000
+    edges = np.linspace(-20.0, 0.0, count + 1)
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    radii = np.clip(np.where(middles < -4.0, 9.0 - (middles + 8.0), 5.0), 5.0, 9.0)
+    image = draw(
+        make_turned_solid(edges, np.zeros((1, count)), radii[None]),
+        SolidView(azimuth_deg=0.0, tilt_deg=0.0, pixels_per_mm=12.0, center_z_mm=-10.0),
+    )
+    light = ((image[HEIGHT // 2] >> 8) & 255).astype(int)
+    for z, is_edge in ((-8.0, True), (-4.0, True), (-12.0, False), (-6.0, False), (-2.0, False)):
+        column = round(WIDTH / 2 + 12.0 * (z + 10.0))
+        near, darkest = light[column - 6], light[column - 3 : column + 3].min()
+        assert bool(darkest < 0.8 * near) is is_edge
+
+
+def test_cylinder_without_corners_has_no_edges_inside_its_outline() -> None:
+    image = draw(turned((20.0, 9.0)), SolidView(azimuth_deg=0.0, pixels_per_mm=9.0, center_z_mm=-10.0))
+    light = ((image[:, WIDTH // 2] >> 8) & 255).astype(int)
+    inside = light[HEIGHT // 2 - 76 : HEIGHT // 2 + 76]  # the radius is 81 pixels
+    assert np.abs(np.diff(inside)).max() <= 8
+
+
+def test_canceled_picture_raises_the_error_of_the_check() -> None:
+    calls: list[None] = []
+
+    def cancel_at_second_call() -> None:
+        calls.append(None)
+        if len(calls) == 2:
+            raise InterruptedError
+
+    with pytest.raises(InterruptedError):
+        SolidPicture().draw_picture(
+            turned((20.0, 9.0)), SolidView(), WIDTH, HEIGHT, check_canceled=cancel_at_second_call
+        )
+    assert len(calls) == 2
 
 
 def test_step_between_faces_that_are_lit_alike_has_an_edge() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import pytest
 
@@ -10,12 +11,13 @@ import resources
 from app.compose.machine.machine_files import load_machine, parse_machine
 from app.compose.program_proving import create_loading_steps
 from app.compose.stored_offsets import NO_OFFSETS, Offsets
+from app.desk.background_work import LatestRequestWorker
 from app.path.part_player import FAST_FACTOR, PartPlayer, PartPlayers, SolidImageRequest
 from app.path.path_aspects import PathViewKind, list_available_views
 from app.path.path_picture import ProgramPicture
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import ProgramSource
-from core.part.solid_view import SolidView
+from core.part.picture.solid_view import SolidView
 from tests.texts import begins
 
 HEAD = "G90G94F300\nM03S1500\nT1\n"
@@ -252,6 +254,54 @@ def test_live_tool_collision_in_rapid_is_red_in_3d_view(player: PartPlayer, prog
     assert shown.image is not None
     r, g = ((shown.image >> off) & 255 for off in (16, 8))
     assert bool(((r > 90) & (r > 2.5 * g)).sum() > 50) is red
+
+
+@pytest.mark.parametrize(("resting_s", "is_coarse"), [(0.05, True), (0.2, False)])
+def test_image_has_full_resolution_only_while_view_is_at_rest(
+    player: PartPlayer, clock: Clock, resting_s: float, is_coarse: bool
+) -> None:
+    player.load_picture(picture(SHAFT))
+    player.set_image_request(SolidImageRequest(SolidView(pixels_per_mm=5.0, center_z_mm=-10.0), 201, 151))
+    clock.now += resting_s
+    player.update()
+    shown = settled(player).latest_result
+    assert shown is not None
+    assert shown.image is not None
+    assert shown.image.shape == ((76, 101) if is_coarse else (151, 201))
+    assert shown.pixel_size == (2 if is_coarse else 1)
+
+
+class BusyWorker(LatestRequestWorker):
+    """A worker that never finishes its first request."""
+
+    request_count = 0
+
+    @property
+    def is_busy(self) -> bool:
+        return self.request_count > 0
+
+    def request_work(self, *_request: object) -> None:
+        self.request_count += 1
+
+
+@pytest.mark.parametrize(
+    ("resting_s", "is_view_changed", "request_count"), [(0.2, True, 2), (0.2, False, 1), (0.05, True, 1)]
+)
+def test_only_unfinished_image_in_full_resolution_is_replaced_by_new_view(
+    clock: Clock, resting_s: float, is_view_changed: bool, request_count: int
+) -> None:
+    worker, view = BusyWorker("part"), SolidView(pixels_per_mm=5.0, center_z_mm=-10.0)
+    player = PartPlayer(worker, clock)
+    player.load_picture(picture(SHAFT))
+    worker.request_count = 0
+    player.set_image_request(SolidImageRequest(view, 200, 150))
+    clock.now += resting_s
+    player.update()
+    if is_view_changed:
+        player.set_image_request(SolidImageRequest(replace(view, azimuth_deg=80.0), 200, 150))
+    player.update()
+    assert worker.request_count == request_count
+    player.close()
 
 
 @pytest.mark.parametrize(("name", "metric"), [("part.nc", False), ("part.mpf", True), ("part.h", True)])

@@ -12,7 +12,7 @@ from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import ProgramSource
-from core.part.solid_bodies import SymmetryAxis
+from core.part.picture.solid_bodies import SymmetryAxis
 from core.part.stock import Clamping, make_bar_stock
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving import part_history, part_instant

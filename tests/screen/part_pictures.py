@@ -20,14 +20,15 @@ from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import create_power_up_setup
 from app.compose.program_proving import get_samples_folder
 from app.compose.stored_offsets import read_offsets_file
-from app.path.part_pane_view import find_removed_quarter
+from app.path.solid_pane_view import find_removed_quarter
 from app.screen.screen_theme import FONT_FAMILY, load_fonts
 from core.interpreter.shared.job_setup import InterpreterSetup, SecondaryOffset, ToolOffset
 from core.language.called_files import load_called_files
 from core.language.source import Dialect, ProgramSource, load_source
-from core.part.solid_picture import SolidPicture
-from core.part.solid_view import SolidView, fit_view
-from core.part.surface_points import Solid, make_turned_solid
+from core.part.picture.part_scene import PartColors
+from core.part.picture.solid_picture import SolidPicture
+from core.part.picture.solid_view import SolidView, fit_view
+from core.part.picture.surface_points import Solid, make_turned_solid
 from core.part.turned_part import PartedPiece
 from core.proving.part_history import PartHistory, StepCollector
 from core.proving.part_proof import prove_program_and_part
@@ -139,8 +140,8 @@ def _drawn(solid: Solid, view: SolidView) -> QImage:
     back, front = float(solid.column_edges[metal[0]]), float(solid.column_edges[metal[-1] + 1])
     scale, centre = fit_view(back, front, 1.08 * solid.max_radius_mm, WIDE, HIGH, view.azimuth_deg)
     view = replace(view, pixels_per_mm=scale, center_z_mm=centre)
-    image = SolidPicture().draw_picture(solid, view, WIDE, HIGH)
-    image[image >> 24 == 0] = GROUND
+    painter = SolidPicture(PartColors(background=GROUND))
+    image = painter.draw_fine_picture(solid, view, WIDE, HIGH)
     return QImage(image.tobytes(), WIDE, HIGH, 4 * WIDE, QImage.Format.Format_RGB32).copy()
 
 

@@ -11,11 +11,11 @@ from PySide6.QtGui import QColor, QImage
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.path.part_pane_view import find_removed_quarter
 from app.path.part_player import PartPlayer
 from app.path.path_aspects import PathViewKind, TipPosition
 from app.path.path_marks_view import make_part_title
 from app.path.path_view import PathView
+from app.path.solid_pane_view import find_removed_quarter
 from app.screen.color_palettes import DARK_PALETTE, LIGHT_PALETTE
 from app.screen.screen_theme import ScreenTheme
 from core.part.stock import Clamping

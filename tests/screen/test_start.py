@@ -34,7 +34,7 @@ OF_LATER = (
     *("core.language.sinumerik", "core.language.code_book", "app.offsets.mill_touch"),
     *("core.geometry.rotary_axes", "core.interpreter.shared.working_plane"),
     *("core.part.insert_codes", "core.proving.program_tools", "drivers.hal", "drivers.grblhal.grblhal_table"),
-    *("core.interpreter.omniturn.flow.loops_and_subroutines", "core.part.solid_picture"),
+    *("core.interpreter.omniturn.flow.loops_and_subroutines", "core.part.picture.solid_picture"),
     *("core.proving.part_proof", "drivers.canopen.canopen_machine", "drivers.driver_host"),
     *("drivers.hal.hal_machine", "drivers.inverter.inverter_spindle", "drivers.transfer"),
     *("ezdxf", "pyqtgraph", "svgelements"),

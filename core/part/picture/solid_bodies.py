@@ -15,10 +15,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from core.part.picture.solid_view import SolidView
+from core.part.picture.surface_points import Solid, make_turned_solid
 from core.part.ray_cuts import FloatArray
-from core.part.solid_view import SolidView
 from core.part.stock import Clamping, Stock
-from core.part.surface_points import Solid, make_turned_solid
 
 ImageArray = npt.NDArray[np.uint32]
 DepthArray = npt.NDArray[np.int32]
@@ -279,8 +279,8 @@ def _make_layer(
     points = np.concatenate([face.points for face in faces])
     light = np.concatenate([np.broadcast_to(face.brightness, len(face.points)) for face in faces])
     place = (points - np.array([view.center_z_mm, 0.0, 0.0])) @ _view_rotation(view).T * view.pixels_per_mm
-    column = np.floor(place[:, 0] + 0.5 * width).astype(np.int64)
-    row = np.floor(0.5 * height - place[:, 1]).astype(np.int64)
+    column = np.floor(place[:, 0] + 0.5 * width + view.offset_px[0]).astype(np.int64)
+    row = np.floor(0.5 * height + view.offset_px[1] - place[:, 1]).astype(np.int64)
     there = (column >= 0) & (column < width) & (row >= 0) & (row < height)
     shade = (255.0 * light[there]).astype(np.int64)
     deep = ((place[there, 2] + depths[1]) * depths[0]).astype(np.int64)

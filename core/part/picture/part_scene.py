@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from core.part.solid_bodies import ToolBody
-from core.part.surface_points import Solid
+from core.part.picture.solid_bodies import ToolBody
+from core.part.picture.surface_points import Solid
 
 ImageArray = npt.NDArray[np.uint32]
 SHADES = 256

@@ -8,7 +8,7 @@ the top edge has a phi of 90°.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +26,7 @@ class SolidView:
     - ``pixels_per_mm`` is the scale, and ``center_z_mm`` is the Z of the middle of the picture.
     - ``cut_out_range_deg`` is the range of phi that is cut open, within -180 to 180, or None if the part is
       closed.
+    - ``offset_px`` moves the picture to the right and down, in pixels.
     """
 
     azimuth_deg: float = 30.0
@@ -34,6 +35,7 @@ class SolidView:
     pixels_per_mm: float = 10.0
     center_z_mm: float = 0.0
     cut_out_range_deg: tuple[float, float] | None = None
+    offset_px: tuple[float, float] = (0.0, 0.0)
 
     @property
     def azimuth_cos_sin(self) -> tuple[float, float]:
@@ -65,8 +67,22 @@ class SolidView:
         cos, sin = self.azimuth_cos_sin
         right = (z - self.center_z_mm) * cos - r * np.cos(phi) * sin
         return np.column_stack(
-            [0.5 * width + self.pixels_per_mm * right, 0.5 * height - self.pixels_per_mm * r * np.sin(phi)]
+            [
+                0.5 * width + self.offset_px[0] + self.pixels_per_mm * right,
+                0.5 * height + self.offset_px[1] - self.pixels_per_mm * r * np.sin(phi),
+            ]
         )
+
+
+def make_coarse_view(view: SolidView, width: int, height: int, pixel_size: int) -> tuple[SolidView, int, int]:
+    """Return the view, width and height of a picture whose pixels replace ``pixel_size`` pixels each way."""
+    small = -(-width // pixel_size), -(-height // pixel_size)
+    offset = tuple(
+        (each + 0.5 * whole) / pixel_size - 0.5 * count
+        for each, whole, count in zip(view.offset_px, (width, height), small, strict=True)
+    )
+    coarse = replace(view, pixels_per_mm=view.pixels_per_mm / pixel_size, offset_px=(offset[0], offset[1]))
+    return coarse, *small
 
 
 def fit_view(

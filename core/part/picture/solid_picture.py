@@ -1,0 +1,168 @@
+"""The solid picture of a part, drawn with numpy from surface points with lighting.
+
+The nearest point is shown at each pixel. Drawing requires no graphics card and no Qt. The result is an
+image of 0xAARRGGBB values, which both a graphics card and Qt can show. Normals are computed only for
+visible pixels.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from core.part.picture.part_scene import ImageArray, PartColors, PartScene, make_color_table
+from core.part.picture.picture_edges import draw_edges, remove_specks
+from core.part.picture.point_lighting import PointLighting, ZSpans
+from core.part.picture.point_projection import DEPTH_STEPS, FAR_DEPTH, CheckCanceled, PointProjection
+from core.part.picture.solid_bodies import DepthArray, ImageLayer, make_tool_layers
+from core.part.picture.solid_view import SolidView
+from core.part.picture.surface_points import Solid, SolidSurface
+
+_SAMPLES = ((-0.125, -0.375), (0.375, -0.125), (-0.375, 0.125), (0.125, 0.375))  # pixels right and down
+_MAX_SURFACES = 2  # one for coarse and one for fine pictures
+
+
+class SolidPicture:
+    """A painter that draws a solid repeatedly.
+
+    It caches the data that does not change from one picture to the next.
+    """
+
+    def __init__(self, colors: PartColors | None = None) -> None:
+        self.colors = colors or PartColors()
+        self._table = make_color_table(self.colors)
+        self._surfaces: dict[tuple[object, ...], SolidSurface] = {}
+        self._clamping_painter: SolidPicture | None = None
+        self._clamping: tuple[tuple[object, ...], ImageLayer] | None = None  # in the last view
+
+    def draw_picture(
+        self,
+        solid: Solid,
+        view: SolidView,
+        width: int,
+        height: int,
+        *,
+        version: int = 0,
+        hit_z_spans: ZSpans = (),
+        scene: PartScene = PartScene(),  # noqa: B008 - it is a tuple
+        check_canceled: CheckCanceled | None = None,
+    ) -> ImageArray:
+        """Return the picture as an array (height, width), with one sample for each pixel.
+
+        ``version`` changes when the material changes. ``hit_z_spans`` are ranges of Z that are drawn in
+        red. ``check_canceled`` is called regularly, and may raise an exception to cancel.
+        """
+        surface = self._find_surface(solid, view, width, version)
+        image, depth = self._draw_surface(surface, view, (width, height), hit_z_spans, check_canceled)
+        if scene.chuck is not None:
+            self._draw_chuck(scene.chuck, view, (width, height), check_canceled).draw_onto_image(image, depth)
+        if scene.tool is not None:
+            looks = (self.colors.holder, self.colors.insert)
+            for layer in make_tool_layers(scene.tool, view, width, height, looks, DEPTH_STEPS, FAR_DEPTH):
+                layer.draw_onto_image(image, depth)
+        return image
+
+    def refine_picture(
+        self,
+        solid: Solid,
+        view: SolidView,
+        width: int,
+        height: int,
+        *,
+        version: int = 0,
+        hit_z_spans: ZSpans = (),
+        scene: PartScene = PartScene(),  # noqa: B008 - it is a tuple
+        check_canceled: CheckCanceled | None = None,
+    ) -> Iterator[ImageArray]:
+        """Yield the picture with one sample for each pixel, and then with smooth edges.
+
+        The last picture is the mean of several samples, each displaced by a fraction of a pixel. Its colors
+        are premultiplied by their opacity.
+        """
+        total = np.zeros((height, width, 4), np.uint16)
+        for number, (right, down) in enumerate(_SAMPLES):
+            offset = view.offset_px[0] + right, view.offset_px[1] + down
+            image = self.draw_picture(
+                solid,
+                replace(view, offset_px=offset),
+                width,
+                height,
+                version=version,
+                hit_z_spans=hit_z_spans,
+                scene=scene,
+                check_canceled=check_canceled,
+            )
+            total += image.view(np.uint8).reshape(total.shape)
+            if number == 0:
+                yield image
+        total += len(_SAMPLES) // 2
+        total //= len(_SAMPLES)
+        yield total.astype(np.uint8).view(np.uint32)[..., 0]
+
+    def draw_fine_picture(
+        self,
+        solid: Solid,
+        view: SolidView,
+        width: int,
+        height: int,
+        scene: PartScene = PartScene(),  # noqa: B008 - it is a tuple
+    ) -> ImageArray:
+        """Return the picture with smooth edges; its colors are premultiplied by their opacity."""
+        *_, image = self.refine_picture(solid, view, width, height, scene=scene)
+        return image
+
+    def _draw_surface(
+        self,
+        surface: SolidSurface,
+        view: SolidView,
+        size: tuple[int, int],
+        hits: ZSpans,
+        check_canceled: CheckCanceled | None,
+        background: int | None = None,
+    ) -> tuple[ImageArray, DepthArray]:
+        """Return the picture of a surface, and the depth of each pixel."""
+        images = PointLighting(PointProjection(surface, view, *size, check_canceled), hits).make_images()
+        remove_specks(images.codes)
+        draw_edges(images)
+        ground = self.colors.background if background is None else background
+        table = np.append(self._table.ravel(), np.uint32(ground))
+        return table[np.maximum(images.codes, -1)], images.depth
+
+    def _draw_chuck(
+        self, chuck: Solid, view: SolidView, size: tuple[int, int], check_canceled: CheckCanceled | None
+    ) -> ImageLayer:
+        """Return the image layer of the chuck.
+
+        The chuck is drawn again only if the view has changed.
+        """
+        seen = (id(chuck), replace(view, roll_deg=0.0), *size)
+        if self._clamping is None or self._clamping[0] != seen:
+            if self._clamping_painter is None:
+                chuck_color = self.colors.chuck
+                self._clamping_painter = SolidPicture(
+                    self.colors._replace(outside=chuck_color, bore=chuck_color, section=chuck_color)
+                )
+            painter = self._clamping_painter
+            surface = painter._find_surface(chuck, view, size[0], 0)
+            drawn = painter._draw_surface(surface, view, size, (), check_canceled, background=0)
+            self._clamping = seen, ImageLayer(*drawn)
+        return self._clamping[1]
+
+    def _find_surface(self, solid: Solid, view: SolidView, width: int, version: int) -> SolidSurface:
+        """Return the surface points of the visible part of a solid, from the cache if they are there."""
+        cos, sin = view.azimuth_cos_sin
+        towards = 0 if abs(sin) < 0.01 else int(math.copysign(1, sin))
+        half = (0.5 * width / view.pixels_per_mm + solid.max_radius_mm * abs(sin)) / max(cos, 0.05)
+        back, front = float(solid.column_edges[0]), float(solid.column_edges[-1])
+        span = max(view.center_z_mm - half, back), min(view.center_z_mm + half, front)
+        made_of = (id(solid.column_edges), id(solid.outer_radii), version, view.pixels_per_mm, towards, span)
+        found = self._surfaces.pop(made_of, None)
+        if found is None:
+            found = SolidSurface(solid, view.pixels_per_mm, view.center_z_mm, span, towards)
+        self._surfaces[made_of] = found  # the last used surface is the last item
+        for outdated in list(self._surfaces)[:-_MAX_SURFACES]:
+            del self._surfaces[outdated]
+        return found
