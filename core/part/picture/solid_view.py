@@ -75,7 +75,10 @@ class SolidView:
 
 
 def make_coarse_view(view: SolidView, width: int, height: int, pixel_size: int) -> tuple[SolidView, int, int]:
-    """Return the view, width and height of a picture whose pixels replace ``pixel_size`` pixels each way."""
+    """Return the view, width and height of a coarse picture.
+
+    Each of its pixels replaces ``pixel_size`` pixels to the right and down.
+    """
     small = -(-width // pixel_size), -(-height // pixel_size)
     offset = tuple(
         (each + 0.5 * whole) / pixel_size - 0.5 * count
