@@ -13,6 +13,7 @@ from app.path.path_pane_view import PlanePosition
 from app.path.path_projection import Projection
 from app.path.polyline import Polyline
 from app.screen.screen_theme import ScreenTheme
+from core.part.picture.clamping_bodies import find_clamping_back_z
 from core.part.picture.solid_view import SolidView
 from core.part.picture.solid_view import fit_view as fitted_solid
 
@@ -41,7 +42,7 @@ class SolidPane(PartPane):
             return flat
         wide, high = flat.width_px, max(flat.height_px - round(3.0 * self.theme.unit_px), 1)
         room = _VIEW_RADIUS_RATIO * stock.max_radius_mm  # leaves room for the tool
-        left = self.find_left_z_mm(shown, stock)
+        left = find_clamping_back_z(shown.part_instant.clamping, stock)
         scale, centre = fitted_solid(left, stock.front_z_mm, room, wide, high, self._azimuth)
         return Projection(centre, 0.0, scale, flat.width_px, flat.height_px)
 

@@ -13,8 +13,9 @@ from itertools import pairwise
 import numpy as np
 
 from core.message import Message
+from core.part.picture.clamping_bodies import make_clamping_bodies
 from core.part.picture.part_scene import PartScene
-from core.part.picture.solid_bodies import SymmetryAxis, ToolBody, make_chuck_solid
+from core.part.picture.solid_bodies import SymmetryAxis, ToolBody
 from core.part.picture.surface_points import Solid, make_milled_solid, make_turned_solid
 from core.part.stock_spec import StockSpec
 from core.part.swept_edge import FloatArray, Point
@@ -118,10 +119,7 @@ class PartHistory:
         self._kept = PartCopies()
         self._clamping = program_steps.part_settings.clamping
         self._travel = program_steps.part_settings.travel
-        self._chuck: Solid | None = None
-        held = self._clamping
-        if held is not None and (held.chuck_diameter or held.quill_diameter) and self.stock is not None:
-            self._chuck = make_chuck_solid(held, self.stock)
+        self._bodies = make_clamping_bodies(self._clamping, self.stock) if self.stock is not None else ()
         self._making = PartSimulation(self._tools, self.stock, program_steps.part_settings)
         self._seen = self._making  # the part as last returned
         self._ahead: tuple[int, float, PartSimulation] | None = (
@@ -229,9 +227,9 @@ class PartHistory:
         """Return the objects around a part state for the picture: the chuck or collet, and the tool."""
         tool = instant.tool
         if tool is None or not (tool.cutting_outlines or tool.body_outlines):
-            return PartScene(self._chuck)
+            return PartScene(self._bodies)
         return PartScene(
-            self._chuck,
+            self._bodies,
             ToolBody(tool.cutting_outlines, tool.body_outlines, tool.symmetry_axis, tool.is_assumed),
         )
 

@@ -1,21 +1,18 @@
-"""Tool and chuck in the solid picture: where they are seen, and what hides them."""
+"""Tools in the solid picture: where they are seen, and what hides them."""
 
 from __future__ import annotations
-
-import math
 
 import numpy as np
 import pytest
 
 from core.part.picture.part_scene import ImageArray, PartColors, PartScene
-from core.part.picture.solid_bodies import SymmetryAxis, ToolBody, make_chuck_solid
+from core.part.picture.solid_bodies import SymmetryAxis, ToolBody
 from core.part.picture.solid_picture import SolidPicture
 from core.part.picture.solid_view import SolidView
 from core.part.picture.surface_points import Solid, make_turned_solid
-from core.part.stock import Clamping, make_bar_stock
 
 WIDTH, HEIGHT = 400, 300
-GOLD, GREY, BROWN = PartColors().insert, PartColors().holder, PartColors().chuck
+GOLD, GREY = PartColors().insert, PartColors().holder
 SIDE = SolidView(azimuth_deg=0.0, tilt_deg=0.0, pixels_per_mm=8.0, center_z_mm=-10.0)
 ABOVE = SolidView(azimuth_deg=0.0, tilt_deg=90.0, pixels_per_mm=8.0, center_z_mm=-10.0)
 SQUARE = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 6.0], [0.0, 6.0]])
@@ -33,8 +30,8 @@ def at(z: float, x: float) -> np.ndarray:
     return moved
 
 
-def drawn(view: SolidView, tool: ToolBody | None = None, chuck: Solid | None = None) -> ImageArray:
-    return SolidPicture().draw_picture(shaft(), view, WIDTH, HEIGHT, scene=PartScene(chuck, tool))
+def drawn(view: SolidView, tool: ToolBody | None = None) -> ImageArray:
+    return SolidPicture().draw_picture(shaft(), view, WIDTH, HEIGHT, scene=PartScene(tool=tool))
 
 
 def like(image: ImageArray, colour: int) -> np.ndarray:
@@ -81,27 +78,6 @@ def test_assumed_holder_is_drawn_transparent() -> None:
     assert (solid[there] != bare[there]).all()
     far = np.abs((ghost[there] & 255).astype(int) - (bare[there] & 255).astype(int)).max()
     assert 0 < far < np.abs((solid[there] & 255).astype(int) - (bare[there] & 255).astype(int)).max()
-
-
-def test_chuck_is_drawn_at_its_face_and_hides_bar() -> None:
-    chuck = make_chuck_solid(Clamping(24.0, 15.0, 3.0, 16.0), make_bar_stock(10.0, 0.0, -20.0))
-    found = like(drawn(SIDE, chuck=chuck), BROWN)
-    _, columns = np.nonzero(found)
-    assert columns.max() == pytest.approx(200 - 5 * 8, abs=1)  # its face at Z-15
-    high = {at: np.ptp(np.flatnonzero(found[:, at])) + 1 for at in (150, 100)}
-    assert high == {150: pytest.approx(128, abs=3), 100: pytest.approx(192, abs=3)}  # jaws, body
-    assert math.isclose(float(chuck.inner_radii.max()), 5.0)
-
-
-def test_center_is_drawn_in_front_of_face() -> None:
-    """Its tip 2 mm in the part; 60 degrees: 8 mm of quill begin 4 / tan 30 = 6.93 mm further on."""
-    held = Clamping(0.0, 0.0, quill_diameter=8.0, center_angle_deg=60.0, center_z_mm=-2.0)
-    found = like(drawn(SIDE, chuck=make_chuck_solid(held, make_bar_stock(10.0, 0.0, -20.0))), BROWN)
-    assert not found[:, : 200 + 80].any()  # what is in the part is hidden
-    for z in (2.0, 4.0):
-        high = np.ptp(np.flatnonzero(found[:, round(200 + (10.0 + z) * 8)])) + 1
-        assert high == pytest.approx(2.0 * (z + 2.0) * math.tan(math.radians(30.0)) * 8, abs=3)
-    assert np.ptp(np.flatnonzero(found[:, 200 + 140])) + 1 == pytest.approx(64, abs=3)
 
 
 def test_distant_tool_does_not_change_picture() -> None:

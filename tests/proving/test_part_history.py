@@ -12,6 +12,7 @@ from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import create_power_up_setup
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.language.source import ProgramSource
+from core.part.picture.clamping_bodies import BodyMaterial, RoundBody
 from core.part.picture.solid_bodies import SymmetryAxis
 from core.part.stock import Clamping, make_bar_stock
 from core.part.tool_shape import ToolKind, ToolShape
@@ -311,12 +312,13 @@ def test_scene_has_tool_and_chuck_around_part() -> None:
     seen = history(MILLED, replace(MILL, clamping=Clamping(40.0, 30.0, 5.0, 30.0)))
     instant = seen.at(len(seen.steps))
     around = seen.make_scene_at(instant)
-    assert around.chuck is not None
-    assert around.chuck.max_radius_mm == 20.0
-    assert float(around.chuck.column_edges[-1]) == -30.0
+    chuck = [body for body in around.clamping if body.material is BodyMaterial.CHUCK]
+    assert max(body.back_radius_mm for body in chuck if isinstance(body, RoundBody)) == 20.0
+    assert max(body.front_z_mm for body in chuck) == -30.0
     assert around.tool is not None
     assert around.tool.symmetry_axis is SymmetryAxis.X
-    assert history(MILLED, MILL).make_scene_at(instant).chuck is None
+    assumed = history(MILLED, MILL).make_scene_at(instant).clamping
+    assert any(body.material is BodyMaterial.JAW for body in assumed)
 
 
 @pytest.mark.parametrize(

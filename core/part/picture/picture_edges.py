@@ -18,6 +18,7 @@ FACING_AWAY = -2
 """Code of a pixel whose surface faces away from the viewer; -1 is the code of an empty pixel."""
 
 _STEP_PX = 6.0  # pixels of depth
+_HOLE_PX = 4.0  # pixels of depth
 _BEND = 0.25  # change of the normal from one pixel to the next
 _DARKNESS = 0.45  # ratio by which an edge is darker than its surface
 
@@ -37,19 +38,24 @@ class PixelImages(NamedTuple):
     above: Float32Array
 
 
-def remove_specks(codes: CodeArray) -> CodeArray:
-    """Replace points on the rim that face away, and isolated points, by the median of their neighbors.
+def fill_holes(images: PixelImages) -> None:
+    """Fill pixels between surface points, and pixels on the rim that face away, from their neighbors.
 
-    The median of three points is applied horizontally, then vertically.
+    A hole is one pixel wide and much deeper than the pixels on both sides of it.
     """
-    for turned in (codes, codes[:, ::-1], codes.T, codes.T[:, ::-1]):
-        away = turned[:, :-1] == FACING_AWAY
-        np.copyto(turned[:, :-1], turned[:, 1:], where=away)
-    for turned in (codes.T, codes):
-        before, own, next_codes = turned[:-2], turned[1:-1], turned[2:]
-        low, high = np.minimum(before, next_codes), np.maximum(before, next_codes)
-        turned[1:-1] = np.maximum(low, np.minimum(high, own))
-    return codes
+    codes, depth = images.codes, images.depth
+    for turned in (False, True):
+        own, seen = (codes.T, depth.T) if turned else (codes, depth)
+        hole = np.minimum(seen[:-2], seen[2:])
+        hole -= seen[1:-1]
+        row, column = np.nonzero(hole > _HOLE_PX * DEPTH_STEPS)
+        for image in images:
+            values = image.T if turned else image
+            values[row + 1, column] = values[row, column]
+        away = np.nonzero(own[:-1] == FACING_AWAY)
+        own[away] = own[1:][away]
+        away = np.nonzero(own[1:] == FACING_AWAY)
+        own[1:][away] = own[:-1][away]
 
 
 def draw_edges(images: PixelImages) -> None:

@@ -6,6 +6,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from core.part.picture.part_scene import SHADES
 from core.part.picture.picture_edges import FACING_AWAY, CodeArray, PixelImages
@@ -18,6 +19,7 @@ _LIGHT = (-0.38, 0.62, 0.69)  # right, up, toward the viewer
 _BISECTOR = (-0.207, 0.337, 0.919)  # halfway between light and viewer
 _STEEP = 0.5  # cosine between a wall's normal and the radius, below which the wall is not round
 _OUTSIDE, _BORE, _SECTION, _HIT = range(4)
+AnyArray = npt.NDArray[np.floating]
 Vectors = tuple[Float32Array, Float32Array, Float32Array]
 
 
@@ -151,15 +153,23 @@ class PointLighting:
         cos, sin = self.points.cos, self.points.sin
         right = along * cos - towards * sin
         towards = along * sin + towards * cos
-        lit = right * _LIGHT[0] + above * _LIGHT[1] + towards * _LIGHT[2]
-        np.maximum(lit, 0.0, out=lit)
-        glint = right * _BISECTOR[0] + above * _BISECTOR[1] + towards * _BISECTOR[2]
-        np.maximum(glint, 0.0, out=glint)
-        for _ in range(4):
-            glint *= glint
-        shade = np.asarray(0.2 + 0.5 * lit + 0.28 * glint, np.float32)
-        shade[towards < -0.05] = -1.0
-        return shade, right, above
+        return calculate_brightness(right, above, towards), right, above
+
+
+def calculate_brightness(right: AnyArray, above: AnyArray, towards: AnyArray) -> Float32Array:
+    """Return the brightness of surface normals from 0 to 1, or -1 for normals that point away.
+
+    The normals are given as components to the right, up and toward the viewer.
+    """
+    lit = right * _LIGHT[0] + above * _LIGHT[1] + towards * _LIGHT[2]
+    np.maximum(lit, 0.0, out=lit)
+    glint = right * _BISECTOR[0] + above * _BISECTOR[1] + towards * _BISECTOR[2]
+    np.maximum(glint, 0.0, out=glint)
+    for _ in range(4):
+        glint *= glint
+    shade = np.asarray(0.14 + 0.44 * lit + 0.16 * towards + 0.28 * glint, np.float32)
+    shade[towards < -0.05] = -1.0
+    return shade
 
 
 def _wall_normals(wall: LayerWall, row: IntArray, ray: IntArray, surface: SolidSurface) -> Vectors:

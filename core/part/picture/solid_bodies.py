@@ -1,4 +1,4 @@
-"""Tool, holder and chuck in the solid picture, as image layers merged with the part by depth.
+"""Tool and holder in the solid picture, as image layers merged with the part by depth.
 
 The outlines of a tool become prisms below its rake face, which is in the XZ plane through the spindle axis.
 A rotating tool becomes a solid of revolution. The points of these bodies are one pixel apart. They are not
@@ -16,16 +16,11 @@ import numpy as np
 import numpy.typing as npt
 
 from core.part.picture.solid_view import SolidView
-from core.part.picture.surface_points import Solid, make_turned_solid
 from core.part.ray_cuts import FloatArray
-from core.part.stock import Clamping, Stock
 
 ImageArray = npt.NDArray[np.uint32]
 DepthArray = npt.NDArray[np.int32]
 
-_CHUCK_FRONT_MM = 15.0  # mm of the chuck body that are drawn
-_STEP = 0.01  # mm, width of a shoulder of the chuck
-_CONE = 60  # columns of a tailstock center
 _INSERT_HEIGHT_MM = 0.1  # mm by which an insert is drawn above its holder
 _INSERT, _HOLDER = 4.8, 16.0  # mm below the rake face; a holder uses its width if it is less
 _LIGHT = np.array([-0.38, 0.62, 0.69])  # right, up, toward the viewer
@@ -96,30 +91,6 @@ class _Viewer(NamedTuple):
     pixels_per_mm: float
     z_range_mm: tuple[float, float]
     x_range_mm: tuple[float, float]
-
-
-def make_chuck_solid(clamping: Clamping, stock: Stock) -> Solid:
-    """Return the solid of the front of a chuck or collet, and of the tailstock center."""
-    edges: list[float] = []
-    columns: list[tuple[float, float]] = []  # inner and outer radius
-    if clamping.chuck_diameter:
-        inside = clamping.make_chuck_for_stock(stock).bore_profile[0][1]
-        body = -clamping.stick_out - clamping.jaw_length
-        radius, jaws = clamping.chuck_diameter / 2.0, (clamping.jaw_diameter or clamping.chuck_diameter) / 2.0
-        edges += [body - _CHUCK_FRONT_MM, body - _STEP, body]
-        columns += [(inside, radius)] * 2
-        if clamping.jaw_length:
-            edges += [body + _STEP, body + clamping.jaw_length]
-            columns += [(inside, jaws)] * 2
-    tailstock = clamping.tailstock_solid
-    if tailstock is not None:
-        (tip, _), (end, radius), (back, _) = tailstock.outside_profile
-        cone = np.linspace(tip, end, _CONE + 1)
-        columns += [(0.0, 0.0)] if edges else []
-        edges += [*cone.tolist(), end + _STEP, back]
-        columns += [(0.0, radius * (k + 0.5) / _CONE) for k in range(_CONE)] + [(0.0, radius)] * 2
-    low, high = np.array(columns).T
-    return make_turned_solid(np.array(edges), low[None], high[None])
 
 
 def make_tool_layers(

@@ -13,8 +13,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from core.part.picture.body_picture import draw_bodies
+from core.part.picture.clamping_bodies import Body
 from core.part.picture.part_scene import ImageArray, PartColors, PartScene, make_color_table
-from core.part.picture.picture_edges import draw_edges, remove_specks
+from core.part.picture.picture_edges import draw_edges, fill_holes
 from core.part.picture.point_lighting import PointLighting, ZSpans
 from core.part.picture.point_projection import DEPTH_STEPS, FAR_DEPTH, CheckCanceled, PointProjection
 from core.part.picture.solid_bodies import DepthArray, ImageLayer, make_tool_layers
@@ -22,6 +24,8 @@ from core.part.picture.solid_view import SolidView
 from core.part.picture.surface_points import Solid, SolidSurface
 
 _SAMPLES = ((-0.125, -0.375), (0.375, -0.125), (-0.375, 0.125), (0.125, 0.375))  # pixels right and down
+_BACK_AZIMUTH_DEG = -10.0  # from further back, the clamping would hide the part
+_BACK_OPACITY = 0.3
 _MAX_SURFACES = 2  # one for coarse and one for fine pictures
 
 
@@ -33,9 +37,9 @@ class SolidPicture:
 
     def __init__(self, colors: PartColors | None = None) -> None:
         self.colors = colors or PartColors()
-        self._table = make_color_table(self.colors)
+        self._table = make_color_table(self.colors.part_colors)
+        self._body_table = make_color_table(self.colors.body_colors)
         self._surfaces: dict[tuple[object, ...], SolidSurface] = {}
-        self._clamping_painter: SolidPicture | None = None
         self._clamping: tuple[tuple[object, ...], ImageLayer] | None = None  # in the last view
 
     def draw_picture(
@@ -57,8 +61,8 @@ class SolidPicture:
         """
         surface = self._find_surface(solid, view, width, version)
         image, depth = self._draw_surface(surface, view, (width, height), hit_z_spans, check_canceled)
-        if scene.chuck is not None:
-            self._draw_chuck(scene.chuck, view, (width, height), check_canceled).draw_onto_image(image, depth)
+        if scene.clamping:
+            self._draw_clamping(scene.clamping, view, (width, height)).draw_onto_image(image, depth)
         if scene.tool is not None:
             looks = (self.colors.holder, self.colors.insert)
             for layer in make_tool_layers(scene.tool, view, width, height, looks, DEPTH_STEPS, FAR_DEPTH):
@@ -121,34 +125,23 @@ class SolidPicture:
         size: tuple[int, int],
         hits: ZSpans,
         check_canceled: CheckCanceled | None,
-        background: int | None = None,
     ) -> tuple[ImageArray, DepthArray]:
         """Return the picture of a surface, and the depth of each pixel."""
         images = PointLighting(PointProjection(surface, view, *size, check_canceled), hits).make_images()
-        remove_specks(images.codes)
+        fill_holes(images)
         draw_edges(images)
-        ground = self.colors.background if background is None else background
-        table = np.append(self._table.ravel(), np.uint32(ground))
+        table = np.append(self._table.ravel(), np.uint32(self.colors.background))
         return table[np.maximum(images.codes, -1)], images.depth
 
-    def _draw_chuck(
-        self, chuck: Solid, view: SolidView, size: tuple[int, int], check_canceled: CheckCanceled | None
-    ) -> ImageLayer:
-        """Return the image layer of the chuck.
-
-        The chuck is drawn again only if the view has changed.
-        """
-        seen = (id(chuck), replace(view, roll_deg=0.0), *size)
+    def _draw_clamping(self, bodies: tuple[Body, ...], view: SolidView, size: tuple[int, int]) -> ImageLayer:
+        """Return the image layer of the clamping, which is drawn again only if the view has changed."""
+        seen = (bodies, view, *size)
         if self._clamping is None or self._clamping[0] != seen:
-            if self._clamping_painter is None:
-                chuck_color = self.colors.chuck
-                self._clamping_painter = SolidPicture(
-                    self.colors._replace(outside=chuck_color, bore=chuck_color, section=chuck_color)
-                )
-            painter = self._clamping_painter
-            surface = painter._find_surface(chuck, view, size[0], 0)
-            drawn = painter._draw_surface(surface, view, size, (), check_canceled, background=0)
-            self._clamping = seen, ImageLayer(*drawn)
+            images = draw_bodies(bodies, view, *size)
+            draw_edges(images)
+            table = np.append(self._body_table.ravel(), np.uint32(0))
+            opacity = _BACK_OPACITY if view.azimuth_deg < _BACK_AZIMUTH_DEG else 1.0
+            self._clamping = seen, ImageLayer(table[images.codes], images.depth, opacity)
         return self._clamping[1]
 
     def _find_surface(self, solid: Solid, view: SolidView, width: int, version: int) -> SolidSurface:

@@ -26,7 +26,7 @@ MISSING_RADIUS = np.float32(-1e6)
 """Radius of a missing point, in pixels. The point is outside every picture."""
 
 _SLOPE = 2.0  # slope between columns below which a step is a cone or an arc and not a shoulder
-_GAP = 0.7  # pixels
+_GAP = 0.4  # pixels; a larger step along Z is a face
 _NEAR_PX = 6.0  # pixels; neighboring rays that are further apart do not form one surface
 _LARGE_RADIUS = np.float32(1e6)
 _SPREAD = 3  # columns and rays over which the direction of a wall is measured
