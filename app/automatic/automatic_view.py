@@ -223,7 +223,7 @@ class AutomaticPage(Page):
         """Return the key actions of the part animation, or no actions while the part is not shown."""
         if self.path_view.part_player is None or not self.path_view.is_part_shown:
             return {}
-        return {**self.path_view.make_playback_key_actions(), "To line": self._show_part_at_line}
+        return {**self.path_view.make_part_key_actions(), "To line": self._show_part_at_line}
 
     def _show_part_at_line(self) -> None:
         """Show the part as machined before the first visible line of the program window."""

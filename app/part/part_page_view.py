@@ -83,7 +83,7 @@ class PartPage(ListPage):
             "F8": partial(self.host.open_page, page_table.TOOLS),
             "View": path.select_next_view,
             **path.make_view_key_actions(),
-            **path.make_playback_key_actions(),
+            **path.make_part_key_actions(),
         }
 
     def find_list(self) -> TablePanel | None:

@@ -43,13 +43,14 @@ ZRadius = tuple[float, float]
 class SolidImageRequest(NamedTuple):
     """Request for a 3D image: the view of the part and the image size in pixels.
 
-    ``is_coarse`` selects a coarser image.
+    ``is_coarse`` selects a coarser image. ``is_stock_shown`` draws the transparent stock around the part.
     """
 
     view: SolidView
     width_px: int
     height_px: int
     is_coarse: bool = False
+    is_stock_shown: bool = False
 
 
 class ProgramInstant(NamedTuple):
@@ -372,7 +373,7 @@ class PartPlayer:
             *seen,
             version=self._draws,
             hit_z_spans=_find_hit_spans(instant),
-            scene=history.make_scene_at(instant),
+            scene=history.make_scene_at(instant, has_stock=look.is_stock_shown),
             check_canceled=None if look.is_coarse else request,
         )
         for image in images:

@@ -64,6 +64,7 @@ class PathView(Panel):
         self.part_player = part_player  # player of the part; without a player, the part is not shown
         # opens the entry of the stock; None if it cannot be opened from this view
         self.open_stock: OnPress | None = None
+        self.enlarge: OnPress | None = None  # enlarges the view; None if its size cannot be changed
         self._bar: PartTimeline | None = None  # the time line, created when the part is first shown
         self._set: PaneSet | None = None  # created with the first picture
         self._tip: TipPosition | None = None  # not drawn until the first position is set
@@ -103,6 +104,10 @@ class PathView(Panel):
     def is_part_shown(self) -> bool:
         """Return whether a view of the part is displayed."""
         return any(pane.aspect in PART_ASPECTS for pane in self.panes)
+
+    @property
+    def _is_solid_shown(self) -> bool:
+        return any(pane.aspect in SPATIAL_ASPECTS for pane in self.panes)
 
     @property
     def has_path(self) -> bool:
@@ -296,9 +301,16 @@ class PathView(Panel):
             "Pan down": partial(self.pan_view, 0, 1),
         }
 
-    def make_playback_key_actions(self) -> KeyActions:
-        """Return the actions of the timeline keys, or no actions without a player."""
-        return self.part_player.make_key_actions() if self.part_player is not None else {}
+    def make_part_key_actions(self) -> KeyActions:
+        """Return the actions of the keys for the timeline and for the part in space."""
+        if self.part_player is None:
+            return {}
+        actions = self.part_player.make_key_actions()
+        if not self._is_solid_shown:
+            return actions
+        from app.path.solid_actions import make_solid_key_actions
+
+        return {**actions, **make_solid_key_actions(self.panes, self.update)}
 
     def find_pane(self, position: QPointF | None) -> PathPane | None:
         """Return the pane at a position.
@@ -473,4 +485,10 @@ class PathView(Panel):
         if self.has_several_views:
             # A low pane does not have room for all buttons.
             found.insert(2, ViewButton(tr("VIEW"), self.select_next_view))
+        if self.enlarge is not None:
+            found.append(ViewButton(tr("LARGE"), self.enlarge))
+        if self._is_solid_shown:
+            from app.path.solid_actions import make_solid_buttons
+
+            found += make_solid_buttons(self.panes, self.update)
         return found

@@ -19,6 +19,7 @@ from core.part.picture.solid_view import fit_view as fitted_solid
 
 _DEGREES_PER_PIXEL = 0.4  # degrees per pixel
 _DEGREES_PER_KEY = 10.0  # degrees per key press
+_SECTION_STEP_DEG = 15.0
 _MAX_TILT_DEG = 85.0  # maximum rotation from the side view, in degrees
 _VIEW_RADIUS_RATIO = 1.25  # ratio to the radius of the stock
 
@@ -31,6 +32,8 @@ class SolidPane(PartPane):
     ) -> None:
         self._azimuth, self._tilt, self._roll = 30.0, 35.0, 0.0
         self._view: SolidView | None = None  # the view of the last request
+        self.section_angle_deg: float | None = None  # from the turning plane; None without a section
+        self.is_stock_shown = False  # whether the uncut stock is shown around the part
         super().__init__(theme, aspect, polyline, player)
 
     # --- projection ----------------------------------------------------------------------------------
@@ -56,11 +59,17 @@ class SolidPane(PartPane):
         if projection is None or projection.width_px < 1 or projection.height_px < 1:
             return
         opening = find_removed_quarter(self._tilt) if self.aspect is PathViewKind.OPEN_SOLID else None
+        if self.section_angle_deg is not None:
+            opening = find_removed_half(self._tilt, self.section_angle_deg)
         view = SolidView(
             self._azimuth, self._tilt, self._roll, projection.pixels_per_mm, projection.center_z, opening
         )
         self._view = view
-        self.part_player.set_image_request(SolidImageRequest(view, projection.width_px, projection.height_px))
+        self.part_player.set_image_request(
+            SolidImageRequest(
+                view, projection.width_px, projection.height_px, is_stock_shown=self.is_stock_shown
+            )
+        )
 
     def find_tip_position(self, tip: TipPosition) -> PlanePosition | None:
         """Return the position of the tool tip in the picture.
@@ -71,6 +80,24 @@ class SolidPane(PartPane):
             self._roll = tip.c
             self._want()
         return super().find_tip_position(tip)
+
+    # --- section and stock ---------------------------------------------------------------------------
+
+    def toggle_section(self) -> None:
+        """Cut the part in the turning plane, or show it as before."""
+        self.section_angle_deg = 0.0 if self.section_angle_deg is None else None
+        self._want()
+
+    def rotate_section(self) -> None:
+        """Rotate the section plane by one step about the part axis; start with the turning plane."""
+        angle = self.section_angle_deg
+        self.section_angle_deg = 0.0 if angle is None else (angle + _SECTION_STEP_DEG) % 180.0
+        self._want()
+
+    def toggle_stock(self) -> None:
+        """Show or hide the transparent stock around the part."""
+        self.is_stock_shown = not self.is_stock_shown
+        self._want()
 
     # --- navigation ----------------------------------------------------------------------------------
 
@@ -135,6 +162,17 @@ class SolidPane(PartPane):
         )
         corners = view.project_to_screen(np.array(places), wide, high)
         draw_travel_limits(painter, self.theme, [QPointF(x, y) for x, y in corners.tolist()])
+
+
+def find_removed_half(tilt_deg: float, section_angle_deg: float) -> tuple[float, float]:
+    """Return the start and end angles of the half that is cut away from the displayed solid.
+
+    The angles are in degrees, measured from the direction of the viewer towards the top. The section plane
+    contains the part axis. Its angle is measured from the turning plane on the operator's side. The half
+    that is closer to the viewer is removed.
+    """
+    first = (section_angle_deg - tilt_deg) % 180.0 - 180.0
+    return first, first + 180.0
 
 
 def find_removed_quarter(tilt_deg: float) -> tuple[float, float]:

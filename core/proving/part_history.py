@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from core.message import Message
-from core.part.picture.clamping_bodies import make_clamping_bodies
+from core.part.picture.clamping_bodies import make_clamping_bodies, make_stock_bodies
 from core.part.picture.part_scene import PartScene
 from core.part.picture.solid_bodies import SymmetryAxis, ToolBody
 from core.part.picture.surface_points import Solid, make_milled_solid, make_turned_solid
@@ -223,14 +223,19 @@ class PartHistory:
             return make_milled_solid(milling.updated_field)
         return make_turned_solid(*instant.x_plus_half)
 
-    def make_scene_at(self, instant: PartState) -> PartScene:
-        """Return the objects around a part state for the picture: the chuck or collet, and the tool."""
+    def make_scene_at(self, instant: PartState, *, has_stock: bool = False) -> PartScene:
+        """Return the objects around a part state for the picture: the clamping, the tool and the stock.
+
+        The stock is included only if ``has_stock`` is True.
+        """
+        stock = make_stock_bodies(self.stock) if has_stock and self.stock is not None else ()
         tool = instant.tool
         if tool is None or not (tool.cutting_outlines or tool.body_outlines):
-            return PartScene(self._bodies)
+            return PartScene(self._bodies, stock=stock)
         return PartScene(
             self._bodies,
             ToolBody(tool.cutting_outlines, tool.body_outlines, tool.symmetry_axis, tool.is_assumed),
+            stock,
         )
 
     def _step(self, block: int) -> ProgramStep | None:

@@ -13775,6 +13775,11 @@
     </message>
     <message>
       <location filename="app/path/path_view.py" />
+      <source>LARGE</source>
+      <translation>AMPLIAR</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_view.py" />
       <source>Load a program to see its path.</source>
       <translation>Cargue un programa para ver su trayectoria.</translation>
     </message>
@@ -13787,6 +13792,16 @@
       <location filename="app/path/path_view.py" />
       <source>MEAS</source>
       <translation>MEDIR</translation>
+    </message>
+    <message>
+      <location filename="app/path/solid_actions.py" />
+      <source>BLANK</source>
+      <translation>BRUTO</translation>
+    </message>
+    <message>
+      <location filename="app/path/solid_actions.py" />
+      <source>CUT</source>
+      <translation>CORTE</translation>
     </message>
     <message>
       <location filename="app/production/cycle_recorder.py" />

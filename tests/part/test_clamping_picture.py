@@ -15,13 +15,14 @@ from core.part.picture.clamping_bodies import (
     RoundBody,
     find_clamping_back_z,
     make_clamping_bodies,
+    make_stock_bodies,
 )
 from core.part.picture.part_scene import PartScene
 from core.part.picture.point_projection import DEPTH_STEPS, FAR_DEPTH
 from core.part.picture.solid_picture import SolidPicture
 from core.part.picture.solid_view import SolidView
 from core.part.picture.surface_points import make_turned_solid
-from core.part.stock import Clamping, make_bar_stock
+from core.part.stock import Clamping, Stock, make_bar_stock
 
 WIDTH, HEIGHT, SCALE = 400, 300, 8.0
 SIDE = SolidView(azimuth_deg=0.0, tilt_deg=0.0, pixels_per_mm=SCALE, center_z_mm=-10.0)
@@ -146,3 +147,19 @@ def test_clamping_from_behind_does_not_hide_part() -> None:
         view = SolidView(azimuth_deg=azimuth, pixels_per_mm=SCALE, center_z_mm=-20.0)
         image = SolidPicture().draw_picture(solid, view, WIDTH, HEIGHT, scene=scene)
         assert (set(np.unique(image >> 24).tolist()) <= {0, 255}) is is_opaque
+
+
+def test_stock_is_transparent_and_as_large_as_uncut() -> None:
+    """The stock of 10 × 20 mm covers a thinner part; its opacity is 30 percent of 255."""
+    solid = make_turned_solid(np.linspace(-20.0, 0.0, 501), np.zeros((1, 500)), np.full((1, 500), 3.0))
+    scene = PartScene(stock=make_stock_bodies(BAR))
+    alpha = SolidPicture().draw_picture(solid, SIDE, WIDTH, HEIGHT, scene=scene) >> 24
+    assert np.count_nonzero(alpha) == pytest.approx(20 * 10 * SCALE**2, rel=0.02)
+    assert np.count_nonzero(alpha == 255) == pytest.approx(20 * 6 * SCALE**2, rel=0.02)
+    assert set(np.unique(alpha).tolist()) == {0, 76, 255}
+
+
+def test_step_of_stock_has_no_length() -> None:
+    stepped = Stock("", ((-20.0, 5.0), (-10.0, 5.0), (-10.0, 3.0), (0.0, 3.0)))
+    lengths = [body.front_z_mm - body.back_z_mm for body in make_stock_bodies(stepped)]
+    assert lengths == [10.0, 10.0]

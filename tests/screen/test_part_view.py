@@ -11,11 +11,11 @@ from PySide6.QtGui import QColor, QImage
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.path.part_player import PartPlayer
+from app.path.part_player import PartPlayer, SolidImageRequest
 from app.path.path_aspects import PathViewKind, TipPosition
 from app.path.path_marks_view import make_part_title
 from app.path.path_view import PathView
-from app.path.solid_pane_view import find_removed_quarter
+from app.path.solid_pane_view import find_removed_half, find_removed_quarter
 from app.screen.color_palettes import DARK_PALETTE, LIGHT_PALETTE
 from app.screen.screen_theme import ScreenTheme
 from core.part.stock import Clamping
@@ -280,6 +280,60 @@ def test_next_view_after_solid_is_open_solid_and_then_path(view: PathView) -> No
     assert settled(view) != whole
     view.select_next_view()
     assert [pane.aspect for pane in view.panes] == [PathViewKind.PATH]
+
+
+@pytest.mark.parametrize("tilt", range(-180, 180, 15))
+@pytest.mark.parametrize("angle", [0.0, 15.0, 90.0, 165.0])
+def test_removed_half_is_on_viewer_side_of_section_plane(tilt: int, angle: float) -> None:
+    first, last = find_removed_half(float(tilt), angle)
+    assert last - first == 180.0
+    assert -180.0 <= first < last <= 180.0
+    assert (first - (angle - tilt)) % 180.0 == 0.0  # one edge is in the section plane
+    assert first <= 0.0 <= last  # the viewer is at an angle of 0
+
+
+def test_section_and_stock_are_switched_by_keys(view: PathView) -> None:
+    solid(view, SHAFT)
+    player = view.part_player
+    assert player is not None
+
+    def request() -> SolidImageRequest:
+        wanted = player._wanted.image_request
+        assert wanted is not None
+        return wanted
+
+    keys = view.make_part_key_actions()
+    assert request().view.cut_out_range_deg is None
+    keys["X"]()
+    assert request().view.cut_out_range_deg == (-35.0, 145.0)  # the viewer looks from 35 degrees above
+    keys["Shift+X"]()
+    assert request().view.cut_out_range_deg == (-20.0, 160.0)
+    keys["X"]()
+    assert request().view.cut_out_range_deg is None
+    keys["G"]()
+    assert request().is_stock_shown
+    keys["G"]()
+    assert not request().is_stock_shown
+
+
+@pytest.mark.parametrize("aspect", [PathViewKind.SECTION, PathViewKind.PATH])
+def test_section_keys_do_nothing_in_flat_views(view: PathView, aspect: PathViewKind) -> None:
+    shown(view, SHAFT)
+    while view.panes[0].aspect is not aspect:
+        view.select_next_view()
+    assert not {"X", "Shift+X", "G"} & view.make_part_key_actions().keys()
+
+
+def test_section_shows_cut_faces_and_stock_covers_part(view: PathView) -> None:
+    whole = solid(view, SHAFT)
+    keys = view.make_part_key_actions()
+    keys["X"]()
+    cut = settled(view)
+    keys["X"]()
+    keys["G"]()
+    covered = settled(view)
+    assert cut != whole
+    assert covered not in (whole, cut)
 
 
 @pytest.mark.parametrize("tilt", range(-180, 180, 15))

@@ -70,6 +70,8 @@ KEY_NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
     (Key.Key_F6, SHIFT_MODIFIER): "Shift+F6",
     (Key.Key_Q, NO_MODIFIER): "Q",
     (Key.Key_X, NO_MODIFIER): "X",
+    (Key.Key_X, SHIFT_MODIFIER): "Shift+X",
+    (Key.Key_W, SHIFT_MODIFIER): "Shift+W",
 }
 PAGE_FUNCTION_KEYS = frozenset(
     {"F2", "F3", "F4", "F5", "F6", "F8", "F9", "F10", "Codes", RELOAD_KEY, "Shapes", "Calculators"}

@@ -15,10 +15,10 @@ import numpy as np
 from core.part.picture.clamping_bodies import Body, RoundBody
 from core.part.picture.part_scene import SHADES
 from core.part.picture.picture_edges import PixelImages
-from core.part.picture.point_lighting import calculate_brightness
+from core.part.picture.point_lighting import AnyArray, calculate_brightness
 from core.part.picture.point_projection import DEPTH_STEPS, FAR_DEPTH
 from core.part.picture.solid_view import SolidView
-from core.part.ray_cuts import FloatArray
+from core.part.picture.surface_points import Float32Array
 
 _FLAT = 1e-9
 Direction = tuple[float, float, float]
@@ -32,8 +32,8 @@ class _Hit(NamedTuple):
     the surface normals to the right, up and toward the viewer.
     """
 
-    depth: FloatArray
-    normals: tuple[FloatArray, FloatArray, FloatArray]
+    depth: Float32Array
+    normals: tuple[AnyArray, AnyArray, AnyArray]
 
 
 class _Lines(NamedTuple):
@@ -43,18 +43,18 @@ class _Lines(NamedTuple):
     ``sin`` belong to the azimuth.
     """
 
-    right: FloatArray
-    up: FloatArray
+    right: Float32Array
+    up: Float32Array
     cos: float
     sin: float
 
     @property
-    def z(self) -> FloatArray:
+    def z(self) -> Float32Array:
         """Return the Z of each line at a depth of 0."""
         return self.right * self.cos
 
     @property
-    def near(self) -> FloatArray:
+    def near(self) -> Float32Array:
         """Return the distance of each line from the axis toward the viewer at a depth of 0."""
         return -self.right * self.sin
 
@@ -79,8 +79,10 @@ def _draw_body(body: Body, view: SolidView, images: PixelImages) -> None:
     height, width = images.codes.shape
     cos, sin = view.azimuth_cos_sin
     lines = _Lines(
-        np.arange(columns.start, columns.stop) + 0.5 - 0.5 * width - view.offset_px[0],
-        (0.5 * height + view.offset_px[1] - 0.5 - np.arange(rows.start, rows.stop))[:, None],
+        (np.arange(columns.start, columns.stop) + 0.5 - 0.5 * width - view.offset_px[0]).astype(np.float32),
+        (0.5 * height + view.offset_px[1] - 0.5 - np.arange(rows.start, rows.stop)).astype(np.float32)[
+            :, None
+        ],
         cos,
         sin,
     )
@@ -149,8 +151,8 @@ def _hit_block(body: Body, lines: _Lines, view: SolidView) -> _Hit:
         (radial, body.inner_mm, body.outer_mm),
         (tangential, -half, half),
     )
-    entry, leave = np.full(1, np.inf), np.full(1, -np.inf)
-    right, above, towards = np.zeros(1), np.zeros(1), np.zeros(1)
+    entry, leave = np.full(1, np.inf, np.float32), np.full(1, -np.inf, np.float32)
+    right, above, towards = (np.zeros(1, np.float32) for _ in range(3))
     for axis, low, high in axes:
         start = axis[0] * lines.z + axis[1] * lines.near + axis[2] * lines.up
         rate = axis[0] * lines.sin + axis[1] * lines.cos
@@ -201,7 +203,7 @@ def _hit_round(body: RoundBody, lines: _Lines, view: SolidView) -> _Hit:
     return _Hit(depth, (right, above, towards))
 
 
-def _hit_side(lines: _Lines, radius: FloatArray, rise: float, ends: tuple[float, float]) -> FloatArray:
+def _hit_side(lines: _Lines, radius: Float32Array, rise: float, ends: tuple[float, float]) -> Float32Array:
     """Return the depth of the nearest points on the side of a cone, or -inf where there are none.
 
     The points satisfy near² + up² = (radius + rise · sin · depth)², which is a quadratic equation of the
@@ -214,7 +216,7 @@ def _hit_side(lines: _Lines, radius: FloatArray, rise: float, ends: tuple[float,
     root = half * half - square * (lines.near**2 + lines.up**2 - radius * radius)
     missed = root < 0.0
     root = np.sqrt(np.where(missed, 0.0, root))
-    best = np.full(root.shape, -np.inf)
+    best = np.full(root.shape, -np.inf, np.float32)
     for sign in (1.0, -1.0):
         depth = (-half + sign * root) / square
         z = lines.z + depth * lines.sin

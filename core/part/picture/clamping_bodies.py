@@ -76,6 +76,15 @@ def make_clamping_bodies(clamping: Clamping | None, stock: Stock) -> tuple[Body,
     return tuple(bodies)
 
 
+def make_stock_bodies(stock: Stock) -> tuple[RoundBody, ...]:
+    """Return the uncut stock as cylinders and cones, without its bore."""
+    return tuple(
+        RoundBody(back, front, inner, outer, BodyMaterial.BAR)
+        for (back, inner), (front, outer) in pairwise(stock.outside_profile)
+        if front > back
+    )
+
+
 def find_clamping_back_z(clamping: Clamping | None, stock: Stock) -> float:
     """Return the Z of the front of the chuck body, from which a picture should begin."""
     chuck = _find_chuck(clamping, stock)

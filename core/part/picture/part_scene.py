@@ -46,10 +46,11 @@ class PartColors(NamedTuple):
 
 
 class PartScene(NamedTuple):
-    """The objects around the part: the bodies that clamp it, and a tool."""
+    """The objects around the part: the bodies that clamp it, a tool, and the transparent stock."""
 
     clamping: tuple[Body, ...] = ()
     tool: ToolBody | None = None
+    stock: tuple[Body, ...] = ()
 
 
 def make_color_table(colors: Sequence[int]) -> ImageArray:

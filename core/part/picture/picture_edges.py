@@ -43,19 +43,21 @@ def fill_holes(images: PixelImages) -> None:
 
     A hole is one pixel wide and much deeper than the pixels on both sides of it.
     """
-    codes, depth = images.codes, images.depth
     for turned in (False, True):
-        own, seen = (codes.T, depth.T) if turned else (codes, depth)
+        seen = images.depth.T if turned else images.depth
         hole = np.minimum(seen[:-2], seen[2:])
         hole -= seen[1:-1]
         row, column = np.nonzero(hole > _HOLE_PX * DEPTH_STEPS)
         for image in images:
             values = image.T if turned else image
             values[row + 1, column] = values[row, column]
-        away = np.nonzero(own[:-1] == FACING_AWAY)
-        own[away] = own[1:][away]
-        away = np.nonzero(own[1:] == FACING_AWAY)
-        own[1:][away] = own[:-1][away]
+    codes = images.codes
+    row, column = np.nonzero(codes == FACING_AWAY)
+    for down, right in ((0, 1), (0, -1), (1, 0), (-1, 0)):
+        own = codes[row, column]
+        next_row = np.clip(row + down, 0, len(codes) - 1)
+        neighbor = codes[next_row, np.clip(column + right, 0, codes.shape[1] - 1)]
+        codes[row, column] = np.where(own == FACING_AWAY, neighbor, own)
 
 
 def draw_edges(images: PixelImages) -> None:

@@ -55,9 +55,11 @@ class PointLighting:
         shade, right, above = (np.zeros(count, np.float32) for _ in range(3))
         colour, rough = np.zeros(count, np.int16), np.zeros(count, np.bool_)
         bounds = np.array([group.first_point_index for group in points.groups[1:]], np.int64)
-        which = np.searchsorted(bounds, point, side="right").astype(np.int8)
-        for number, group in enumerate(points.groups):
-            own = np.flatnonzero(which == number)
+        which = np.searchsorted(bounds, point, side="right").astype(np.int16)
+        order = np.argsort(which, kind="stable")
+        ends = np.searchsorted(which[order], np.arange(len(points.groups)), side="right").tolist()
+        for group, first, last in zip(points.groups, [0, *ends], ends, strict=False):
+            own = order[first:last]
             if len(own):
                 lit = self._light_points(group, point[own] - group.first_point_index)
                 shade[own], right[own], above[own], colour[own], rough[own] = lit
@@ -111,7 +113,8 @@ class PointLighting:
         if wall.bore_radius_px is not None:  # a slot through the axis is not a bore
             r = wall.radius_px[row, 0 if self.surface.is_turned else ray]
             colour = np.where(np.abs(r - wall.bore_radius_px[row]) < 1.0, _BORE, _OUTSIDE).astype(np.int16)
-        lit = self._light_normals(2 * ray, (across, tangential, along), colour, np.abs(across) < _STEEP)
+        rough = False if self.surface.is_turned else np.abs(across) < _STEEP
+        lit = self._light_normals(2 * ray, (across, tangential, along), colour, rough)
         return lit, self.surface.z_px[wall.columns[row]]
 
     def _light_patch(

@@ -26,6 +26,7 @@ from core.part.picture.surface_points import Solid, SolidSurface
 _SAMPLES = ((-0.125, -0.375), (0.375, -0.125), (-0.375, 0.125), (0.125, 0.375))  # pixels right and down
 _BACK_AZIMUTH_DEG = -10.0  # from further back, the clamping would hide the part
 _BACK_OPACITY = 0.3
+_STOCK_OPACITY = 0.3
 _MAX_SURFACES = 2  # one for coarse and one for fine pictures
 
 
@@ -67,6 +68,10 @@ class SolidPicture:
             looks = (self.colors.holder, self.colors.insert)
             for layer in make_tool_layers(scene.tool, view, width, height, looks, DEPTH_STEPS, FAR_DEPTH):
                 layer.draw_onto_image(image, depth)
+        if scene.stock:
+            self._draw_bodies(scene.stock, view, (width, height), _STOCK_OPACITY).draw_onto_image(
+                image, depth
+            )
         return image
 
     def refine_picture(
@@ -137,12 +142,18 @@ class SolidPicture:
         """Return the image layer of the clamping, which is drawn again only if the view has changed."""
         seen = (bodies, view, *size)
         if self._clamping is None or self._clamping[0] != seen:
-            images = draw_bodies(bodies, view, *size)
-            draw_edges(images)
-            table = np.append(self._body_table.ravel(), np.uint32(0))
             opacity = _BACK_OPACITY if view.azimuth_deg < _BACK_AZIMUTH_DEG else 1.0
-            self._clamping = seen, ImageLayer(table[images.codes], images.depth, opacity)
+            self._clamping = seen, self._draw_bodies(bodies, view, size, opacity)
         return self._clamping[1]
+
+    def _draw_bodies(
+        self, bodies: tuple[Body, ...], view: SolidView, size: tuple[int, int], opacity: float
+    ) -> ImageLayer:
+        """Return the image layer of round bodies and blocks."""
+        images = draw_bodies(bodies, view, *size)
+        draw_edges(images)
+        table = np.append(self._body_table.ravel(), np.uint32(0))
+        return ImageLayer(table[images.codes], images.depth, opacity)
 
     def _find_surface(self, solid: Solid, view: SolidView, width: int, version: int) -> SolidSurface:
         """Return the surface points of the visible part of a solid, from the cache if they are there."""
