@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from enum import Enum, auto
 from functools import partial
 
 from PySide6.QtGui import QResizeEvent
@@ -33,6 +34,18 @@ from core.executor.snapshot import MachineState, Snapshot
 from core.interpreter.dialects import get_code_book
 
 _NO_LINES: tuple[str, ...] = ()
+FULL_VIEW_KEY, HALF_VIEW_KEY = "W", "Shift+W"
+
+
+class ViewSize(Enum):
+    """Size of the path view on the Automatic page.
+
+    ``HALF`` is about half of the window, next to the program. ``FULL`` is the whole page.
+    """
+
+    NORMAL = auto()
+    HALF = auto()
+    FULL = auto()
 
 
 class AutomaticPage(Page):
@@ -65,6 +78,8 @@ class AutomaticPage(Page):
         self.comment_line = CommentLine(look, self)
         self.path_view = PathView(look, self, part_player=make_part_player(desk))
         self.path_view.open_stock = self._open_stock
+        self.path_view.enlarge = self._select_next_size
+        self._view_size = ViewSize.NORMAL
         self.plane_view = WorkingPlaneView(look, self)  # Replaces the path view on a mill.
         self.file_prompt = FilePrompt(
             look,
@@ -97,18 +112,41 @@ class AutomaticPage(Page):
         return make_measuring_prompt() if self.path_view.measurement is not None and not self._moving else ""
 
     def handle_escape(self) -> bool:
-        """End measuring in the path view, and return whether measuring was active.
+        """End measuring in the path view or its enlargement, and return whether one of them was active.
 
         During motion, return False, so that Esc triggers a feed hold.
         """
-        measuring = self.path_view.measurement is not None and not self._moving
+        if self._moving:
+            return False
+        measuring = self.path_view.measurement is not None
+        enlarged = self.has_enlarged_view and not measuring
         if measuring:
             self.path_view.switch_measuring(is_on=False)
-        return measuring
+        if enlarged:
+            self.set_view_size(ViewSize.NORMAL)
+        return measuring or enlarged
+
+    def set_view_size(self, size: ViewSize) -> None:
+        """Change the size of the path view; the same size again restores the normal size."""
+        self._view_size = ViewSize.NORMAL if size is self._view_size else size
+        self.has_enlarged_view = self._view_size is not ViewSize.NORMAL
+        self._place_views()
+
+    def _select_next_size(self) -> None:
+        sizes = list(ViewSize)
+        self.set_view_size(sizes[(sizes.index(self._view_size) + 1) % len(sizes)])
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Rearrange all views of the page after the page is resized."""
-        listing, comment, path = divide_work_area(Rect(0, 0, self.width(), self.height()), self.theme.unit_px)
+        self._place_views()
+
+    def _place_views(self) -> None:
+        page = Rect(0, 0, self.width(), self.height())
+        listing, comment, path = divide_work_area(page, self.theme.unit_px)
+        is_full = self._view_size is ViewSize.FULL
+        path = page if is_full else path
+        self.program_listing.setHidden(is_full)
+        self.comment_line.setHidden(is_full)
         for part, rect in (
             (self.program_listing, listing),
             (self.comment_line, comment),
@@ -208,6 +246,8 @@ class AutomaticPage(Page):
             "Zoom out": partial(looked_at.zoom_view, -1),
             "Measure": self.path_view.switch_measuring,
             "View": looked_at.select_next_view,
+            FULL_VIEW_KEY: partial(self.set_view_size, ViewSize.FULL),
+            HALF_VIEW_KEY: partial(self.set_view_size, ViewSize.HALF),
             **self._part_keys(),
             "Pan left": partial(looked_at.pan_view, -1, 0),
             "Pan right": partial(looked_at.pan_view, 1, 0),

@@ -107,6 +107,7 @@ class Page(QWidget):
     LABELS: ClassVar[tuple[str, ...]] = ("MENU", "", "", "", "", "", "ALARMS", "", "", "")
     CAN_START_CYCLES: ClassVar[bool] = False
     is_searching = False  # The search field is open. The page leaves the room of its entries to the list.
+    has_enlarged_view = False  # The readouts are in one row, so that a view of the page has more room.
 
     def __init__(self, host: PageHost, parent: QWidget) -> None:
         super().__init__(parent)

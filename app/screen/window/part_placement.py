@@ -59,7 +59,7 @@ def find_layout_needs(
 
     Pages on which axes can move have a large position. In a low window, they have no run line, and notices
     and touch keyboards use the height of the large position. Alarms use the height of the large readouts of
-    the Automatic page.
+    the Automatic page. If a view of the page is enlarged, the readouts are in one row without a run line.
     """
     moves, needs_height, low = (
         page.CAN_START_CYCLES,
@@ -68,6 +68,8 @@ def find_layout_needs(
     )
     is_automatic = page.NAME == page_table.AUTOMATIC
     shows_alarm = is_automatic and has_alarm
+    if page.has_enlarged_view:
+        return LayoutNeeds(False, False, False, shows_alarm, search_height_px)
     has_automatic_layout = is_automatic and not (low and shows_alarm)
     if not low:
         return LayoutNeeds(has_automatic_layout, moves, True, shows_alarm, search_height_px)
