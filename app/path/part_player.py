@@ -22,8 +22,7 @@ from core.proving.checks.part_checks import is_serious_finding
 if TYPE_CHECKING:
     from app.desk.desk import Desk
     from app.path.path_picture import ProgramPicture
-    from core.part.picture.part_scene import ImageArray
-    from core.part.picture.solid_picture import SolidPicture
+    from core.part.picture.solid_picture import PartImage, SolidPicture
     from core.part.picture.solid_view import SolidView
     from core.part.picture.surface_points import Solid
     from core.proving.part_history import PartHistory
@@ -71,7 +70,8 @@ class PlaybackResult(NamedTuple):
 
     part_instant: PartState
     findings: tuple[Diagnostic, ...] = ()
-    image: ImageArray | None = None  # image of the solid, if a 3D view is shown
+    picture: PartImage | None = None  # picture of the solid, if a 3D view is shown
+    view: SolidView | None = None  # view of this picture in pixels of the screen
     pixel_size: int = 1  # width and height of a pixel of the image in pixels of the screen
 
 
@@ -325,9 +325,9 @@ class PartPlayer:
         instant = self._find_instant(history, wanted.finished_block_count, share, watch)
         result = PlaybackResult(instant, self._findings)
         if wanted.image_request is not None:
-            for image_result in self._render_images(history, result, wanted.image_request, request):
-                request.publish_result(partial(self._take, image_result))
-                result = image_result
+            for picture_result in self._render_images(history, result, wanted.image_request, request):
+                request.publish_result(partial(self._take, picture_result))
+                result = picture_result
         return result
 
     def _find_instant(
@@ -376,8 +376,8 @@ class PartPlayer:
             scene=history.make_scene_at(instant, has_stock=look.is_stock_shown),
             check_canceled=None if look.is_coarse else request,
         )
-        for image in images:
-            yield shown._replace(image=image, pixel_size=pixel_size)
+        for drawn in images:
+            yield shown._replace(picture=drawn, view=view, pixel_size=pixel_size)
             if look.is_coarse:
                 self._adapt_pixel_size(look, self.read_time_s() - begin)
                 return

@@ -197,6 +197,10 @@ class PathPane:
             self.is_adjusted = True
             self.set_projection(self.projection.shift(pixels.x(), pixels.y()))
 
+    def point_at(self, _position: QPointF) -> bool:
+        """Return whether the pane must be redrawn because the pointer moved to a position."""
+        return False
+
     # --- coordinates ---------------------------------------------------------------------------------
 
     @property

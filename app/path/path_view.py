@@ -23,7 +23,6 @@ from app.screen.panel import OnPress, Panel, RedrawingAttribute
 from app.screen.screen_theme import ScreenTheme
 
 if TYPE_CHECKING:
-    from app.path import path_marks_view as marks
     from app.path.measuring_view import Measurement
     from app.path.part_bar_view import PartTimeline
     from app.path.part_player import PartPlayer
@@ -199,12 +198,14 @@ class PathView(Panel):
     def _lay_out(self) -> None:
         if self._set is not None:
             self._include_points()
+            from app.path.path_buttons_view import make_view_buttons
             from app.path.path_marks_view import count_button_columns, find_button_columns_width
 
             room = self.find_panes_area()
-            columns = count_button_columns(self.theme, room, len(self._buttons()))
+            columns = count_button_columns(self.theme, room, len(make_view_buttons(self)))
             self._set.set_area(room.adjusted(0, 0, -find_button_columns_width(columns, self.theme), 0))
             self._show_tool()
+            self.setMouseTracking(self._is_solid_shown or self.measurement is not None)
         self.update()
 
     def _include_points(self) -> None:
@@ -308,7 +309,7 @@ class PathView(Panel):
         actions = self.part_player.make_key_actions()
         if not self._is_solid_shown:
             return actions
-        from app.path.solid_actions import make_solid_key_actions
+        from app.path.path_buttons_view import make_solid_key_actions
 
         return {**actions, **make_solid_key_actions(self.panes, self.update)}
 
@@ -337,7 +338,7 @@ class PathView(Panel):
         elif not is_on and self.measurement is not None:
             self.measurement.end_measuring()
             self.measurement = None
-            self.setMouseTracking(False)
+            self.setMouseTracking(self._is_solid_shown)
             if self.hasFocus():
                 self.window().setFocus()
         self.update()
@@ -358,6 +359,8 @@ class PathView(Panel):
         return self.find_pane(at)
 
     def _hovers(self, at: QPointF) -> None:
+        if (pane := self.find_pane(at)) is not None and pane.point_at(at):
+            self.update()
         if self.measurement is not None and self.measurement.pane.area.contains(at):
             self.measurement.move_cursor(at)
             self.update()
@@ -373,6 +376,7 @@ class PathView(Panel):
         if not isinstance(pane, PathPane):
             return
         if pane.aspect in SPATIAL_ASPECTS:
+            self._hovers(at)
             return
         if self.measurement is not None:
             ruler = self.measurement if self.measurement.pane is pane else self._measure_in(pane)
@@ -426,6 +430,7 @@ class PathView(Panel):
         """Draw the panes, title, buttons and legend, or a message if there is no picture."""
         from app.path import path_marks_view as marks
         from app.path.pane_drawing_view import draw_pane, draw_view_title
+        from app.path.path_buttons_view import make_view_buttons
 
         look, panes = self.theme, self.panes
         if not panes:
@@ -445,7 +450,7 @@ class PathView(Panel):
             self.measurement.draw_values(painter, values_pane.area, self.is_metric)
         # The panes have covered the lower half of the title.
         draw_view_title(painter, look, self.width(), self.title)
-        marks.draw_buttons(painter, look, self.find_panes_area(), self._buttons(), self.add_target)
+        marks.draw_buttons(painter, look, self.find_panes_area(), make_view_buttons(self), self.add_target)
         if self.is_part_shown:
             self._draw_bar(painter)
             return
@@ -472,23 +477,3 @@ class PathView(Panel):
         self._bar.draw(
             painter, QRectF(room.x(), room.bottom(), room.width(), TIMELINE_HEIGHT * u), self.add_target
         )
-
-    def _buttons(self) -> list[marks.ViewButton]:
-        from app.path.path_marks_view import ViewButton
-
-        found = [
-            ViewButton("+", lambda: self.zoom_view(1)),
-            ViewButton("−", lambda: self.zoom_view(-1)),
-            ViewButton(tr("FIT"), self.fit_all_panes),
-            ViewButton(tr("MEAS"), self.switch_measuring, self.measurement is not None),
-        ]
-        if self.has_several_views:
-            # A low pane does not have room for all buttons.
-            found.insert(2, ViewButton(tr("VIEW"), self.select_next_view))
-        if self.enlarge is not None:
-            found.append(ViewButton(tr("LARGE"), self.enlarge))
-        if self._is_solid_shown:
-            from app.path.solid_actions import make_solid_buttons
-
-            found += make_solid_buttons(self.panes, self.update)
-        return found

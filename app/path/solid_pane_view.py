@@ -12,10 +12,12 @@ from app.path.path_aspects import PathViewKind, TipPosition
 from app.path.path_pane_view import PlanePosition
 from app.path.path_projection import Projection
 from app.path.polyline import Polyline
+from app.path.solid_marks_view import draw_collisions, draw_dimension, find_dimension
 from app.screen.screen_theme import ScreenTheme
 from core.part.picture.clamping_bodies import find_clamping_back_z
 from core.part.picture.solid_view import SolidView
 from core.part.picture.solid_view import fit_view as fitted_solid
+from core.part.stock import Point
 
 _DEGREES_PER_PIXEL = 0.4  # degrees per pixel
 _DEGREES_PER_KEY = 10.0  # degrees per key press
@@ -33,6 +35,7 @@ class SolidPane(PartPane):
         self._azimuth, self._tilt, self._roll = 30.0, 35.0, 0.0
         self._view: SolidView | None = None  # the view of the last request
         self.section_angle_deg: float | None = None  # from the turning plane; None without a section
+        self._pointer: QPointF | None = None  # from the corner of the pane; None until it is there
         self.is_stock_shown = False  # whether the uncut stock is shown around the part
         super().__init__(theme, aspect, polyline, player)
 
@@ -135,32 +138,47 @@ class SolidPane(PartPane):
         The origin of the painter is the corner of the pane.
         """
         shown = self.part_player.latest_result
-        if shown is not None and shown.image is not None:
-            high, wide = shown.image.shape
+        if shown is not None and shown.picture is not None:
+            high, wide = shown.picture.image.shape
             size = shown.pixel_size
             drawn = QImage(
-                shown.image.tobytes(), wide, high, 4 * wide, QImage.Format.Format_ARGB32_Premultiplied
+                shown.picture.image.tobytes(), wide, high, 4 * wide, QImage.Format.Format_ARGB32_Premultiplied
             )
             painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform, size > 1)
             painter.drawImage(QRectF(0.0, 0.0, wide * size, high * size), drawn)
 
+    def point_at(self, position: QPointF) -> bool:
+        """Show the dimension at a widget position, and return True, so that the pane is redrawn."""
+        self._pointer = position - self.area.topLeft()
+        return True
+
     def draw_run_state(self, painter: QPainter) -> None:
-        """Draw the travel limits of the machine in the turning plane.
+        """Draw the travel limits, the places of collisions, and the dimension at the pointer.
 
         The tool is part of the image.
         """
-        shown, view, projection = self.part_player.latest_result, self._view, self.projection
-        if shown is None or shown.part_instant.tip_range is None or view is None or projection is None:
+        shown, projection = self.part_player.latest_result, self.projection
+        if shown is None or projection is None or self._view is None:
             return
-        (z0, x0), (z1, x1) = shown.part_instant.tip_range
+        view = shown.view if shown.view is not None else self._view
+        room = QRectF(0.0, 0.0, projection.width_px, projection.height_px)
+        if shown.part_instant.tip_range is not None:
+            self._draw_limits(painter, shown.part_instant.tip_range, view)
+        draw_collisions(painter, self.theme, shown.part_instant, view, room)
+        place = find_dimension(shown, self._pointer) if self._pointer is not None else None
+        if place is not None and self._pointer is not None:
+            draw_dimension(painter, self.theme, place, self._pointer, room, is_metric=self.is_metric)
+
+    def _draw_limits(self, painter: QPainter, tip_range: tuple[Point, Point], view: SolidView) -> None:
+        """Draw the travel limits of the machine in the turning plane."""
+        projection = self.projection
+        assert projection is not None
+        (z0, x0), (z1, x1) = tip_range
         # In the frame of the part, the operator's side is at 180 degrees minus C.
         places = [
             [x, z, 180.0 - view.roll_deg] for z, x in ((z0, x0), (z1, x0), (z1, x1), (z0, x1), (z0, x0))
         ]
-        wide, high = (
-            (self.projection.width_px, self.projection.height_px) if self.projection is not None else (1, 1)
-        )
-        corners = view.project_to_screen(np.array(places), wide, high)
+        corners = view.project_to_screen(np.array(places), projection.width_px, projection.height_px)
         draw_travel_limits(painter, self.theme, [QPointF(x, y) for x, y in corners.tolist()])
 
 

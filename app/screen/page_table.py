@@ -33,7 +33,7 @@ _PATH_CLASSES = (
     "app.path.measuring_view.Measurement",
     "app.path.part_pane_view.PartPane",
     "app.path.solid_pane_view.SolidPane",
-    "app.path.solid_actions.make_solid_buttons",
+    "app.path.path_buttons_view.make_view_buttons",
     "app.path.part_bar_view.PartTimeline",
     "app.path.path_projection.project_section",
 )

@@ -13709,6 +13709,26 @@
       <translation>SÓLIDO</translation>
     </message>
     <message>
+      <location filename="app/path/path_buttons_view.py" />
+      <source>BLANK</source>
+      <translation>BRUTO</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_buttons_view.py" />
+      <source>CUT</source>
+      <translation>CORTE</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_buttons_view.py" />
+      <source>LARGE</source>
+      <translation>AMPLIAR</translation>
+    </message>
+    <message>
+      <location filename="app/path/path_buttons_view.py" />
+      <source>MEAS</source>
+      <translation>MEDIR</translation>
+    </message>
+    <message>
       <location filename="app/path/path_marks_view.py" />
       <source>FACE  ·  VIEW FROM THE TAILSTOCK</source>
       <translation>CARA  ·  VISTA DESDE EL CONTRAPUNTO</translation>
@@ -13775,11 +13795,6 @@
     </message>
     <message>
       <location filename="app/path/path_view.py" />
-      <source>LARGE</source>
-      <translation>AMPLIAR</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_view.py" />
       <source>Load a program to see its path.</source>
       <translation>Cargue un programa para ver su trayectoria.</translation>
     </message>
@@ -13787,21 +13802,6 @@
       <location filename="app/path/path_view.py" />
       <source>Loading the program.</source>
       <translation>Cargando el programa.</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_view.py" />
-      <source>MEAS</source>
-      <translation>MEDIR</translation>
-    </message>
-    <message>
-      <location filename="app/path/solid_actions.py" />
-      <source>BLANK</source>
-      <translation>BRUTO</translation>
-    </message>
-    <message>
-      <location filename="app/path/solid_actions.py" />
-      <source>CUT</source>
-      <translation>CORTE</translation>
     </message>
     <message>
       <location filename="app/production/cycle_recorder.py" />

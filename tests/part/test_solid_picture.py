@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from core.part.milled_part import MilledPart
-from core.part.picture.part_scene import ImageArray, PartColors
+from core.part.picture.clamping_bodies import BodyMaterial, RoundBody
+from core.part.picture.part_scene import ImageArray, PartColors, PartScene
 from core.part.picture.solid_picture import SolidPicture
 from core.part.picture.solid_view import SolidView, fit_view, make_coarse_view
 from core.part.picture.surface_points import Solid, make_milled_solid, make_turned_solid
@@ -264,7 +265,7 @@ def test_outline_of_fine_picture_has_intermediate_steps() -> None:
     edges = np.linspace(-20.0, 0.0, count + 1)
     cone = make_turned_solid(edges, np.zeros((1, count)), np.linspace(9.0, 3.0, count)[None])
     view = SolidView(azimuth_deg=0.0, pixels_per_mm=9.0, center_z_mm=-10.0)
-    first, fine = SolidPicture().refine_picture(cone, view, WIDTH, HEIGHT)
+    first, fine = (each.image for each in SolidPicture().refine_picture(cone, view, WIDTH, HEIGHT))
     assert transparencies(first) == {0, 255}
     assert transparencies(fine) == {0, 64, 128, 191, 255}
     assert fine[HEIGHT // 2, WIDTH // 2] >> 24 == 255
@@ -292,6 +293,32 @@ def test_cylinder_without_corners_has_no_edges_inside_its_outline() -> None:
     light = ((image[:, WIDTH // 2] >> 8) & 255).astype(int)
     inside = light[HEIGHT // 2 - 76 : HEIGHT // 2 + 76]  # the radius is 81 pixels
     assert np.abs(np.diff(inside)).max() <= 8
+
+
+@pytest.mark.parametrize(("azimuth", "tilt"), [(0.0, 0.0), (30.0, 35.0), (-40.0, 10.0)])
+def test_surface_point_of_pixel_has_its_z_and_radius(azimuth: float, tilt: float) -> None:
+    """On the side of a cylinder of 18 mm, at the point closest to the viewer of Z-12 and Z-6."""
+    view = SolidView(azimuth_deg=azimuth, tilt_deg=tilt, pixels_per_mm=9.0, center_z_mm=-10.0)
+    *_, drawn = SolidPicture().refine_picture(turned((20.0, 9.0)), view, WIDTH, HEIGHT)
+    for z in (-12.0, -6.0):
+        x, y = view.project_to_screen(np.array([[9.0, z, 180.0 - tilt]]), WIDTH, HEIGHT)[0]
+        found = drawn.find_surface_point(view, int(x), int(y))
+        assert found == pytest.approx((z, 9.0), abs=0.15)
+
+
+@pytest.mark.parametrize(("column", "row"), [(0, 0), (-1, 10), (10, -1), (WIDTH, 10), (10, HEIGHT)])
+def test_pixel_without_part_has_no_surface_point(column: int, row: int) -> None:
+    view = SolidView(azimuth_deg=0.0, pixels_per_mm=9.0, center_z_mm=-10.0)
+    *_, drawn = SolidPicture().refine_picture(turned((20.0, 9.0)), view, WIDTH, HEIGHT)
+    assert drawn.find_surface_point(view, column, row) is None
+
+
+def test_hidden_part_has_no_surface_point() -> None:
+    view = SolidView(azimuth_deg=0.0, pixels_per_mm=9.0, center_z_mm=-10.0)
+    scene = PartScene((RoundBody(-12.0, -8.0, 12.0, 12.0, BodyMaterial.CHUCK),))
+    *_, drawn = SolidPicture().refine_picture(turned((20.0, 9.0)), view, WIDTH, HEIGHT, scene=scene)
+    assert drawn.find_surface_point(view, WIDTH // 2, HEIGHT // 2) is None
+    assert drawn.find_surface_point(view, WIDTH // 2 + 60, HEIGHT // 2) is not None
 
 
 def test_canceled_picture_raises_the_error_of_the_check() -> None:

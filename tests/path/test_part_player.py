@@ -251,8 +251,8 @@ def test_live_tool_collision_in_rapid_is_red_in_3d_view(player: PartPlayer, prog
     player.set_image_request(SolidImageRequest(SolidView(pixels_per_mm=5.0, center_z_mm=-10.0), 200, 150))
     shown = settled(player).latest_result
     assert shown is not None
-    assert shown.image is not None
-    r, g = ((shown.image >> off) & 255 for off in (16, 8))
+    assert shown.picture is not None
+    r, g = ((shown.picture.image >> off) & 255 for off in (16, 8))
     assert bool(((r > 90) & (r > 2.5 * g)).sum() > 50) is red
 
 
@@ -266,8 +266,8 @@ def test_image_has_full_resolution_only_while_view_is_at_rest(
     player.update()
     shown = settled(player).latest_result
     assert shown is not None
-    assert shown.image is not None
-    assert shown.image.shape == ((76, 101) if is_coarse else (151, 201))
+    assert shown.picture is not None
+    assert shown.picture.image.shape == ((76, 101) if is_coarse else (151, 201))
     assert shown.pixel_size == (2 if is_coarse else 1)
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+import numpy as np
 import pytest
-from PySide6.QtCore import QPoint, Qt
+from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QColor, QImage
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
@@ -15,10 +16,12 @@ from app.path.part_player import PartPlayer, SolidImageRequest
 from app.path.path_aspects import PathViewKind, TipPosition
 from app.path.path_marks_view import make_part_title
 from app.path.path_view import PathView
+from app.path.solid_marks_view import find_dimension, find_exact_radius
 from app.path.solid_pane_view import find_removed_half, find_removed_quarter
 from app.screen.color_palettes import DARK_PALETTE, LIGHT_PALETTE
 from app.screen.screen_theme import ScreenTheme
 from core.part.stock import Clamping
+from core.proving.part_instant import SectionHalf
 from tests.path.test_part_player import RAPID, SHAFT, Clock, picture
 from tests.screen.hands import LIMIT
 
@@ -211,8 +214,8 @@ def drawn(view: PathView) -> int:
     assert view.part_player is not None
     now = view.part_player.latest_result
     assert now is not None
-    assert now.image is not None
-    return int((now.image >> 24 > 0).sum())
+    assert now.picture is not None
+    return int((now.picture.image >> 24 > 0).sum())
 
 
 def test_solid_fills_its_pane_and_is_rotated_by_touch(view: PathView) -> None:
@@ -270,7 +273,7 @@ def test_no_solid_is_drawn_without_removed_material(view: PathView) -> None:
     assert view.part_player is not None
     now = view.part_player.latest_result
     assert now is not None
-    assert now.image is None
+    assert now.picture is None
 
 
 def test_next_view_after_solid_is_open_solid_and_then_path(view: PathView) -> None:
@@ -361,3 +364,72 @@ def test_chuck_is_drawn_at_its_position(view: PathView) -> None:
     edge = -8.0 / INCH, (stock.max_radius_mm + 0.7) / INCH
     assert len(colour(view, image, *edge)) > 2  # a line, and hatching behind it
     assert colour(view, shown(view, SHAFT), *edge) == {DARK_PALETTE.panel}
+
+
+# --- marks in space
+
+
+def half(*columns: tuple[float, float]) -> SectionHalf:
+    """A section with columns 1 mm wide from Z-10, each with an inner and an outer radius."""
+    inner, outer = (np.array([each]) for each in zip(*columns, strict=True))
+    return SectionHalf(np.arange(-10.0, -9.5 + len(columns)), inner, outer)
+
+
+@pytest.mark.parametrize(
+    ("z", "radius", "expected"),
+    [
+        (-9.5, 7.93, 8.0),  # the outside of the first column
+        (-8.5, 6.05, 6.0),
+        (-8.5, 2.04, 2.0),  # the bore
+        (-8.5, 4.0, 4.0),  # between them, as on a face
+        (-99.0, 7.95, 8.0),  # the nearest column
+    ],
+)
+def test_dimension_is_that_of_the_model(view: PathView, z: float, radius: float, expected: float) -> None:
+    shown(view, SHAFT)
+    assert view.part_player is not None
+    assert view.part_player.latest_result is not None
+    part = view.part_player.latest_result.part_instant
+    part = part._replace(x_plus_half=half((0.0, 8.0), (2.0, 6.0)))
+    assert find_exact_radius(part, z, radius, 0.1) == expected
+    assert find_exact_radius(part._replace(x_plus_half=None), z, radius, 0.1) == radius
+
+
+def test_pointer_shows_dimension_of_part(view: PathView) -> None:
+    """The radius of the shaft is .4 in at Z-.4."""
+    solid(view, SHAFT)
+    player, pane = view.part_player, view.panes[0]
+    assert player is not None
+    player.read_time_s.now += 1.0  # type: ignore[attr-defined]
+    before = settled(view)
+    result = player.latest_result
+    assert result is not None
+    assert result.view is not None
+    size = round(pane.area.width()), round(pane.area.height())
+    x, y = result.view.project_to_screen(np.array([[0.4 * INCH, -0.4 * INCH, 145.0]]), *size)[0]
+    place = find_dimension(result, QPointF(x, y))
+    assert place is not None
+    assert place[1] / INCH == pytest.approx(0.4, abs=0.0002)
+    assert place[0] / INCH == pytest.approx(-0.4, abs=0.01)
+    assert find_dimension(result, QPointF(2.0, 2.0)) is None
+    assert view.hasMouseTracking()
+    QTest.mouseMove(view, (pane.area.topLeft() + QPointF(x, y)).toPoint())
+    assert view.grab().toImage() != before
+
+
+def test_pointer_shows_no_dimension_in_coarse_picture(view: PathView) -> None:
+    solid(view, SHAFT)
+    assert view.part_player is not None
+    result = view.part_player.latest_result
+    assert result is not None
+    middle = QPointF(view.panes[0].area.width() / 2, view.panes[0].area.height() / 2)
+    assert find_dimension(result._replace(pixel_size=2), middle) is None
+    assert find_dimension(result._replace(picture=None), middle) is None
+
+
+def test_mouse_is_not_tracked_in_flat_views(view: PathView) -> None:
+    solid(view, SHAFT)
+    view.select_next_view()
+    view.select_next_view()
+    assert view.panes[0].aspect is PathViewKind.PATH
+    assert not view.hasMouseTracking()

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,6 +29,28 @@ _BACK_AZIMUTH_DEG = -10.0  # from further back, the clamping would hide the part
 _BACK_OPACITY = 0.3
 _STOCK_OPACITY = 0.3
 _MAX_SURFACES = 2  # one for coarse and one for fine pictures
+
+
+class PartImage(NamedTuple):
+    """A picture of 0xAARRGGBB values, and the depth of each pixel that shows the part.
+
+    The depth is 0 at the other pixels, and at pixels where something else hides the part.
+    """
+
+    image: ImageArray
+    depth: DepthArray
+
+    def find_surface_point(self, view: SolidView, column: int, row: int) -> tuple[float, float] | None:
+        """Return Z and the radius of the part at a pixel in mm, or None if it does not show the part."""
+        height, width = self.depth.shape
+        if not (0 <= column < width and 0 <= row < height) or not self.depth[row, column]:
+            return None
+        cos, sin = view.azimuth_cos_sin
+        toward = (float(self.depth[row, column]) + 0.5) / DEPTH_STEPS - FAR_DEPTH
+        right = column + 0.5 - 0.5 * width - view.offset_px[0]
+        up = 0.5 * height + view.offset_px[1] - row - 0.5
+        z = view.center_z_mm + (right * cos + toward * sin) / view.pixels_per_mm
+        return z, math.hypot(toward * cos - right * sin, up) / view.pixels_per_mm
 
 
 class SolidPicture:
@@ -60,19 +83,36 @@ class SolidPicture:
         ``version`` changes when the material changes. ``hit_z_spans`` are ranges of Z that are drawn in
         red. ``check_canceled`` is called regularly, and may raise an exception to cancel.
         """
-        surface = self._find_surface(solid, view, width, version)
-        image, depth = self._draw_surface(surface, view, (width, height), hit_z_spans, check_canceled)
+        return self._draw_scene(
+            self._find_surface(solid, view, width, version),
+            view,
+            (width, height),
+            hit_z_spans,
+            scene,
+            check_canceled,
+        ).image
+
+    def _draw_scene(
+        self,
+        surface: SolidSurface,
+        view: SolidView,
+        size: tuple[int, int],
+        hit_z_spans: ZSpans,
+        scene: PartScene,
+        check_canceled: CheckCanceled | None,
+    ) -> PartImage:
+        image, depth = self._draw_surface(surface, view, size, hit_z_spans, check_canceled)
+        part_depth = depth.copy()
         if scene.clamping:
-            self._draw_clamping(scene.clamping, view, (width, height)).draw_onto_image(image, depth)
+            self._draw_clamping(scene.clamping, view, size).draw_onto_image(image, depth)
         if scene.tool is not None:
             looks = (self.colors.holder, self.colors.insert)
-            for layer in make_tool_layers(scene.tool, view, width, height, looks, DEPTH_STEPS, FAR_DEPTH):
+            for layer in make_tool_layers(scene.tool, view, *size, looks, DEPTH_STEPS, FAR_DEPTH):
                 layer.draw_onto_image(image, depth)
         if scene.stock:
-            self._draw_bodies(scene.stock, view, (width, height), _STOCK_OPACITY).draw_onto_image(
-                image, depth
-            )
-        return image
+            self._draw_bodies(scene.stock, view, size, _STOCK_OPACITY).draw_onto_image(image, depth)
+        part_depth[depth > part_depth] = 0
+        return PartImage(image, part_depth)
 
     def refine_picture(
         self,
@@ -85,31 +125,30 @@ class SolidPicture:
         hit_z_spans: ZSpans = (),
         scene: PartScene = PartScene(),  # noqa: B008 - it is a tuple
         check_canceled: CheckCanceled | None = None,
-    ) -> Iterator[ImageArray]:
+    ) -> Iterator[PartImage]:
         """Yield the picture with one sample for each pixel, and then with smooth edges.
 
         The last picture is the mean of several samples, each displaced by a fraction of a pixel. Its colors
         are premultiplied by their opacity.
         """
         total = np.zeros((height, width, 4), np.uint16)
+        surface = self._find_surface(solid, view, width, version)
         for number, (right, down) in enumerate(_SAMPLES):
             offset = view.offset_px[0] + right, view.offset_px[1] + down
-            image = self.draw_picture(
-                solid,
+            drawn = self._draw_scene(
+                surface,
                 replace(view, offset_px=offset),
-                width,
-                height,
-                version=version,
-                hit_z_spans=hit_z_spans,
-                scene=scene,
-                check_canceled=check_canceled,
+                (width, height),
+                hit_z_spans,
+                scene,
+                check_canceled,
             )
-            total += image.view(np.uint8).reshape(total.shape)
+            total += drawn.image.view(np.uint8).reshape(total.shape)
             if number == 0:
-                yield image
+                yield drawn
         total += len(_SAMPLES) // 2
         total //= len(_SAMPLES)
-        yield total.astype(np.uint8).view(np.uint32)[..., 0]
+        yield drawn._replace(image=total.astype(np.uint8).view(np.uint32)[..., 0])
 
     def draw_fine_picture(
         self,
@@ -120,8 +159,8 @@ class SolidPicture:
         scene: PartScene = PartScene(),  # noqa: B008 - it is a tuple
     ) -> ImageArray:
         """Return the picture with smooth edges; its colors are premultiplied by their opacity."""
-        *_, image = self.refine_picture(solid, view, width, height, scene=scene)
-        return image
+        *_, drawn = self.refine_picture(solid, view, width, height, scene=scene)
+        return drawn.image
 
     def _draw_surface(
         self,
