@@ -34,6 +34,7 @@ from core.proving.part_proof import MAX_MOVES
 from core.proving.part_simulation import PartSimulation
 from core.proving.program_timeline import BlockGroup, MotionSpan, RestSpan
 from core.proving.program_tools import PartSettings, ProgramTools
+from core.proving.thread_helix import find_thread_zones, make_threaded_solid
 from core.proving.tip_moves import (
     LiveToolStep,
     ProgramStep,
@@ -221,6 +222,10 @@ class PartHistory:
         milling = self._seen.milling
         if milling is not None:
             return make_milled_solid(milling.updated_field)
+        done = int(np.searchsorted(self._numbers, instant.block_count, side="right"))
+        zones = find_thread_zones(self.steps[:done])
+        if zones:
+            return make_threaded_solid(*instant.x_plus_half, zones)
         return make_turned_solid(*instant.x_plus_half)
 
     def make_scene_at(self, instant: PartState, *, has_stock: bool = False) -> PartScene:

@@ -356,3 +356,16 @@ def test_c_angle_is_interpolated_along_block() -> None:
     assert seen.at(turning).c_angle_deg == pytest.approx(0.0)
     assert seen.at(turning, 0.5).c_angle_deg == pytest.approx(45.0)
     assert seen.at(turning + 2).c_angle_deg == pytest.approx(90.0)
+
+
+THREADED = SHAFT.replace("M30", "X.5Z.2\nM05\nM03S600\nG33X.38Z-.4I.01K.05\nM30")
+
+
+@pytest.mark.parametrize(("program", "is_helix"), [(THREADED, True), (SHAFT, False)])
+def test_thread_is_a_helix_in_the_solid(program: str, is_helix: bool) -> None:
+    seen = history(program)
+    solid = seen.make_solid(seen.at(len(seen.steps)))
+    assert solid is not None
+    radii = solid.outer_radii[0]
+    assert (radii.shape[1] > 1) is is_helix
+    assert bool(np.ptp(radii, axis=1).max() > 0.1) is is_helix
