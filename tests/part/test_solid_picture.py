@@ -10,6 +10,7 @@ import pytest
 from core.part.milled_part import MilledPart
 from core.part.picture.clamping_bodies import BodyMaterial, RoundBody
 from core.part.picture.part_scene import ImageArray, PartColors, PartScene
+from core.part.picture.picture_edges import soften_steps
 from core.part.picture.solid_picture import SolidPicture
 from core.part.picture.solid_view import SolidView, fit_view, make_coarse_view
 from core.part.picture.surface_points import Solid, make_milled_solid, make_turned_solid
@@ -265,8 +266,11 @@ def test_outline_of_fine_picture_has_intermediate_steps() -> None:
     edges = np.linspace(-20.0, 0.0, count + 1)
     cone = make_turned_solid(edges, np.zeros((1, count)), np.linspace(9.0, 3.0, count)[None])
     view = SolidView(azimuth_deg=0.0, pixels_per_mm=9.0, center_z_mm=-10.0)
-    first, fine = (each.image for each in SolidPicture().refine_picture(cone, view, WIDTH, HEIGHT))
-    assert transparencies(first) == {0, 255}
+    first, mean, fine = (each.image for each in SolidPicture().refine_picture(cone, view, WIDTH, HEIGHT))
+    one_sample = SolidPicture().draw_picture(cone, view, WIDTH, HEIGHT)
+    assert transparencies(one_sample) == {0, 255}
+    assert not transparencies(first) <= {0, 255}
+    assert transparencies(mean) == {0, 128, 255}
     assert transparencies(fine) == {0, 64, 128, 191, 255}
     assert fine[HEIGHT // 2, WIDTH // 2] >> 24 == 255
 
@@ -293,6 +297,20 @@ def test_cylinder_without_corners_has_no_edges_inside_its_outline() -> None:
     light = ((image[:, WIDTH // 2] >> 8) & 255).astype(int)
     inside = light[HEIGHT // 2 - 76 : HEIGHT // 2 + 76]  # the radius is 81 pixels
     assert np.abs(np.diff(inside)).max() <= 8
+
+
+def test_softened_step_has_mean_of_neighbors() -> None:
+    """A pixel weighs 4 of 8, and each of its neighbors 1: 255 next to one of 0 becomes 223."""
+    image = np.full((6, 6), 0xFFFFFFFF, np.uint32)
+    image[:, :3] = 0xFF000000
+    softened = soften_steps(image) & 255
+    assert softened[2].tolist() == [0, 0, 32, 223, 255, 255]
+    assert softened[0].tolist() == [0, 0, 0, 255, 255, 255]  # the border of the picture is unchanged
+
+
+def test_even_picture_is_not_softened() -> None:
+    gradient = np.broadcast_to(np.arange(0, 96, 16, dtype=np.uint32) * 0x010101 + 0xFF000000, (6, 6)).copy()
+    np.testing.assert_array_equal(soften_steps(gradient), gradient)
 
 
 @pytest.mark.parametrize(("azimuth", "tilt"), [(0.0, 0.0), (30.0, 35.0), (-40.0, 10.0)])

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from core.part.picture.part_scene import SHADES
+from core.part.picture.part_scene import SHADES, ImageArray
 from core.part.picture.point_projection import DEPTH_STEPS
 
 CodeArray = npt.NDArray[np.int16]
@@ -20,6 +20,7 @@ FACING_AWAY = -2
 _STEP_PX = 6.0  # pixels of depth
 _HOLE_PX = 4.0  # pixels of depth
 _BEND = 0.25  # change of the normal from one pixel to the next
+_CONTRAST = 24  # difference of the green channel between two pixels
 _DARKNESS = 0.45  # ratio by which an edge is darker than its surface
 
 
@@ -58,6 +59,28 @@ def fill_holes(images: PixelImages) -> None:
         next_row = np.clip(row + down, 0, len(codes) - 1)
         neighbor = codes[next_row, np.clip(column + right, 0, codes.shape[1] - 1)]
         codes[row, column] = np.where(own == FACING_AWAY, neighbor, own)
+
+
+def soften_steps(image: ImageArray) -> ImageArray:
+    """Return a picture whose outlines are blended with their neighbors.
+
+    This takes much less time than several samples for each pixel, but thin lines become paler.
+    """
+    channels = image.view(np.uint8).reshape(*image.shape, 4)
+    green = channels[..., 1].astype(np.int16)
+    stepped = np.zeros(image.shape, np.bool_)
+    for steps, marked in ((green, stepped), (green.T, stepped.T)):
+        contrast = np.abs(steps[1:] - steps[:-1]) > _CONTRAST
+        marked[1:] |= contrast
+        marked[:-1] |= contrast
+    stepped[[0, -1]] = stepped[:, [0, -1]] = False
+    row, column = np.nonzero(stepped)
+    total = 4 * channels[row, column].astype(np.uint16)
+    for down, right in ((0, 1), (0, -1), (1, 0), (-1, 0)):
+        total += channels[row + down, column + right]
+    softened = image.copy()
+    softened.view(np.uint8).reshape(channels.shape)[row, column] = (total + 4) // 8
+    return softened
 
 
 def draw_edges(images: PixelImages) -> None:

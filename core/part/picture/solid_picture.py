@@ -17,14 +17,14 @@ import numpy as np
 from core.part.picture.body_picture import draw_bodies
 from core.part.picture.clamping_bodies import Body
 from core.part.picture.part_scene import ImageArray, PartColors, PartScene, make_color_table
-from core.part.picture.picture_edges import draw_edges, fill_holes
+from core.part.picture.picture_edges import draw_edges, fill_holes, soften_steps
 from core.part.picture.point_lighting import PointLighting, ZSpans
 from core.part.picture.point_projection import DEPTH_STEPS, FAR_DEPTH, CheckCanceled, PointProjection
 from core.part.picture.solid_bodies import DepthArray, ImageLayer, make_tool_layers
 from core.part.picture.solid_view import SolidView
 from core.part.picture.surface_points import Solid, SolidSurface
 
-_SAMPLES = ((-0.125, -0.375), (0.375, -0.125), (-0.375, 0.125), (0.125, 0.375))  # pixels right and down
+_SAMPLES = ((-0.125, -0.375), (0.125, 0.375), (0.375, -0.125), (-0.375, 0.125))  # pixels right and down
 _BACK_AZIMUTH_DEG = -10.0  # from further back, the clamping would hide the part
 _BACK_OPACITY = 0.3
 _STOCK_OPACITY = 0.3
@@ -126,14 +126,14 @@ class SolidPicture:
         scene: PartScene = PartScene(),  # noqa: B008 - it is a tuple
         check_canceled: CheckCanceled | None = None,
     ) -> Iterator[PartImage]:
-        """Yield the picture with one sample for each pixel, and then with smooth edges.
+        """Yield the picture with softened edges, and then better pictures up to one with smooth edges.
 
-        The last picture is the mean of several samples, each displaced by a fraction of a pixel. Its colors
-        are premultiplied by their opacity.
+        The later pictures are the mean of several samples, each displaced by a fraction of a pixel. All
+        colors are premultiplied by their opacity.
         """
         total = np.zeros((height, width, 4), np.uint16)
         surface = self._find_surface(solid, view, width, version)
-        for number, (right, down) in enumerate(_SAMPLES):
+        for count, (right, down) in enumerate(_SAMPLES, 1):
             offset = view.offset_px[0] + right, view.offset_px[1] + down
             drawn = self._draw_scene(
                 surface,
@@ -144,11 +144,11 @@ class SolidPicture:
                 check_canceled,
             )
             total += drawn.image.view(np.uint8).reshape(total.shape)
-            if number == 0:
-                yield drawn
-        total += len(_SAMPLES) // 2
-        total //= len(_SAMPLES)
-        yield drawn._replace(image=total.astype(np.uint8).view(np.uint32)[..., 0])
+            if count == 1:
+                yield drawn._replace(image=soften_steps(drawn.image))
+            elif count in (len(_SAMPLES) // 2, len(_SAMPLES)):
+                mean = (total + count // 2) // count
+                yield drawn._replace(image=mean.astype(np.uint8).view(np.uint32)[..., 0])
 
     def draw_fine_picture(
         self,
