@@ -7,23 +7,31 @@ from functools import partial
 from typing import TYPE_CHECKING, Protocol
 
 from app.desk.translation import tr
-from app.path.path_marks_view import ViewButton
+from app.path.path_marks_view import ViewButton, count_button_columns
 from app.path.path_pane_view import PathPane
 from app.path.solid_pane_view import SolidPane
 
 if TYPE_CHECKING:
+    from PySide6.QtCore import QRectF
+
     from app.screen.page_base import KeyActions
     from app.screen.panel import OnPress
+    from app.screen.screen_theme import ScreenTheme
 
 SECTION_KEY = "X"
 ROTATE_SECTION_KEY = "Shift+X"
 STOCK_KEY = "G"
+_MAX_COLUMNS = 3  # of buttons, with the buttons for the part in space
 
 
 class ViewWithButtons(Protocol):
     """A view whose buttons ``make_view_buttons`` makes. ``enlarge`` is None if its size is fixed."""
 
+    theme: ScreenTheme
     enlarge: OnPress | None
+
+    def find_panes_area(self) -> QRectF:
+        """Return the area inside the frame of the view."""
 
     @property
     def measurement(self) -> object | None:
@@ -54,7 +62,10 @@ class ViewWithButtons(Protocol):
 
 
 def make_view_buttons(view: ViewWithButtons) -> list[ViewButton]:
-    """Return the buttons of a path view, from top to bottom."""
+    """Return the buttons of a path view, from top to bottom.
+
+    A low view has no buttons for the part in space, because they would cover it. Their keys still act.
+    """
     found = [
         ViewButton("+", lambda: view.zoom_view(1)),
         ViewButton("−", lambda: view.zoom_view(-1)),
@@ -66,7 +77,9 @@ def make_view_buttons(view: ViewWithButtons) -> list[ViewButton]:
         found.insert(2, ViewButton(tr("VIEW"), view.select_next_view))
     if view.enlarge is not None:
         found.append(ViewButton(tr("LARGE"), view.enlarge))
-    return [*found, *_make_solid_buttons(view.panes, view.update)]
+    more = [*found, *_make_solid_buttons(view.panes, view.update)]
+    columns = count_button_columns(view.theme, view.find_panes_area(), len(more))
+    return more if columns <= _MAX_COLUMNS else found
 
 
 def make_solid_key_actions(panes: Iterable[PathPane], redraw: Callable[[], None]) -> KeyActions:

@@ -14,6 +14,7 @@ from pytestqt.qtbot import QtBot
 
 from app.path.part_player import PartPlayer, SolidImageRequest
 from app.path.path_aspects import PathViewKind, TipPosition
+from app.path.path_buttons_view import make_view_buttons
 from app.path.path_marks_view import make_part_title
 from app.path.path_view import PathView
 from app.path.solid_marks_view import find_dimension, find_exact_radius
@@ -433,3 +434,13 @@ def test_mouse_is_not_tracked_in_flat_views(view: PathView) -> None:
     view.select_next_view()
     assert view.panes[0].aspect is PathViewKind.PATH
     assert not view.hasMouseTracking()
+
+
+@pytest.mark.parametrize(("height", "has_more"), [(400, True), (130, False)])
+def test_low_view_has_no_buttons_that_cover_part(view: PathView, height: int, has_more: bool) -> None:
+    solid(view, SHAFT)
+    view.resize(800, height)
+    symbols = {button.symbol for button in make_view_buttons(view)}
+    assert ({"CUT", "∠", "BLANK"} <= symbols) is has_more
+    assert {"+", "VIEW", "FIT"} <= symbols
+    assert {"X", "Shift+X", "G"} <= view.make_part_key_actions().keys()
