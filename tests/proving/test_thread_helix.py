@@ -33,13 +33,13 @@ def threaded(lead: float, *, inside: bool = False) -> Solid:
     return make_threaded_solid(edges, inner[None], outer[None], [zone])
 
 
-def groove_places(solid: Solid, ray: int, *, inside: bool = False) -> np.ndarray:
-    """The middles of the grooves on a ray, as shares of the lead from 0 to 1."""
+def groove_place(solid: Solid, ray: int, *, inside: bool = False) -> float:
+    """The middle of the grooves on a ray, as a share of the lead from 0 to 1."""
     z = 0.5 * (solid.column_edges[1:] + solid.column_edges[:-1])
     radii = solid.inner_radii[0, :, ray] if inside else solid.outer_radii[0, :, ray]
     deep = radii > 4.5 if inside else radii < 9.5
     turns = np.exp(2j * math.pi * z[deep & (z > -18.0) & (z < -2.0)] / LEAD)
-    return np.angle(turns.mean()) / (2.0 * math.pi) % 1.0
+    return float(np.angle(turns.mean())) / (2.0 * math.pi) % 1.0
 
 
 @pytest.mark.parametrize("inside", [False, True])
@@ -50,7 +50,7 @@ def test_groove_moves_by_lead_for_each_revolution(hand: float, inside: bool) -> 
     rays = solid.outer_radii.shape[2]
     for quarter in range(4):
         expected = (hand * quarter / 4.0) % 1.0
-        found = groove_places(solid, rays * quarter // 4, inside=inside)
+        found = groove_place(solid, rays * quarter // 4, inside=inside)
         assert min(abs(found - expected), 1.0 - abs(found - expected)) < 0.02
 
 
