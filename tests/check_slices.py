@@ -29,7 +29,7 @@ CHECKS: Mapping[str, Sequence[str]] = {
     "lint": ("-m", "ruff", "check", "--quiet", "."),
     "types": ("-m", "mypy"),
     "contracts": ("-c", "from importlinter.cli import lint_imports_command as check; check()"),
-    "tests": ("-m", "pytest", "-q", "-n", "2", "-m", "not long", *QUICK),
+    "tests": ("-m", "pytest", "-q", "--forked-workers", "2", "-m", "not long", *QUICK),
 }
 
 

@@ -9,18 +9,17 @@ from __future__ import annotations
 import gc
 import os
 from collections.abc import Generator
-from contextlib import suppress
 
 import pytest
 from hypothesis import settings
-from xdist.remote import Producer
 
 from tests import late_computer
 from tests.named import all_named, not_run
 from tests.steady_examples import same_examples_whatever_is_loaded
 from tests.store_template import use_template
-from tests.waiting_apart import KINDER, URGENT, WaitingApart, in_order, shuffled, waits_first
+from tests.waiting_apart import in_order, shuffled
 
+pytest_plugins = ["tests.forked_workers"]
 settings.register_profile("steady", derandomize=True, deadline=None)
 settings.register_profile("search", deadline=None)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "steady"))
@@ -94,12 +93,6 @@ def pytest_collection_finish() -> None:
     gc.enable()
 
 
-@pytest.hookimpl(optionalhook=True)
-def pytest_xdist_make_scheduler(config: pytest.Config, log: Producer) -> WaitingApart | None:
-    """Unless another way was asked for."""
-    return WaitingApart(config, log) if config.getoption("dist") == "load" else None
-
-
 def pytest_runtest_setup() -> None:
     """Forget what the machine of an earlier test reported."""
     late_computer.forget()
@@ -127,7 +120,3 @@ def pytest_configure(config: pytest.Config) -> None:
     )
     if whole and not hasattr(config, "workerinput"):
         config.pluginmanager.register(SafetyRan(), "safety-ran")
-    worker = os.environ.get("PYTEST_XDIST_WORKER")
-    if worker is not None:
-        with suppress(PermissionError):  # only root may claim more of a core than others
-            os.nice(-URGENT if waits_first(worker) else KINDER)

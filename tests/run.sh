@@ -38,11 +38,9 @@ finish() {
 if [ "${1:-}" = "--quick" ]; then
     shift
     # shellcheck disable=SC2086
-    pytest -n 2 --max-worker-restart 0 -m "not long" $QUICK "$@" || finish $?
+    pytest --forked-workers 2 -m "not long" $QUICK "$@" || finish $?
     finish 0
 fi
-pytest --collect-only --quiet --quiet >/dev/null || true  # compiled once, before every worker does it for itself
-# A worker that dies ends the run with its error: the tests that it had are lost.
 # Two for two cores, and three that begin with what mostly waits: tests/waiting_apart.py.
-pytest -n 5 --max-worker-restart 0 "$@" || finish $?
+pytest --forked-workers 5 "$@" || finish $?
 finish 0

@@ -8,81 +8,53 @@ from typing import Any
 
 import pytest
 
-from tests.waiting_apart import STORIES, WaitingApart, in_order, portions, shuffled, waits
+from tests.waiting_apart import STORIES, PortionQueue, in_order, portions, shuffled, waits, waits_first
 
 HAL = [f"tests/drivers/hal/test_{name}.py::test_{number}" for name in "ab" for number in range(3)]
 TOLD = [f"{STORIES}test_stops.py::test_{number}" for number in range(4)]
 RECKON = [f"tests/store/test_{name}.py::test_{number}" for name in "ab" for number in range(40)]
 
 
-class Worker:
-    """Runs what it is given, in this order, as xdist's does: the last only when it is told to end."""
-
-    def __init__(self, number: int, nodeids: list[str]) -> None:
-        self.gateway, self.shutting_down = SimpleNamespace(id=f"gw{number}"), False
-        self.nodeids, self.given, self.ran = nodeids, list[int](), list[str]()
-
-    def send_runtest_some(self, indices: list[int]) -> None:
-        self.given += indices
-
-    def shutdown(self) -> None:
-        self.shutting_down = True
-
-    def run_one(self, scheduler: WaitingApart) -> bool:
-        if len(self.given) < (1 if self.shutting_down else 2):
-            return False
-        place = self.given.pop(0)
-        self.ran.append(self.nodeids[place])
-        scheduler.mark_test_complete(self, place)
-        return True
+def drained(nodeids: list[str], workers: int, kinds: list[bool]) -> list[list[str]]:
+    """The tests that each worker gets, by whether it begins with what waits, if all are equally fast."""
+    queue = PortionQueue(nodeids, workers)
+    ran: list[list[str]] = [[] for _ in kinds]
+    while sum(_gets(queue, nodeids, waiting, got) for waiting, got in zip(kinds, ran, strict=True)):
+        pass
+    return ran
 
 
-def begun(pytestconfig: pytest.Config, monkeypatch: pytest.MonkeyPatch, workers: int,
-          nodeids: list[str]) -> tuple[WaitingApart, list[Worker]]:  # fmt: skip
-    monkeypatch.setattr(pytestconfig.option, "tx", [f"{workers}*popen"])
-    monkeypatch.setattr(pytestconfig.option, "loadscopereorder", True, raising=False)
-    scheduler = WaitingApart(pytestconfig)
-    made = [Worker(number, nodeids) for number in range(workers)]
-    for each in made:
-        scheduler.add_node(each)
-        scheduler.add_node_collection(each, nodeids)
-    scheduler.schedule()
-    return scheduler, made
+def _gets(queue: PortionQueue, nodeids: list[str], waiting: bool, got: list[str]) -> int:
+    portion = queue.take(waiting=waiting)
+    got += [nodeids[number] for number in portion]
+    return len(portion)
 
 
 @pytest.mark.parametrize("workers", [1, 2, 3, 4])
 @pytest.mark.parametrize("nodeids", [HAL + TOLD + RECKON, RECKON, TOLD, HAL[:1]], ids=len)
-def test_every_test_runs_once_for_any_worker_speed(
-    pytestconfig: pytest.Config, monkeypatch: pytest.MonkeyPatch, workers: int, nodeids: list[str]
-) -> None:
-    scheduler, made = begun(pytestconfig, monkeypatch, workers, nodeids)
-    while sum(each.run_one(scheduler) for each in made):
-        pass
-    assert sorted(name for each in made for name in each.ran) == sorted(nodeids)
-    assert not scheduler.has_pending
-    assert all(each.shutting_down for each in made)
+def test_every_test_runs_once_for_any_number_of_workers(workers: int, nodeids: list[str]) -> None:
+    ran = drained(nodeids, workers, [bool(number % 2) for number in range(workers)])
+    assert sorted(name for each in ran for name in each) == sorted(nodeids)
 
 
-def test_worker_for_waiting_tests_starts_with_them_and_then_helps(
-    pytestconfig: pytest.Config, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    scheduler, (reckons, waiting) = begun(pytestconfig, monkeypatch, 2, HAL + TOLD + RECKON)
-    while waiting.run_one(scheduler):
-        pass
-    assert waiting.ran[: len(HAL + TOLD)] == HAL + TOLD
-    assert len(waiting.ran) > len(HAL + TOLD)
-    assert not any(waits(waiting.nodeids[place]) for place in reckons.given)
+def test_worker_for_waiting_tests_starts_with_them_and_then_helps() -> None:
+    reckons, waiting = drained(HAL + TOLD + RECKON, 2, [False, True])
+    assert waiting[: len(HAL + TOLD)] == HAL + TOLD
+    assert len(waiting) > len(HAL + TOLD)
+    assert not any(waits(name) for name in reckons)
 
 
-def test_tests_not_run_by_a_dead_worker_are_run_by_the_other(
-    pytestconfig: pytest.Config, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    scheduler, (reckons, waiting) = begun(pytestconfig, monkeypatch, 2, TOLD + RECKON)
-    died: Any = waiting
-    assert scheduler.remove_node(died) == TOLD[0]
-    while reckons.run_one(scheduler):
-        pass
-    assert set(reckons.ran) >= set(TOLD[1:] + RECKON)
+def test_worker_for_computing_tests_takes_waiting_tests_when_no_other_is_left() -> None:
+    (reckons,) = drained(HAL + RECKON, 1, [False])
+    assert reckons == RECKON + HAL
+
+
+def test_empty_queue_gives_no_test() -> None:
+    assert PortionQueue([], 5).take(waiting=True) == []
+
+
+def test_three_of_five_workers_begin_with_waiting_tests() -> None:
+    assert [waits_first(number) for number in range(6)] == [False, True, False, True, True, False]
 
 
 def test_waiting_file_is_not_split_and_computing_file_is() -> None:

@@ -1,4 +1,4 @@
-"""Which worker of ``pytest -n`` runs what: three in five what waits first, the others what calculates.
+"""Which worker of the tests runs what: three in five what waits first, the others what calculates.
 
 What waits, for a machine in real time or for another process, leaves a core to what calculates. In any other
 mixture all workers wait now and all calculate then. A worker with nothing left of its own kind helps the
@@ -15,8 +15,6 @@ from itertools import groupby
 from operator import itemgetter
 
 import pytest
-from xdist.scheduler.loadscope import LoadScopeScheduling
-from xdist.workermanage import WorkerController
 
 _OF_EXTRA = re.compile(r"^tests/extras/\w+/")
 STORIES = "tests/stories/"
@@ -49,54 +47,26 @@ def _place(nodeid: str) -> str:
     return _OF_EXTRA.sub("tests/", nodeid)
 
 
-def waits_first(worker: str) -> bool:
-    """Whether a worker, ``gw0`` and so on, begins with what waits."""
-    return int(worker.removeprefix("gw")) % 5 in _WAITERS
+def waits_first(worker: int) -> bool:
+    """Whether the worker of this number, from 0, begins with what waits."""
+    return worker % 5 in _WAITERS
 
 
-class WaitingApart(LoadScopeScheduling):
-    """Portions: a story, a file of other tests that wait, some tests in succession of a file that reckons."""
+class PortionQueue:
+    """The portions that no worker has been given, in their order. A test is its number in the order."""
 
-    _portions: dict[str, str]
-    _places: dict[str, int]
+    def __init__(self, nodeids: Sequence[str], workers: int) -> None:
+        names = portions(nodeids, workers)
+        self._left: dict[str, list[int]] = {}
+        for number, nodeid in enumerate(nodeids):
+            self._left.setdefault(names[nodeid], []).append(number)
 
-    def schedule(self) -> None:
-        """All workers have collected the same: begin."""
-        if self.collection is None and self.registered_collections:
-            nodeids = next(iter(self.registered_collections.values()))
-            self._places = {nodeid: place for place, nodeid in enumerate(nodeids)}
-            self._portions = portions(nodeids, len(self.nodes))
-            self.config.option.loadscopereorder = False
-        super().schedule()
-
-    def mark_test_complete(self, node: WorkerController, item_index: int, _duration: float = 0) -> None:
-        """It is over; the worker is given more when it has nothing behind its next one."""
-        nodeid = self.registered_collections[node][item_index]
-        portion, given = self._portions[nodeid], self.assigned_work[node]
-        del given[portion][nodeid]
-        if not given[portion]:
-            del given[portion]
-        self._reschedule(node)
-
-    def _split_scope(self, nodeid: str) -> str:
-        return self._portions[nodeid]
-
-    def _reschedule(self, node: WorkerController) -> None:
-        # A worker begins a test when it knows the one behind it.
-        if not self.workqueue or self._pending_of(self.assigned_work[node]) < 2:
-            super()._reschedule(node)
-
-    def _assign_work_unit(self, node: WorkerController) -> None:
-        portion = self._next_for(node)
-        given = self.workqueue.pop(portion)
-        self.assigned_work[node][portion] = given
-        node.send_runtest_some([self._places[nodeid] for nodeid in given])
-
-    def _next_for(self, node: WorkerController) -> str:
-        """The next portion of its kind; of the other kind where none is left."""
-        own = waits_first(node.gateway.id)
-        left: list[str] = list(self.workqueue)
-        return next((each for each in left if waits(each) is own), left[0])
+    def take(self, *, waiting: bool) -> list[int]:
+        """Remove the next portion of its kind; of the other kind where none is left; empty at the end."""
+        if not self._left:
+            return []
+        name = next((each for each in self._left if waits(each) is waiting), next(iter(self._left)))
+        return self._left.pop(name)
 
 
 def portions(nodeids: Sequence[str], workers: int) -> dict[str, str]:
