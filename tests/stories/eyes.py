@@ -129,6 +129,7 @@ class Eyes(QObject):
     def answer(self, asked: Told) -> None:
         """What is asked for, done or seen."""
         doing: dict[str, Callable[[Told], object]] = {
+            "glance": lambda _asked: self._glance(),
             "screen": lambda _asked: self._screen(),
             "freeze": lambda told: time.sleep(told["seconds"]),
             "touch": self._finger,
@@ -142,7 +143,8 @@ class Eyes(QObject):
         }
         tell({"answer": asked["number"], "is": doing[asked["ask"]](asked)})
 
-    def _screen(self) -> Told:
+    def _glance(self) -> Told:
+        """What is asked fifty times a second: all but the texts and their places."""
         window = _window()
         if window is None or window.frame is None:
             return {}
@@ -158,9 +160,15 @@ class Eyes(QObject):
             "active": window.isActiveWindow(),
             "minimised": window.isMinimized(),
             "field": _field(focus),
-            "texts": [each for widget in window.findChildren(QWidget) for each in self._texts(widget)],
-            "targets": [each for panel in window.findChildren(Panel) for each in _targets(panel)],
         }
+
+    def _screen(self) -> Told:
+        seen, window = self._glance(), _window()
+        if not seen or window is None:
+            return {}
+        texts = [each for widget in window.findChildren(QWidget) for each in self._texts(widget)]
+        targets = [each for panel in window.findChildren(Panel) for each in _targets(panel)]
+        return seen | {"texts": texts, "targets": targets}
 
     def _texts(self, widget: QWidget) -> list[tuple[str, float, float, str]]:
         """Text, the middle of its place on the screen, and on what kind of widget."""

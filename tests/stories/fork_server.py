@@ -15,6 +15,7 @@ import signal
 import socket
 import subprocess
 import sys
+from collections import deque
 from collections.abc import Mapping, Sequence
 from contextlib import closing
 from importlib import import_module
@@ -117,9 +118,10 @@ def _preload() -> None:
     import_module("app.cli.main").build_parser()
     for name in _PRELOADED:
         import_module(name)
-    pages = import_module("app.screen.page_table").ALL_PAGES
-    for name in (name for page in pages for name in (page.view_class, page.model_class) if name):
-        import_module(name.rpartition(".")[0])
+    table = import_module("app.screen.page_table")
+    deque(table.create_qt_classes(), maxlen=0)
+    for page in table.ALL_PAGES:
+        table.import_page_classes(page)
     gc.freeze()  # a collection would copy what all of them share
 
 

@@ -100,19 +100,24 @@ class Operator:
         return (self.home.parent / "stderr.txt").read_text()
 
     @property
+    def glance(self) -> Told:
+        """Page, state, prompt and the field with the keyboard."""
+        return dict(self.ask("glance"))
+
+    @property
     def screen(self) -> Told:
-        """Page, state, prompt, the field with the keyboard, and every text with its place."""
+        """The same, and every text with its place."""
         return dict(self.ask("screen"))
 
     @property
     def prompt(self) -> str:
         """The prompt line."""
-        return str(self.screen.get("prompt", ""))
+        return str(self.glance.get("prompt", ""))
 
     @property
     def page(self) -> str:
         """The page in front."""
-        return str(self.screen.get("page", ""))
+        return str(self.glance.get("page", ""))
 
     @property
     def machine(self) -> Told:
@@ -245,7 +250,7 @@ class Operator:
         held = [MODIFIERS[each] for each in modifiers]
         before = self._forgotten()
         while True:
-            seen = self.screen.get("keys", 0) if not self.once else 0
+            seen = self.glance.get("keys", 0) if not self.once else 0
             self.server.down(*held, key)
             self.server.up(key, *reversed(held))
             self._arrives("keys", seen)
@@ -257,10 +262,10 @@ class Operator:
         """What was pressed has come to the process, unless the window manager has kept it."""
         if not self.once:
             tries = iter(range(50))
-            self.until(lambda: self.screen.get(what, 0) > seen or next(tries, None) is None)
+            self.until(lambda: self.glance.get(what, 0) > seen or next(tries, None) is None)
 
     def _forgotten(self) -> int:
-        return 0 if self.once else int(self.screen.get("forgotten", 0))
+        return 0 if self.once else int(self.glance.get("forgotten", 0))
 
     def keys(self, *keys: str | int) -> None:
         """One after the other."""
@@ -369,7 +374,7 @@ class Operator:
         self.points(text, on)
         before = self._forgotten()
         while True:
-            seen = self.screen.get("clicks", 0) if not self.once else 0
+            seen = self.glance.get("clicks", 0) if not self.once else 0
             self.server.button("left", down=True)
             self.server.button("left", down=False)
             self._arrives("clicks", seen)
@@ -418,12 +423,12 @@ class Operator:
     def minimises(self) -> None:
         """The window goes into the task bar."""
         self.server.run("xdotool", "windowminimize", self._window)
-        self.until(lambda: not self.screen["active"], "the window away")
+        self.until(lambda: not self.glance["active"], "the window away")
 
     def comes_back(self) -> None:
         """And comes to the front again, with the keyboard."""
         self.server.run("xdotool", "windowactivate", self._window)
-        self.until(lambda: bool(self.screen["active"]), "the window back")
+        self.until(lambda: bool(self.glance["active"]), "the window back")
 
     def freezes(self, seconds: float) -> int:
         """Qt's thread does nothing for as long; ``answered`` says when it is over."""
@@ -455,7 +460,7 @@ class Operator:
 
     def arrives(self) -> None:
         """In front of a desk that is open and has the keyboard."""
-        self.until(lambda: bool(self.seen) and bool(self.screen.get("active")), "the window")
+        self.until(lambda: bool(self.seen) and bool(self.glance.get("active")), "the window")
         self._window = self.server.run("xdotool", "getactivewindow").strip()
 
     def drives_on(self) -> None:

@@ -75,7 +75,7 @@ def test_characters_typed_in_a_field_trigger_no_command(story: Story, place: str
         operator.key(key)
         operator.during(0.3)
     before = dict(operator.machine)
-    theme = operator.screen["theme"]
+    theme = operator.glance["theme"]
     figures_only = place not in {
         "the question for a file",
         "the list of programs",
@@ -86,7 +86,7 @@ def test_characters_typed_in_a_field_trigger_no_command(story: Story, place: str
     operator.writes(LETTERS.replace("e", "").replace("h", "").replace(" ", "") if figures_only else LETTERS)
     operator.during(1.2)
     assert leaks(operator, before) == []
-    assert operator.screen["theme"] == theme
+    assert operator.glance["theme"] == theme
     operator.key("Scroll_Lock")
     operator.reaches("E-STOP")
 

@@ -28,7 +28,7 @@ def test_popup_window_does_not_block_stop_keys(story: Story) -> None:
     operator.key("F2")
     operator.sees(text("screen.file-to-be-processed"))
     operator.writes("bush")
-    operator.until(lambda: operator.screen["field"] == "bush", "typed")
+    operator.until(lambda: operator.glance["field"] == "bush", "typed")
     operator.points("bush")
     operator.server.button("right", down=True)
     operator.server.button("right", down=False)

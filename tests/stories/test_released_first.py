@@ -46,7 +46,7 @@ def screen_lock(operator: Operator) -> None:
     """A locker grabs keyboard and pointer; no release comes here meanwhile."""
     with another_client(operator.server, "grab"):
         operator.reaches("READY")
-    operator.until(lambda: bool(operator.screen["active"]), "the keyboard back")
+    operator.until(lambda: bool(operator.glance["active"]), "the keyboard back")
 
 
 WAYS: tuple[Callable[[Operator], None], ...] = (minimised, other_workspace, other_window, screen_lock)
@@ -82,17 +82,17 @@ def test_key_pressed_in_another_window_does_not_jog(story: Story, way: Callable[
         operator.comes_back()
     elif way is screen_lock:
         with another_client(operator.server, "grab"):
-            operator.until(lambda: not operator.screen["active"], "the lock")
+            operator.until(lambda: not operator.glance["active"], "the lock")
             pressed_meanwhile(operator)
     elif way is other_window:
         with another_client(operator.server, "window"):
-            operator.until(lambda: not operator.screen["active"], "the other window")
+            operator.until(lambda: not operator.glance["active"], "the other window")
             pressed_meanwhile(operator)
         operator.comes_back()
     else:
         operator.server.run("xdotool", "set_num_desktops", "2")
         operator.server.run("xdotool", "set_desktop", "1")
-        operator.until(lambda: not operator.screen["active"], "the other workspace")
+        operator.until(lambda: not operator.glance["active"], "the other workspace")
         pressed_meanwhile(operator)
         operator.server.run("xdotool", "set_desktop", "0")
         operator.comes_back()

@@ -158,11 +158,11 @@ def test_f10_held_down_leaves_no_text_unsaved(story: Story) -> None:
     operator.opens("EDITOR")
     operator.sees("G90G94T1")
     operator.writes("(MINE)")
-    operator.until(lambda: "(MINE)" in operator.screen["field"], "typed")
+    operator.until(lambda: "(MINE)" in operator.glance["field"], "typed")
     operator.holds("F10", HELD)
     operator.keys("F10", "F10")
     assert operator.page == "EDITOR"
-    assert "(MINE)" in operator.screen["field"]
+    assert "(MINE)" in operator.glance["field"]
     operator.key("F6")
     operator.opens("AUTOMATIC")
     assert (story.folder / "part.nc").read_text() == PART
@@ -198,9 +198,9 @@ def test_key_held_down_repeats_text_in_a_field(story: Story) -> None:
     operator.key("F2")
     operator.sees(text("screen.file-to-be-processed"))
     operator.holds("x", 1.0)
-    operator.until(lambda: operator.screen["field"].count("x") > 5, "a row of letters")
+    operator.until(lambda: operator.glance["field"].count("x") > 5, "a row of letters")
     operator.holds("BackSpace", 1.5)
-    operator.until(lambda: operator.screen["field"].count("x") == 0, "gone again")
+    operator.until(lambda: operator.glance["field"].count("x") == 0, "gone again")
     operator.holds("Escape", 0.6)  # closes the prompt, and goes no further
     assert not operator.shows(text("screen.file-to-be-processed"))
 

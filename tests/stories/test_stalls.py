@@ -168,7 +168,7 @@ def test_text_typed_in_stall_is_entered_and_following_key_acts(story: Story) -> 
     with frozen(operator):
         operator.key("F2")
         operator.writes("bush")
-    operator.until(lambda: operator.screen["field"] == "bush", "what was typed")
+    operator.until(lambda: operator.glance["field"] == "bush", "what was typed")
     operator.sees(text("screen.file-to-be-processed"))
     with frozen(operator):
         operator.key("BackSpace")
@@ -176,7 +176,7 @@ def test_text_typed_in_stall_is_entered_and_following_key_acts(story: Story) -> 
         operator.key("Escape")
         operator.key("s")
     operator.until(lambda: bool(operator.machine["single_block"]), "a key after the field was left")
-    assert operator.screen["field"] == ""
+    assert operator.glance["field"] == ""
 
 
 def test_late_answer_is_ignored_and_following_key_is_dropped(story: Story) -> None:

@@ -161,7 +161,7 @@ def test_stop_keys_act_in_file_prompt(story: Story) -> None:
     operator.key("F2")
     operator.sees(text("screen.file-to-be-processed"))
     operator.writes("he e")
-    operator.until(lambda: operator.screen["field"] == "he e", "the letters are text")
+    operator.until(lambda: operator.glance["field"] == "he e", "the letters are text")
     assert operator.state == "READY"
     operator.key("Scroll_Lock")
     operator.reaches("E-STOP")
