@@ -36,7 +36,6 @@ def copy_template(path: Path) -> None:
         _create(path)  # it raises what the product raises
 
 
-def use_template(item: pytest.Item, patch: pytest.MonkeyPatch) -> None:
+def use_template(item: pytest.Item) -> None:
     """Let stores of this test begin as copies, unless its room is that of the store."""
-    if not item.nodeid.startswith("tests/store/"):
-        patch.setattr(database, "create_store_file", copy_template)
+    database.create_store_file = _create if item.nodeid.startswith("tests/store/") else copy_template
