@@ -18,6 +18,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QApplication, QWidget
 
+from app.desk.stop_keys.stop_records import StopKind
 from app.desk.translation import tr
 from app.screen.screen_theme import ALIGN_CENTER, ALIGN_LEFT, ScreenTheme, ThemedPainter, draw_text
 from app.screen.text_sizes import TextRole
@@ -296,6 +297,7 @@ class TouchControl:
     on_move: Callable[[QPointF], None] | None = None
     on_release: Callable[[], None] | None = None
     stops_machine: bool = False  # The control stops the machine, so it also acts on a late press.
+    watched_stop: StopKind | None = None  # The stop that the key watcher sends while the screen is stalled.
     name: str = ""  # See ``TouchTarget``.
     kind: Literal["key", "slider"] = "key"
 

@@ -11,11 +11,15 @@ import pytest
 
 from app.desk.stop_keys.key_watcher import KeyWatcher
 from app.desk.stop_keys.raw_keys import RawKey, RawKeyReader
+from app.desk.stop_keys.raw_pointer import PointerPress, RawPointerReader
 from app.desk.stop_keys.stop_records import (
     MAX_RECORD_BYTES,
+    TOUCH_CODE,
     FocusRecord,
+    StopArea,
     StopKeyPress,
     StopKind,
+    make_button_code,
     make_press_number,
 )
 
@@ -38,11 +42,28 @@ class Keys:
 
 
 @dataclass
+class Pointer:
+    """Windows on a screen; each covers all that follow, with its corner on the screen and its size."""
+
+    windows: list[tuple[int, int, int, int, int]]
+
+    def find_window_at(self, x: int, y: int, window_ids: frozenset[int]) -> tuple[int, int, int] | None:
+        for window, left, top, width, height in self.windows:
+            if left <= x < left + width and top <= y < top + height:
+                return (window, x - left, y - top) if window in window_ids else None
+        return None
+
+
+@dataclass
 class Bench:
     watcher: KeyWatcher
     keys: Keys
     control: socket.socket
     screen: socket.socket
+    pointer: Pointer
+
+    def click(self, x: int, y: int, code: int = make_button_code(1)) -> None:
+        self.watcher.handle_pointer_press(PointerPress(code, 5000, x, y))
 
     def show(self, focus: FocusRecord) -> None:
         self.screen.send(focus.to_bytes())
@@ -66,13 +87,22 @@ class Bench:
 def bench() -> Iterator[Bench]:
     line, control = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     theirs, screen = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    keys = Keys()
+    keys, pointer = Keys(), Pointer([(OURS, 100, 50, 800, 600)])
     with line, control, theirs, screen:
-        yield Bench(KeyWatcher(cast("RawKeyReader", keys), line, theirs), keys, control, screen)
+        watcher = KeyWatcher(cast("RawKeyReader", keys), line, theirs, cast("RawPointerReader", pointer))
+        yield Bench(watcher, keys, control, screen, pointer)
 
 
 HERE = FocusRecord(frozenset({OURS}), is_esc_stop_key=False)
 MOVING = FocusRecord(frozenset({OURS}), is_esc_stop_key=True)
+DRAWN = FocusRecord(
+    frozenset({OURS}),
+    is_esc_stop_key=False,
+    stop_areas=(
+        StopArea(OURS, 10, 20, 40, 30, StopKind.ESTOP),  # on the screen: x 110 to 149, y 70 to 99
+        StopArea(OURS, 10, 60, 40, 30, StopKind.HOLD),  # y 110 to 139
+    ),
+)
 
 
 @pytest.mark.parametrize(("code", "kind"), [(PAUSE, StopKind.HOLD), (SCROLL_LOCK, StopKind.ESTOP)])
@@ -120,6 +150,54 @@ def test_esc_is_sent_only_with_motion_and_the_current_keyboard_layout(bench: Ben
     assert bench.sent() == []
 
 
+@pytest.mark.parametrize("code", [make_button_code(1), make_button_code(3), TOUCH_CODE])
+@pytest.mark.parametrize(
+    ("x", "y", "kind"),
+    [(110, 70, StopKind.ESTOP), (149, 99, StopKind.ESTOP), (130, 110, StopKind.HOLD)],
+)
+def test_press_on_drawn_stop_control_is_sent(bench: Bench, code: int, x: int, y: int, kind: StopKind) -> None:
+    bench.show(DRAWN)
+    bench.keys.front = OTHER  # A click needs no keyboard focus.
+    bench.click(x, y, code)
+    assert bench.sent() == [StopKeyPress(kind, make_press_number(code, 5000))]
+
+
+@pytest.mark.parametrize("at", [(109, 70), (150, 70), (110, 69), (110, 100), (400, 300), (20, 30)])
+def test_press_next_to_drawn_stop_control_is_not_sent(bench: Bench, at: tuple[int, int]) -> None:
+    bench.show(DRAWN)
+    bench.click(*at)
+    assert bench.sent() == []
+
+
+def test_press_on_window_that_covers_stop_control_is_not_sent(bench: Bench) -> None:
+    bench.show(DRAWN)
+    bench.pointer.windows.insert(0, (OTHER, 0, 0, 300, 300))
+    bench.click(130, 80)
+    assert bench.sent() == []
+
+
+def test_press_on_stop_control_of_moved_window_is_sent(bench: Bench) -> None:
+    bench.show(DRAWN)
+    bench.pointer.windows[0] = (OURS, 500, 300, 800, 600)
+    bench.click(130, 80)
+    assert bench.sent() == []
+    bench.click(530, 330)
+    assert [each.stop_kind for each in bench.sent()] == [StopKind.ESTOP]
+
+
+def test_press_on_another_window_of_turndesk_is_not_sent(bench: Bench) -> None:
+    bench.show(DRAWN._replace(window_ids=frozenset({OURS, OTHER})))
+    bench.pointer.windows.insert(0, (OTHER, 100, 50, 300, 300))
+    bench.click(130, 80)
+    assert bench.sent() == []
+
+
+def test_no_press_is_sent_while_no_stop_control_is_drawn(bench: Bench) -> None:
+    bench.show(HERE)
+    bench.click(130, 80)
+    assert bench.sent() == []
+
+
 def test_key_watcher_ends_when_the_screen_closes(bench: Bench) -> None:
     bench.screen.close()
     assert not bench.watcher.read_focus_records()
@@ -145,7 +223,10 @@ def test_invalid_stop_record_is_rejected(record: bytes) -> None:
         StopKeyPress.from_bytes(record)
 
 
-@pytest.mark.parametrize("record", [b"", b"12", bytes(4)])
+@pytest.mark.parametrize(
+    "record",
+    [b"", b"12", bytes(4), bytes(6), DRAWN.to_bytes()[:-1], DRAWN.to_bytes() + b"1", b"\0\1\0\0\0"],
+)
 def test_invalid_focus_record_is_rejected(record: bytes) -> None:
     with pytest.raises(ValueError, match="not a"):
         FocusRecord.from_bytes(record)
@@ -157,7 +238,20 @@ def test_records_are_decoded_as_they_were_encoded() -> None:
         StopKeyPress(StopKind.ESC, make_press_number(9, 2**32 - 1)),
     )
     assert FocusRecord.from_bytes(focus.to_bytes()) == focus
+    assert FocusRecord.from_bytes(DRAWN.to_bytes()) == DRAWN
     assert StopKeyPress.from_bytes(stop.to_bytes()) == stop
+
+
+def test_unknown_stop_kind_of_area_is_rejected() -> None:
+    with pytest.raises(ValueError, match="9 is not a valid"):
+        FocusRecord.from_bytes(DRAWN.to_bytes()[:-1] + b"\x09")
+
+
+def test_record_of_too_many_windows_and_areas_fits_in_its_limit() -> None:
+    many = FocusRecord(frozenset(range(2000)), is_esc_stop_key=True, stop_areas=DRAWN.stop_areas * 100)
+    found = FocusRecord.from_bytes(many.to_bytes())
+    assert len(many.to_bytes()) <= MAX_RECORD_BYTES
+    assert (len(found.window_ids), len(found.stop_areas)) == (500, 64)
 
 
 def test_key_event_without_a_timestamp_has_press_number_zero() -> None:

@@ -10,7 +10,7 @@ from typing import cast
 
 import pytest
 from PySide6.QtGui import QGuiApplication
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QWidget
 
 from app.desk.stop_keys.key_watcher_client import KeyWatcherClient
 from app.desk.stop_keys.key_watcher_notice import report_watcher_end
@@ -66,13 +66,48 @@ def moving(hands: Hands, state: MachineState = MachineState.RUN) -> None:
 def test_watcher_is_informed_of_window_and_esc_function(watched: tuple[Hands, Watched]) -> None:
     hands, made = watched
     hands.window.refresh()
-    assert made.shown[-1] == FocusRecord(frozenset({int(window_of(hands).winId())}), is_esc_stop_key=False)
+    assert made.shown[-1].window_ids == frozenset({int(window_of(hands).winId())})
+    assert not made.shown[-1].is_esc_stop_key
     moving(hands, MachineState.WAIT)
     hands.window.refresh()
     assert made.shown[-1].is_esc_stop_key
     hands.frame.open_page(page_table.SECCMP)
     hands.window.refresh()
     assert not made.shown[-1].is_esc_stop_key
+
+
+def test_watcher_is_informed_of_drawn_stop_controls(watched: tuple[Hands, Watched]) -> None:
+    hands, made = watched
+    dock = hands.frame.station_dock
+    assert dock is not None
+    dock.grab()
+    hands.window.refresh()
+    boxes = [each.box for each in dock.controls if each.stops_machine]
+    areas = made.shown[-1].stop_areas
+    assert [each.stop_kind for each in areas] == [StopKind.ESTOP, StopKind.HOLD]
+    for area, box in zip(areas, boxes, strict=True):
+        at = hands.window.mapFromGlobal(dock.mapToGlobal(box.center())).toPoint()
+        assert area.contains(at.x(), at.y())
+        assert (area.width_px, area.height_px) == pytest.approx((box.width(), box.height()), abs=1)
+        assert area.window_id == int(window_of(hands).winId())
+
+
+def test_watcher_is_not_informed_of_hidden_or_covered_stop_controls(watched: tuple[Hands, Watched]) -> None:
+    hands, made = watched
+    dock = hands.frame.station_dock
+    assert dock is not None
+    dock.grab()
+    cover = QWidget(hands.window)
+    cover.setGeometry(hands.window.rect())
+    cover.show()
+    hands.window.refresh()
+    assert made.shown[-1].stop_areas == ()
+    cover.hide()
+    hands.window.refresh()
+    assert len(made.shown[-1].stop_areas) == 2
+    dock.hide()
+    hands.window.refresh()
+    assert made.shown[-1].stop_areas == ()
 
 
 def test_feed_hold_contains_number_of_its_key_press(watched: tuple[Hands, Watched]) -> None:

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from app.desk.stop_keys.key_watcher_client import KeyWatcherClient
-from app.desk.stop_keys.stop_records import MAX_RECORD_BYTES, FocusRecord, StopKeyPress, StopKind
+from app.desk.stop_keys.stop_records import MAX_RECORD_BYTES, FocusRecord, StopArea, StopKeyPress, StopKind
 from tests.killed.bench import until
 from tests.stories.x11 import Server, another_client, missing
 
@@ -173,3 +173,34 @@ def test_stop_key_held_down_is_sent_once(bench: Bench) -> None:
     with pytest.raises(TimeoutError):
         bench.stop()
     bench.server.up("Pause")
+
+
+def test_click_on_stop_area_is_sent_at_its_place_in_the_window_only(bench: Bench) -> None:
+    # The window is 400 x 300 pixels, with its corner at 100, 100: the area is on the screen from 200, 200 on.
+    areas = (StopArea(bench.window, 100, 100, 50, 50, StopKind.ESTOP),)
+    bench.show(FocusRecord(frozenset({bench.window}), is_esc_stop_key=False, stop_areas=areas))
+    press_until_sent(bench, "Pause")
+    assert click(bench, (201, 201)) is StopKind.ESTOP
+    assert click(bench, (249, 249)) is StopKind.ESTOP
+    assert click(bench, (198, 201)) is None
+    assert click(bench, (252, 201)) is None
+    assert click(bench, (201, 201), "wheel down") is None
+    with another_client(bench.server, "window"):
+        assert click(bench, (201, 201)) is None
+    bench.server.run("xdotool", "windowmove", str(bench.window), "300", "200")
+    assert click(bench, (201, 201)) is None
+    assert click(bench, (401, 301)) is StopKind.ESTOP
+    bench.server.run("xdotool", "windowunmap", str(bench.window))
+    assert click(bench, (401, 301)) is None
+
+
+def click(bench: Bench, at: tuple[int, int], button: str = "left") -> StopKind | None:
+    """Click there; the stop that the control gets."""
+    bench.server.point(*at)
+    for down in (True, False):
+        bench.server.button(button, down=down)
+    bench.control.settimeout(1.0)
+    try:
+        return bench.stop().stop_kind
+    except TimeoutError:
+        return None

@@ -41,6 +41,36 @@ def test_stop_key_acts_once_and_during_the_stall(story: Story, key: str, state: 
     assert operator.page == "AUTOMATIC"
 
 
+@pytest.mark.parametrize("button", ["left", "right"])
+@pytest.mark.parametrize(("label", "state"), [("STOP", "E-STOP"), ("PAUSE", "FEED HOLD")])
+def test_click_on_drawn_stop_control_acts_once_and_during_the_stall(
+    story: Story, label: str, state: str, button: str
+) -> None:
+    operator = cutting(story)
+    stops = len(operator.events("stop", "alarm", "estop"))
+    operator.points(label, on="StationDock")
+    number = operator.freezes(3.0)
+    operator.during(0.3)
+    operator.server.button(button, down=True)
+    operator.server.button(button, down=False)
+    operator.reaches(state)
+    assert not operator.answered(number), "it acted only after the stall"
+    operator.until(lambda: operator.answered(number), "the screen again")
+    operator.keeps(lambda: operator.state == state, 1.0, state)
+    operator.until(lambda: len(operator.events("stop", "alarm", "estop")) > stops, "its entry")
+    assert len(operator.events("stop", "alarm", "estop")) == stops + 1
+
+
+def test_click_on_program_that_covers_drawn_stop_control_stops_nothing(story: Story) -> None:
+    operator = cutting(story)
+    operator.points("PAUSE", on="StationDock")
+    with another_client(operator.server, "cover"):
+        operator.during(0.5)
+        operator.server.button("left", down=True)
+        operator.server.button("left", down=False)
+        operator.keeps(lambda: operator.state == "RUNNING", 1.0, "the cut")
+
+
 @pytest.mark.parametrize("what", ["window", "grab"])
 def test_keys_typed_in_another_program_stop_nothing(story: Story, what: str) -> None:
     operator = cutting(story)

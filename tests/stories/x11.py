@@ -208,7 +208,8 @@ def _library(name: str) -> ctypes.CDLL:
 
 @contextmanager
 def another_client(server: Server, what: str) -> Iterator[None]:
-    """Somebody else here: a ``window`` in front, a ``grab`` of keyboard and pointer, or of ``keys`` alone.
+    """Somebody else here: a ``window`` in front, or one that covers the whole screen (``cover``), a ``grab``
+    of keyboard and pointer, or of ``keys`` alone.
 
     A screen lock is such a grab.
     """
@@ -217,8 +218,9 @@ def another_client(server: Server, what: str) -> Iterator[None]:
     x.XDefaultRootWindow.restype = x.XCreateSimpleWindow.restype = ctypes.c_ulong
     display = ctypes.c_void_p(x.XOpenDisplay(server.name.encode()))
     root, now = ctypes.c_ulong(x.XDefaultRootWindow(display)), ctypes.c_ulong(0)
-    if what == "window":
-        window = x.XCreateSimpleWindow(display, root, 100, 100, 400, 300, 0, 0, 0)
+    if what in {"window", "cover"}:
+        place = (100, 100, 400, 300) if what == "window" else (0, 0, *SIZE)
+        window = x.XCreateSimpleWindow(display, root, *place, 0, 0, 0)
         x.XMapRaised(display, ctypes.c_ulong(window))
     else:
         assert x.XGrabKeyboard(display, root, 1, 1, 1, now) == 0

@@ -1,8 +1,9 @@
-"""Key watcher process for the stop keys.
+"""Key watcher process for the stop keys and the drawn stop controls.
 
 Its arguments are LINE and SCREEN, the file descriptors of two sockets. The watcher sends every press of a
-stop key to the control over LINE and to the screen over SCREEN. It does so only while a window of TurnDesk
-has the keyboard focus, and it ends when the screen ends.
+stop key to the control over LINE and to the screen over SCREEN, while a window of TurnDesk has the keyboard
+focus. It does the same for every mouse press and touch on a drawn stop control that no other window covers.
+The watcher ends when the screen ends.
 
 The watcher is a separate process, because a painting call of Qt holds Python's global interpreter lock,
 which blocks all threads of the screen's process.
@@ -15,6 +16,7 @@ import socket
 from contextlib import suppress
 
 from app.desk.stop_keys.raw_keys import RawKey, RawKeyReader
+from app.desk.stop_keys.raw_pointer import PointerPress, RawPointerReader
 from app.desk.stop_keys.stop_records import (
     MAX_RECORD_BYTES,
     NO_FOCUS,
@@ -32,25 +34,40 @@ The codes do not depend on the keyboard layout.
 
 
 class KeyWatcher:
-    """Watcher of the keyboard, which detects presses of stop keys and sends them."""
+    """Watcher of keyboard, mouse and touch, which detects presses that stop the machine and sends them.
+
+    Without ``raw_pointer``, it watches only the keyboard.
+    """
 
     def __init__(
-        self, raw_keys: RawKeyReader, stop_channel: socket.socket, screen_channel: socket.socket
+        self,
+        raw_keys: RawKeyReader,
+        stop_channel: socket.socket,
+        screen_channel: socket.socket,
+        raw_pointer: RawPointerReader | None = None,
     ) -> None:
         self._keys, self._line, self._screen = raw_keys, stop_channel, screen_channel
+        self._pointer = raw_pointer
         self._focus = NO_FOCUS
 
-    def watch_keys(self) -> None:
-        """Watch the keys until the screen process ends."""
+    def watch_presses(self) -> None:
+        """Watch the keys, the mouse and the touches until the screen process ends."""
         poll = select.poll()
-        for each in (self._keys, self._screen):
-            poll.register(each.fileno(), select.POLLIN)
+        for each in (self._keys, self._screen, self._pointer):
+            if each is not None:
+                poll.register(each.fileno(), select.POLLIN)
         while True:
             ready = dict(poll.poll())
             if self._screen.fileno() in ready and not self.read_focus_records():
                 return
+            self._handle_pointer_presses()
             for key in self._keys.read_key_presses():
                 self.handle_key_press(key)
+
+    def _handle_pointer_presses(self) -> None:
+        if self._pointer is not None:
+            for press in self._pointer.read_presses():
+                self.handle_pointer_press(press)
 
     def read_focus_records(self) -> bool:
         """Read the focus record that the screen has sent. Return False if the screen has ended."""
@@ -72,6 +89,16 @@ class KeyWatcher:
         if kind is not None and self._keys.find_focus_window() in self._focus.window_ids:
             self._send(StopKeyPress(kind, make_press_number(key.key_code, key.time_ms)))
 
+    def handle_pointer_press(self, press: PointerPress) -> None:
+        """Send a stop if a mouse press or touch is on a drawn stop control that no window covers."""
+        if self._pointer is None or not self._focus.stop_areas:
+            return
+        found = self._pointer.find_window_at(press.x_px, press.y_px, self._focus.window_ids)
+        for area in self._focus.stop_areas:
+            if found is not None and area.window_id == found[0] and area.contains(*found[1:]):
+                self._send(StopKeyPress(area.stop_kind, make_press_number(press.press_code, press.time_ms)))
+                return
+
     def _kind(self, code: int) -> StopKind | None:
         if code in STOP_KEY_CODES:
             return STOP_KEY_CODES[code]
@@ -86,11 +113,14 @@ class KeyWatcher:
 
 
 def main(arguments: list[str]) -> int:
-    """Watch the keys, and return 1 if the X server does not send raw events."""
+    """Watch the presses, and return 1 if the X server does not send raw events."""
     line, screen = (socket.socket(fileno=int(each)) for each in arguments)
     try:
         keys = RawKeyReader()
     except OSError:
         return 1
-    KeyWatcher(keys, line, screen).watch_keys()
+    pointer = None
+    with suppress(OSError):  # An X server from before 2012.
+        pointer = RawPointerReader()
+    KeyWatcher(keys, line, screen, pointer).watch_presses()
     return 0

@@ -13,7 +13,12 @@ from typing import NamedTuple
 SOURCE_SCREEN = "a key or a touch on the screen"
 SOURCE_ESC = "Esc key at the screen"
 _STOP = struct.Struct("=BQ")
+_FOCUS, _AREA = struct.Struct("=?HH"), struct.Struct("=IiiiiB")
 MAX_RECORD_BYTES = 4096  # Maximum size of a record in bytes.
+_MAX_WINDOWS, _MAX_AREAS = 500, 64  # Number of windows and areas in a record: 3 400 bytes.
+# Code of mouse button 0 in press numbers. X key codes are less than 256.
+_BUTTON_CODES = 0x100
+TOUCH_CODE = 0x200  # Code of a touch in press numbers.
 
 
 class StopKind(IntEnum):
@@ -37,8 +42,13 @@ def make_press_number(key_code: int, time_ms: int) -> int:
     return key_code << 32 | time_ms & 0xFFFFFFFF if time_ms else 0
 
 
+def make_button_code(button: int) -> int:
+    """Return the code of a mouse button, by its number in X, for press numbers."""
+    return _BUTTON_CODES | button & 0xFF
+
+
 class StopKeyPress(NamedTuple):
-    """One press of a stop key, with its kind of stop and its press number."""
+    """One press of a stop key or of a drawn stop control, with its kind of stop and its press number."""
 
     stop_kind: StopKind
     press_number: int
@@ -56,25 +66,58 @@ class StopKeyPress(NamedTuple):
         return cls(StopKind(kind), press)
 
 
+class StopArea(NamedTuple):
+    """Rectangle of a drawn stop control, in pixels of X from the corner of its window.
+
+    The coordinates remain correct when the window is moved.
+    """
+
+    window_id: int
+    left_px: int
+    top_px: int
+    width_px: int
+    height_px: int
+    stop_kind: StopKind
+
+    def contains(self, x_px: int, y_px: int) -> bool:
+        """Return whether a position in the window is in the rectangle."""
+        return 0 <= x_px - self.left_px < self.width_px and 0 <= y_px - self.top_px < self.height_px
+
+
 class FocusRecord(NamedTuple):
-    """X window IDs of TurnDesk's windows, and whether Esc currently starts feed hold."""
+    """X window IDs of TurnDesk's windows, and the keys and drawn controls that currently stop the machine.
+
+    ``is_esc_stop_key`` is whether Esc currently starts feed hold.
+    """
 
     window_ids: frozenset[int]
     is_esc_stop_key: bool
+    stop_areas: tuple[StopArea, ...] = ()
 
     def to_bytes(self) -> bytes:
-        """Return the focus record in binary form, with at most 1000 windows."""
-        windows = sorted(self.window_ids)[:1000]
-        return struct.pack(f"=?{len(windows)}I", self.is_esc_stop_key, *windows)
+        """Return the focus record in binary form, with at most 500 windows and 64 areas."""
+        windows, areas = sorted(self.window_ids)[:_MAX_WINDOWS], self.stop_areas[:_MAX_AREAS]
+        head = _FOCUS.pack(self.is_esc_stop_key, len(windows), len(areas))
+        return b"".join((head, struct.pack(f"={len(windows)}I", *windows), *(_AREA.pack(*a) for a in areas)))
 
     @classmethod
     def from_bytes(cls, record: bytes) -> FocusRecord:
         """Return the focus record from its binary form. Raises ValueError if the data is invalid."""
-        count, rest = divmod(len(record) - 1, 4)
-        if rest or count < 0:
+        try:
+            esc_holds, windows, areas = _FOCUS.unpack_from(record)
+        except struct.error:
+            windows = areas = -1
+        start = _FOCUS.size + 4 * windows
+        if windows < 0 or len(record) != start + areas * _AREA.size:
             raise ValueError(f"{len(record)} bytes are not a focus")
-        esc_holds, *windows = struct.unpack(f"=?{count}I", record)
-        return cls(frozenset(windows), esc_holds)
+        return cls(
+            frozenset(struct.unpack_from(f"={windows}I", record, _FOCUS.size)),
+            esc_holds,
+            tuple(
+                StopArea(window, left, top, width, height, StopKind(kind))
+                for window, left, top, width, height, kind in _AREA.iter_unpack(record[start:])
+            ),
+        )
 
 
 NO_FOCUS = FocusRecord(frozenset(), is_esc_stop_key=False)

@@ -31,7 +31,13 @@ from PySide6.QtWidgets import QApplication, QLineEdit, QWidget
 
 from app.desk.late_presses import BlockedLateAction
 from app.desk.stop_keys.key_watcher_client import KeyWatcherClient, OpenStopChannel, ReportEnd
-from app.desk.stop_keys.stop_records import SOURCE_ESC, FocusRecord, StopKind, make_press_number
+from app.desk.stop_keys.stop_records import (
+    SOURCE_ESC,
+    FocusRecord,
+    StopArea,
+    StopKind,
+    make_press_number,
+)
 from app.screen.text_area.text_area import TextArea
 from app.screen.window.input_times import InputTimes
 from app.screen.window.key_table import MODIFIER_KEYS
@@ -118,6 +124,10 @@ class KeyboardTarget(Protocol):
 
     def is_stop_control_at(self, event: QInputEvent) -> bool:
         """Return whether a press at a position hits a control that stops the machine."""
+        ...
+
+    def find_stop_areas(self) -> tuple[StopArea, ...]:
+        """Return the rectangles of the drawn controls that the key watcher watches."""
         ...
 
 
@@ -234,7 +244,8 @@ class KeyboardFilter(QObject):
         if self._watched is not None:
             self._watched.check_process()
             shown = frozenset(window.winId() for window in windows if window.isVisible())
-            self._watched.send_focus(FocusRecord(shown, self._behind.is_esc_stop_key()))
+            is_esc_stop, areas = self._behind.is_esc_stop_key(), self._behind.find_stop_areas()
+            self._watched.send_focus(FocusRecord(shown, is_esc_stop, areas))
             if any(stop.stop_kind is StopKind.ESTOP for stop in self._watched.read_sent_stops()):
                 self._behind.show_estop_pressed()
         for window in windows if len(windows) > 1 else ():

@@ -14,7 +14,6 @@ from PySide6.QtGui import (
     QIcon,
     QInputEvent,
     QKeyEvent,
-    QPointerEvent,
     QResizeEvent,
     QScreen,
     QShowEvent,
@@ -25,7 +24,7 @@ from app.desk.desk import Desk
 from app.desk.late_presses import BlockedLateAction
 from app.desk.status.prompt_line import ACTIVE_STATES, MOVING_STATES
 from app.desk.stop_keys.key_watcher_notice import report_watcher_end
-from app.desk.stop_keys.stop_records import SOURCE_SCREEN
+from app.desk.stop_keys.stop_records import SOURCE_SCREEN, StopArea
 from app.desk.translation import get_language, tr
 from app.screen.color_palettes import PALETTES
 from app.screen.page_table import AUTOMATIC, PagePreloader
@@ -45,6 +44,7 @@ from app.screen.window.key_table import (
     find_key_name,
 )
 from app.screen.window.keyboard import KeyboardFilter, find_key_code
+from app.screen.window.stop_controls import find_stop_areas, is_stop_control_at
 from app.screen.window.typed_keys import TypedKeyHandler
 from app.screen.window.window_frame import ScreenContext, WindowFrame
 from app.screen.window.window_placement import show_full_screen, show_in_suitable_size
@@ -353,11 +353,11 @@ class MainWindow(QWidget):
 
     def is_stop_control_at(self, event: QInputEvent) -> bool:
         """Return whether a press is on a control that stops the machine."""
-        dock = self.frame.station_dock if self.frame is not None else None
-        if dock is None or not dock.isVisible() or not isinstance(event, QPointerEvent):
-            return False
-        places = (dock.mapFromGlobal(point.globalPosition()) for point in event.points())
-        return any(dock.has_stop_control_at(place) for place in places)
+        return self.frame is not None and is_stop_control_at(self.frame, event)
+
+    def find_stop_areas(self) -> tuple[StopArea, ...]:
+        """Return the rectangles of the visible E-stop and feed hold of the on-screen station."""
+        return find_stop_areas(self.frame) if self.frame is not None else ()
 
     # --- Qt's calls ----------------------------------------------------------------------------------
 

@@ -14,6 +14,7 @@ from app.desk.desk import Desk
 from app.desk.station_controls import OverridePot
 from app.desk.status import formats
 from app.desk.status.state_prompt import find_start_refusal
+from app.desk.stop_keys.stop_records import StopKind
 from app.desk.translation import tr
 from app.screen.panel import RedrawingAttribute, TouchControl, TouchPanel, make_press_control
 from app.screen.screen_theme import ALIGN_CENTER, ALIGN_RIGHT, ScreenTheme, ThemedPainter
@@ -145,7 +146,9 @@ class StationDock(TouchPanel):
             painter.draw_text_line(
                 head.translated(0, down * u), text, size, "estop_ink", at=ALIGN_CENTER, margin=2.4
             )
-        self.controls.append(TouchControl(head, self._struck, stops_machine=True))
+        self.controls.append(
+            TouchControl(head, self._struck, stops_machine=True, watched_stop=StopKind.ESTOP)
+        )
         out = QRectF(head.right() + 0.6 * u, box.y() + 0.8 * u, 0, box.height() - 1.6 * u)
         out.setRight(box.right() - 0.6 * u)
         self._release(painter, out, pressed)
@@ -245,7 +248,11 @@ class StationDock(TouchPanel):
             partial(desk.station_controls.hold, is_down=True),
             partial(desk.station_controls.hold, is_down=False),
         )
-        self.controls.append(TouchControl(box, lambda _at: press(), None, release, stops_machine=True))
+        self.controls.append(
+            TouchControl(
+                box, lambda _at: press(), None, release, stops_machine=True, watched_stop=StopKind.HOLD
+            )
+        )
 
     def _start(self, painter: ThemedPainter) -> None:
         desk = self._desk
