@@ -18,7 +18,17 @@ from app.desk.translation import tr
 from app.jog.held_keys_view import CHORD_MODIFIERS, HeldKeysPage
 from app.jog.jog_model import JogModel
 from app.jog.jog_pad_view import JogPad
-from app.jog.manual_functions import CLOSE, COOLANT_OFF, COOLANT_ON, FORWARD, OPEN, REVERSE, SPEED_KEY, STOP
+from app.jog.manual_functions import (
+    CLOSE,
+    COOLANT_OFF,
+    COOLANT_ON,
+    FORWARD,
+    MANUAL_KEYS,
+    OPEN,
+    REVERSE,
+    SPEED_KEY,
+    STOP,
+)
 from app.jog.skim_cut_and_setter import SkimCutStep
 from app.jog.tool_setting_view import MillJogPanel, ToolSettingPanel
 from app.jog.tool_touch_off import TOUCH_X, TOUCH_Z
@@ -199,7 +209,9 @@ class ManualFunctionStrip(TouchPanel):
         for number, (letter, words, press) in enumerate(keys):
             box = QRectF(room.x() + number * wide, low, wide - 0.6 * u, room.bottom() - low)
             draw_function_key(painter, box, letter, words, is_selected=False, is_on=False)
-            self.controls.append(make_press_control(box, partial(self._press, press)))
+            control = make_press_control(box, partial(self._press, press))
+            is_stop = MANUAL_KEYS.get(letter) == STOP
+            self.controls.append(control.make_stop_control() if is_stop else control)
         text = QRectF(room.x() + u, room.y(), room.width() - 2 * u, low - 0.3 * u)
         if self._model.skim_cut.is_in_progress or not self.change_text:
             painter.draw_text_line(text, self.footer_text, 1.8, "soft", bold=False)

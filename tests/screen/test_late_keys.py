@@ -7,12 +7,22 @@ from collections.abc import Callable
 import pytest
 from PySide6.QtCore import QCoreApplication, QEvent, QPointF, Qt
 from PySide6.QtGui import QMouseEvent
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QWidget
 
 from app.desk.late_presses import BlockedLateAction, get_starting_action_name
+from app.jog.jog_view import JogPage
 from app.screen import page_table
 from app.screen.window.input_times import FRAMES_AFTER_STALL, PAUSE_TIME_S
-from core.executor.commands import ConfirmStart, CycleStart, EnableDrives, FeedHold, Jog, JogByStep, SetSwitch
+from core.executor.commands import (
+    ConfirmStart,
+    CycleStart,
+    EnableDrives,
+    FeedHold,
+    Jog,
+    JogByStep,
+    SetSwitch,
+    StopSpindle,
+)
 from core.executor.snapshot import MachineState
 from tests.screen.hands import Hands, Key
 from tests.screen.test_keyboard import SHIFT, Time, send, window_of
@@ -54,8 +64,13 @@ class Stall:
 
     def touch_f2(self, ms: int) -> None:
         """Click F2 where it was drawn."""
-        window, keys = self.hands.window, self.hands.frame.key_bar
-        at = QPointF(keys.mapTo(window, keys.list_targets()[1].box.center().toPoint()))
+        keys = self.hands.frame.key_bar
+        self.click(keys, keys.list_targets()[1].box.center(), ms)
+
+    def click(self, part: QWidget, place: QPointF, ms: int) -> None:
+        """Click on a part of the window, so long after the begin of the stall."""
+        window = self.hands.window
+        at = QPointF(part.mapTo(window, place.toPoint()))
         left, none = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
         for kind, buttons in (
             (QEvent.Type.MouseButtonPress, left),
@@ -295,6 +310,35 @@ def test_estop_key_acts_after_dropped_answer(stall: Stall) -> None:
     assert stall.hands.desk.station_controls.is_estop_pressed
 
 
+@pytest.mark.usefixtures("asked")
+def test_spindle_stop_key_of_jog_page_acts_after_dropped_answer(stall: Stall) -> None:
+    stall.hands.frame.open_page(page_table.JOG)
+    stall.hands.machine.posted.clear()
+    stall.ends()
+    stall.press(Key.Key_Y, 300, "y")
+    stall.press(Key.Key_1, 350, "1")  # FORWARD is dropped.
+    stall.press(Key.Key_0, 400, "0")
+    assert [each for each in stall.hands.machine.posted if isinstance(each, StopSpindle)] == [StopSpindle()]
+    page = stall.hands.frame.current_page
+    assert isinstance(page, JogPage)
+    assert not page.model.manual_functions.selected_function
+
+
+def test_zero_as_digit_of_entry_is_dropped_after_dropped_answer(stall: Stall) -> None:
+    stall.hands.frame.open_page(page_table.JOG)
+    page = stall.hands.frame.current_page
+    assert isinstance(page, JogPage)
+    page.model.manual_functions.ask_spindle_speed()
+    stall.hands.desk.ask_operator("PRESS Y", lambda: None)
+    read(stall.hands.desk)
+    stall.hands.machine.posted.clear()
+    stall.ends()
+    stall.press(Key.Key_Y, 300, "y")
+    stall.press(Key.Key_0, 400, "0")
+    assert page.model.manual_functions.text == ""
+    assert StopSpindle() not in stall.hands.machine.posted
+
+
 @pytest.mark.parametrize("key", [Key.Key_Pause, Key.Key_H, Key.Key_Space])
 def test_late_feed_hold_always_acts(stall: Stall, key: Key) -> None:
     stall.ends()
@@ -309,6 +353,44 @@ def test_late_touch_on_changed_screen_is_dropped(stall: Stall) -> None:
     stall.press(Key.Key_F1, 100)  # done: another page
     stall.touch_f2(500)
     assert hands.frame.current_page.NAME == page_table.MENU
+    assert stall.told(BlockedLateAction.TOUCH)
+
+
+@pytest.mark.parametrize("label", ["SPINDLE STOP", "FORWARD"])
+def test_late_touch_on_changed_jog_page_acts_only_on_spindle_stop(stall: Stall, label: str) -> None:
+    hands = stall.hands
+    hands.frame.open_page(page_table.JOG)
+    page = hands.frame.current_page
+    assert isinstance(page, JogPage)
+    page.model.toggle_manual_functions()
+    hands.window.refresh()
+    page.manual_panel.grab()
+    hands.machine.posted.clear()
+    stall.ends()
+    boxes = {page.manual_panel.describe_target(each): each.box for each in page.manual_panel.list_targets()}
+    (box,) = [box for name, box in boxes.items() if label in name]
+    stall.click(page.manual_panel, box.center(), 500)
+    assert [type(each) for each in hands.machine.posted if isinstance(each, StopSpindle)] == (
+        [StopSpindle] if label == "SPINDLE STOP" else []
+    )
+    assert not page.model.manual_functions.selected_function
+    assert stall.told(BlockedLateAction.TOUCH) is (label != "SPINDLE STOP")
+
+
+def test_late_touch_on_help_over_spindle_stop_is_dropped(stall: Stall) -> None:
+    hands = stall.hands
+    hands.frame.open_page(page_table.JOG)
+    page = hands.frame.current_page
+    assert isinstance(page, JogPage)
+    page.model.toggle_manual_functions()
+    hands.window.refresh()
+    page.manual_panel.grab()
+    (stop,) = [each for each in page.manual_panel.controls if each.stops_machine]
+    hands.frame.show_help()
+    hands.machine.posted.clear()
+    stall.ends()
+    stall.click(page.manual_panel, stop.box.center(), 500)
+    assert StopSpindle() not in hands.machine.posted
     assert stall.told(BlockedLateAction.TOUCH)
 
 

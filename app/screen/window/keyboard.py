@@ -8,7 +8,8 @@
   was pressed while another window had the keyboard focus is ignored until it is released.
 - A press that was delayed by a stall of the screen is processed in order but starts nothing
   (``app.desk.late_presses``). If an answer is dropped for this reason, the presses that follow
-  without a pause are also dropped, because they relied on the answer.
+  without a pause are also dropped, because they relied on the answer. Keys and controls that
+  stop something always act.
 """
 
 from __future__ import annotations
@@ -123,7 +124,11 @@ class KeyboardTarget(Protocol):
         ...
 
     def is_stop_control_at(self, event: QInputEvent) -> bool:
-        """Return whether a press at a position hits a control that stops the machine."""
+        """Return whether a press at a position hits a control that stops something."""
+        ...
+
+    def is_page_stop_key(self, event: QKeyEvent) -> bool:
+        """Return whether a key stops something on the current page, for example the spindle."""
         ...
 
     def find_stop_areas(self) -> tuple[StopArea, ...]:
@@ -325,7 +330,7 @@ class KeyboardFilter(QObject):
         repeat = self._is_repeat(event, code)
         if code in self._dead or (repeat and self._late):  # The original press was not seen.
             return True
-        if self._relies_on_dropped():
+        if self._relies_on_dropped() and not self._behind.is_page_stop_key(event):
             self._dead.add(code)
             return repeat or self._forget(BlockedLateAction.FOLLOWING_KEY)
         if repeat and not event.isAutoRepeat():

@@ -44,7 +44,7 @@ from app.screen.window.key_table import (
     find_key_name,
 )
 from app.screen.window.keyboard import KeyboardFilter, find_key_code
-from app.screen.window.stop_controls import find_stop_areas, is_stop_control_at
+from app.screen.window.stop_controls import find_stop_areas, is_page_stop_key, is_stop_control_at
 from app.screen.window.typed_keys import TypedKeyHandler
 from app.screen.window.window_frame import ScreenContext, WindowFrame
 from app.screen.window.window_placement import show_full_screen, show_in_suitable_size
@@ -129,7 +129,7 @@ class MainWindow(QWidget):
         """Refresh the screen at the full rate, or only after a change while the machine is at rest."""
         known, frame = self.input_times.has_seen_screen, self.frame
         self.input_times.frame()
-        # If it is False now, a stall was just detected, or its changes are not shown yet.
+        # False if a stall was just detected, or if its changes are not shown yet.
         known = known and self.input_times.has_seen_screen
         if frame is None:
             return
@@ -352,8 +352,12 @@ class MainWindow(QWidget):
             self.frame.desk.show_warning(tr(Message(text, seconds=seconds, what=", ".join(names))))
 
     def is_stop_control_at(self, event: QInputEvent) -> bool:
-        """Return whether a press is on a control that stops the machine."""
+        """Return whether a press is on a control that stops something."""
         return self.frame is not None and is_stop_control_at(self.frame, event)
+
+    def is_page_stop_key(self, event: QKeyEvent) -> bool:
+        """Return whether a key stops something on the current page."""
+        return self.frame is not None and is_page_stop_key(self.frame, event)
 
     def find_stop_areas(self) -> tuple[StopArea, ...]:
         """Return the rectangles of the visible E-stop and feed hold of the on-screen station."""

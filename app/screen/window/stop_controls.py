@@ -1,22 +1,35 @@
-"""Drawn controls that stop the machine: which control a press hits, and where the controls are."""
+"""Drawn controls and keys of pages that stop something, and the rectangles of the controls."""
 
 from __future__ import annotations
 
 from PySide6.QtCore import QPoint, QPointF, QRectF
-from PySide6.QtGui import QInputEvent, QPointerEvent
+from PySide6.QtGui import QInputEvent, QKeyEvent, QPointerEvent
 from PySide6.QtWidgets import QWidget
 
 from app.desk.stop_keys.stop_records import StopArea, StopKind
+from app.screen.panel import TouchPanel
+from app.screen.window.key_table import find_typed_text
 from app.screen.window.window_frame import WindowFrame
 
 
 def is_stop_control_at(frame: WindowFrame, event: QInputEvent) -> bool:
-    """Return whether a mouse press or touch is on a control that stops the machine."""
-    dock = frame.station_dock
-    if dock is None or not dock.isVisible() or not isinstance(event, QPointerEvent):
+    """Return whether a mouse press or touch is on a visible control that stops something."""
+    if not isinstance(event, QPointerEvent):
         return False
-    places = (dock.mapFromGlobal(point.globalPosition()) for point in event.points())
-    return any(dock.has_stop_control_at(place) for place in places)
+    return any(_has_stop_control_at(frame.window(), point.globalPosition()) for point in event.points())
+
+
+def _has_stop_control_at(window: QWidget, position: QPointF) -> bool:
+    """Return whether the part of the window at a position of the screen has a stop control there."""
+    part = window.childAt(window.mapFromGlobal(position).toPoint())
+    return isinstance(part, TouchPanel) and part.has_stop_control_at(part.mapFromGlobal(position))
+
+
+def is_page_stop_key(frame: WindowFrame, event: QKeyEvent) -> bool:
+    """Return whether a key stops something on the current page, such as 0 (SPINDLE STOP) on the Jog page."""
+    return not frame.has_text_field() and (
+        find_typed_text(event) in frame.current_page.make_stop_key_actions()
+    )
 
 
 def find_stop_areas(frame: WindowFrame) -> tuple[StopArea, ...]:
