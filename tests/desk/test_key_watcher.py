@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import socket
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import cast
 
 import pytest
 
+from app.desk.stop_keys.handled_presses import HandledPresses, is_press_handled
 from app.desk.stop_keys.key_watcher import KeyWatcher
 from app.desk.stop_keys.raw_keys import RawKey, RawKeyReader
 from app.desk.stop_keys.raw_pointer import PointerPress, RawPointerReader
@@ -23,7 +24,7 @@ from app.desk.stop_keys.stop_records import (
     make_press_number,
 )
 
-PAUSE, SCROLL_LOCK, ESC, SPACE = 127, 78, 9, 65
+PAUSE, SCROLL_LOCK, ESC, SPACE, H, E = 127, 78, 9, 65, 43, 26
 OURS, OTHER = 0x600007, 0x800001
 
 
@@ -40,12 +41,20 @@ class Keys:
     def find_escape_code(self) -> int:
         return self.escape
 
+    def find_character(self, code: int) -> str:
+        return {43: "H", 26: "E", SPACE: " ", 38: "A"}.get(code, "")
+
 
 @dataclass
 class Pointer:
     """Windows on a screen; each covers all that follow, with its corner on the screen and its size."""
 
     windows: list[tuple[int, int, int, int, int]]
+    waiting: list[PointerPress] = field(default_factory=list)
+
+    def read_presses(self) -> list[PointerPress]:
+        waiting, self.waiting = self.waiting, []
+        return waiting
 
     def find_window_at(self, x: int, y: int, window_ids: frozenset[int]) -> tuple[int, int, int] | None:
         for window, left, top, width, height in self.windows:
@@ -198,6 +207,120 @@ def test_no_press_is_sent_while_no_stop_control_is_drawn(bench: Bench) -> None:
     assert bench.sent() == []
 
 
+F2 = 68
+LETTERS = FocusRecord(frozenset({OURS}), is_esc_stop_key=False, are_letters_stop_keys=True)
+
+
+def handled(code: int, time_ms: int) -> FocusRecord:
+    """No text field has the keyboard, and the screen has handled this press."""
+    return LETTERS._replace(handled_press=make_press_number(code, time_ms))
+
+
+def press(bench: Bench, *presses: tuple[int, int]) -> list[StopKind]:
+    """Press keys at these times; the stops that are sent."""
+    for code, time_ms in presses:
+        bench.watcher.handle_key_press(RawKey(code, time_ms))
+    return [each.stop_kind for each in bench.sent()]
+
+
+@pytest.mark.parametrize(("code", "kind"), [(H, StopKind.HOLD), (SPACE, StopKind.HOLD), (E, StopKind.ESTOP)])
+def test_letter_is_sent_after_the_screen_has_handled_the_last_press(
+    bench: Bench, code: int, kind: StopKind
+) -> None:
+    assert press(bench, (F2, 4000)) == []
+    bench.show(handled(F2, 4000))
+    assert press(bench, (38, 5000)) == []  # A is no stop key.
+    bench.show(handled(38, 5000))
+    assert press(bench, (code, 6000)) == [kind]
+
+
+def test_letter_is_not_sent_while_an_earlier_press_is_not_handled(bench: Bench) -> None:
+    press(bench, (38, 4000))
+    bench.show(handled(38, 4000))
+    assert press(bench, (F2, 5000), (H, 5100), (E, 5200), (SPACE, 5300)) == []  # F2 may open a field.
+    bench.show(handled(SPACE, 5300))
+    assert press(bench, (H, 6000)) == [StopKind.HOLD]
+
+
+def test_letter_is_not_sent_while_a_text_field_has_the_keyboard(bench: Bench) -> None:
+    press(bench, (F2, 4000))
+    bench.show(handled(F2, 4000)._replace(are_letters_stop_keys=False))
+    assert press(bench, (H, 5000)) == []
+
+
+def test_letter_is_not_sent_while_a_click_is_not_handled(bench: Bench) -> None:
+    press(bench, (F2, 4000))
+    bench.show(handled(F2, 4000))
+    bench.pointer.waiting.append(PointerPress(make_button_code(1), 4500, 400, 300))
+    assert press(bench, (H, 5000)) == []
+    bench.show(handled(H, 5000))
+    bench.click(400, 300, TOUCH_CODE)
+    assert press(bench, (H, 6000)) == []  # The touch was in the same millisecond as the handled press.
+
+
+def test_second_letter_is_sent_after_the_first_one_was_sent(bench: Bench) -> None:
+    press(bench, (F2, 4000))
+    bench.show(handled(F2, 4000)._replace(stop_areas=DRAWN.stop_areas))
+    bench.click(130, 110)
+    assert press(bench, (PAUSE, 4900), (H, 5000), (E, 5100)) == [
+        StopKind.HOLD,
+        StopKind.HOLD,
+        StopKind.HOLD,
+        StopKind.ESTOP,
+    ]
+
+
+def test_letter_is_not_sent_before_the_watcher_has_seen_another_press(bench: Bench) -> None:
+    bench.show(handled(F2, 4000))
+    assert press(bench, (H, 5000)) == []
+
+
+def test_letter_is_not_sent_without_reader_of_mouse_and_touch(bench: Bench) -> None:
+    press(bench, (F2, 4000))
+    bench.show(handled(F2, 4000))
+    bench.watcher._pointer = None
+    assert press(bench, (H, 5000)) == []
+
+
+def test_letter_is_not_sent_while_another_program_has_the_keyboard(bench: Bench) -> None:
+    press(bench, (F2, 4000))
+    bench.show(handled(F2, 4000))
+    bench.keys.front = OTHER
+    assert press(bench, (H, 5000)) == []
+
+
+@pytest.mark.parametrize(
+    ("press_ms", "handled_ms", "expected"),
+    [
+        (5000, 5001, True),
+        (5000, 4999, False),
+        (5000, 5000, False),
+        (2**32 - 5, 3, True),
+        (3, 2**32 - 5, False),
+    ],
+)
+def test_press_is_handled_if_the_screen_has_handled_a_later_one(
+    press_ms: int, handled_ms: int, *, expected: bool
+) -> None:
+    assert is_press_handled(make_press_number(F2, press_ms), make_press_number(H, handled_ms)) is expected
+
+
+def test_unknown_press_is_not_handled() -> None:
+    assert not is_press_handled(0, make_press_number(H, 5000))
+    assert not is_press_handled(make_press_number(H, 5000), 0)
+    assert is_press_handled(make_press_number(H, 5000), make_press_number(H, 5000))
+
+
+def test_press_counts_as_handled_after_two_frames() -> None:
+    record = HandledPresses()
+    record.record_press(7)
+    record.complete_frame()
+    assert record.handled_press == 0
+    record.record_press(0)  # An event without a time stamp.
+    record.complete_frame()
+    assert record.handled_press == 7
+
+
 def test_key_watcher_ends_when_the_screen_closes(bench: Bench) -> None:
     bench.screen.close()
     assert not bench.watcher.read_focus_records()
@@ -225,7 +348,7 @@ def test_invalid_stop_record_is_rejected(record: bytes) -> None:
 
 @pytest.mark.parametrize(
     "record",
-    [b"", b"12", bytes(4), bytes(6), DRAWN.to_bytes()[:-1], DRAWN.to_bytes() + b"1", b"\0\1\0\0\0"],
+    [b"", b"12", bytes(4), bytes(15), DRAWN.to_bytes()[:-1], DRAWN.to_bytes() + b"1", b"\0\1\0\0\0"],
 )
 def test_invalid_focus_record_is_rejected(record: bytes) -> None:
     with pytest.raises(ValueError, match="not a"):
@@ -238,7 +361,8 @@ def test_records_are_decoded_as_they_were_encoded() -> None:
         StopKeyPress(StopKind.ESC, make_press_number(9, 2**32 - 1)),
     )
     assert FocusRecord.from_bytes(focus.to_bytes()) == focus
-    assert FocusRecord.from_bytes(DRAWN.to_bytes()) == DRAWN
+    for record in (DRAWN, DRAWN._replace(are_letters_stop_keys=True, handled_press=2**41 + 5)):
+        assert FocusRecord.from_bytes(record.to_bytes()) == record
     assert StopKeyPress.from_bytes(stop.to_bytes()) == stop
 
 

@@ -187,6 +187,39 @@ def test_ended_watcher_is_logged_and_shown_once_after_its_restart(hands: Hands) 
         line.close()
 
 
+@pytest.mark.parametrize("key", [Key.Key_E, Key.Key_H, Key.Key_Space])
+def test_letter_that_watcher_has_sent_is_not_entered_in_field(
+    watched: tuple[Hands, Watched], key: Key
+) -> None:
+    hands, made = watched
+    hands.key(Key.Key_F2)
+    assert hands.frame.has_text_field()
+    made.send(StopKind.ESTOP if key is Key.Key_E else StopKind.HOLD, key)
+    text = " " if key is Key.Key_Space else chr(key).lower()
+    send(hands, key, text=text, at=AT + 500)  # another press, which is text
+    assert hands.page.file_prompt.name_edit.text() == text
+    send(hands, key, text=text, at=AT)
+    assert hands.page.file_prompt.name_edit.text() == text
+    if key is Key.Key_E:
+        assert hands.desk.station_controls.is_estop_pressed
+    else:
+        assert hands.machine.posted[-1] == FeedHold(press=make_press_number(key, AT))
+
+
+def test_watcher_is_informed_of_text_field_and_of_handled_press(watched: tuple[Hands, Watched]) -> None:
+    hands, made = watched
+    keyboard = hands.window.keyboard_filter
+    keyboard.complete_frame()
+    assert made.shown[-1].are_letters_stop_keys
+    send(hands, Key.Key_F2, at=AT)
+    assert not made.shown[-1].are_letters_stop_keys or made.shown[-1].handled_press == 0
+    keyboard.complete_frame()
+    assert made.shown[-1].handled_press == 0
+    keyboard.complete_frame()
+    assert made.shown[-1].handled_press == make_press_number(Key.Key_F2, AT)
+    assert not made.shown[-1].are_letters_stop_keys
+
+
 def test_watcher_is_not_started_without_x_server(hands: Hands) -> None:
     def never() -> None:
         raise AssertionError

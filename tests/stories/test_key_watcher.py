@@ -15,7 +15,14 @@ from pathlib import Path
 import pytest
 
 from app.desk.stop_keys.key_watcher_client import KeyWatcherClient
-from app.desk.stop_keys.stop_records import MAX_RECORD_BYTES, FocusRecord, StopArea, StopKeyPress, StopKind
+from app.desk.stop_keys.stop_records import (
+    MAX_RECORD_BYTES,
+    FocusRecord,
+    StopArea,
+    StopKeyPress,
+    StopKind,
+    make_press_number,
+)
 from tests.killed.bench import until
 from tests.stories.x11 import Server, another_client, missing
 
@@ -199,6 +206,47 @@ def click(bench: Bench, at: tuple[int, int], button: str = "left") -> StopKind |
     bench.server.point(*at)
     for down in (True, False):
         bench.server.button(button, down=down)
+    bench.control.settimeout(1.0)
+    try:
+        return bench.stop().stop_kind
+    except TimeoutError:
+        return None
+
+
+H_CODE, J_CODE, E_CODE, SPACE_CODE = 43, 44, 26, 65  # on a keyboard with the US layout
+LATER = 10**8  # ms
+
+
+@pytest.mark.parametrize(
+    ("layout", "stops"),
+    [
+        ("us", {H_CODE: StopKind.HOLD, E_CODE: StopKind.ESTOP, SPACE_CODE: StopKind.HOLD, J_CODE: None}),
+        # Dvorak has D, H and the full stop on these keys.
+        ("us dvorak", {H_CODE: None, J_CODE: StopKind.HOLD, E_CODE: None, SPACE_CODE: StopKind.HOLD}),
+        # A layout without Latin letters: by the position on a PC keyboard.
+        ("ru", {H_CODE: StopKind.HOLD, E_CODE: StopKind.ESTOP, SPACE_CODE: StopKind.HOLD, J_CODE: None}),
+    ],
+)
+def test_letters_follow_the_keyboard_layout(
+    bench: Bench, layout: str, stops: dict[int, StopKind | None]
+) -> None:
+    record = FocusRecord(frozenset({bench.window}), is_esc_stop_key=False)
+    bench.show(record)
+    sent = press_until_sent(bench, "Pause")
+    later = make_press_number(1, (sent.press_number & 0xFFFFFFFF) + LATER)
+    bench.show(record._replace(are_letters_stop_keys=True, handled_press=later))
+    bench.server.layout(layout)
+    bench.server.down("F2")
+    bench.server.up("F2")
+    assert {code: press(bench, code) for code in stops} == stops
+    bench.server.down("Alt_L")
+    assert press(bench, SPACE_CODE) is None  # A window manager may use this key.
+
+
+def press(bench: Bench, code: int) -> StopKind | None:
+    """Press a key; the stop that the control gets."""
+    bench.server.down(code)
+    bench.server.up(code)
     bench.control.settimeout(1.0)
     try:
         return bench.stop().stop_kind

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import pytest
 
+from app.desk.stop_keys.stop_records import SOURCE_SCREEN
 from tests.stories.conftest import Story
 from tests.stories.operator import Operator
 from tests.stories.test_stalls import frozen, ready
@@ -59,6 +60,37 @@ def test_click_on_drawn_stop_control_acts_once_and_during_the_stall(
     operator.keeps(lambda: operator.state == state, 1.0, state)
     operator.until(lambda: len(operator.events("stop", "alarm", "estop")) > stops, "its entry")
     assert len(operator.events("stop", "alarm", "estop")) == stops + 1
+
+
+@pytest.mark.parametrize(("key", "state"), [("h", "FEED HOLD"), ("space", "FEED HOLD"), ("e", "E-STOP")])
+def test_letter_acts_during_the_stall_if_no_field_can_be_open(story: Story, key: str, state: str) -> None:
+    operator = cutting(story)
+    operator.during(0.5)
+    stops = len(operator.events("stop", "alarm", "estop"))
+    number = operator.freezes(3.0)
+    operator.during(0.3)
+    operator.once = True
+    operator.key(key)
+    operator.reaches(state)
+    assert not operator.answered(number), "it acted only after the stall"
+    operator.once = False
+    operator.until(lambda: operator.answered(number), "the screen again")
+    operator.keeps(lambda: operator.state == state, 1.0, state)
+    operator.until(lambda: len(operator.events("stop", "alarm", "estop")) > stops, "its entry")
+    # A frozen screen causes a feed hold too, after 3 s; that one names another cause.
+    (entry,) = operator.events("stop", "alarm", "estop")[stops:]
+    assert state == "E-STOP" or SOURCE_SCREEN in entry
+
+
+def test_letters_for_field_that_opens_after_the_stall_are_text(story: Story) -> None:
+    operator = ready(story, in_real_time=True)
+    operator.key("s")
+    operator.during(0.5)
+    with frozen(operator):
+        operator.key("F2")  # opens the file prompt after the stall
+        operator.writes("he e")
+    operator.until(lambda: operator.screen["field"] == "he e", "what was typed")
+    assert operator.state == "READY"
 
 
 def test_click_on_program_that_covers_drawn_stop_control_stops_nothing(story: Story) -> None:

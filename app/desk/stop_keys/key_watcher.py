@@ -15,6 +15,8 @@ import select
 import socket
 from contextlib import suppress
 
+from app.desk.stop_keys.handled_presses import is_press_handled
+from app.desk.stop_keys.key_codes import STOP_CHARACTERS, STOP_KEY_CODES
 from app.desk.stop_keys.raw_keys import RawKey, RawKeyReader
 from app.desk.stop_keys.raw_pointer import PointerPress, RawPointerReader
 from app.desk.stop_keys.stop_records import (
@@ -25,12 +27,6 @@ from app.desk.stop_keys.stop_records import (
     StopKind,
     make_press_number,
 )
-
-STOP_KEY_CODES = {127: StopKind.HOLD, 78: StopKind.ESTOP}
-"""X key codes of Pause and Scroll Lock on a PC keyboard, with the stop that each key triggers.
-
-The codes do not depend on the keyboard layout.
-"""
 
 
 class KeyWatcher:
@@ -49,6 +45,7 @@ class KeyWatcher:
         self._keys, self._line, self._screen = raw_keys, stop_channel, screen_channel
         self._pointer = raw_pointer
         self._focus = NO_FOCUS
+        self._last_press = 0  # Number of the last press, also of a touch, for which no stop was sent.
 
     def watch_presses(self) -> None:
         """Watch the keys, the mouse and the touches until the screen process ends."""
@@ -85,26 +82,49 @@ class KeyWatcher:
 
         The X server does not send raw events for key repeats.
         """
-        kind = self._kind(key.key_code)
+        press = make_press_number(key.key_code, key.time_ms)
+        kind = self._find_kind(key.key_code)
         if kind is not None and self._keys.find_focus_window() in self._focus.window_ids:
-            self._send(StopKeyPress(kind, make_press_number(key.key_code, key.time_ms)))
+            self._send(StopKeyPress(kind, press))
+        else:
+            self._last_press = press
 
     def handle_pointer_press(self, press: PointerPress) -> None:
         """Send a stop if a mouse press or touch is on a drawn stop control that no window covers."""
+        number, kind = make_press_number(press.press_code, press.time_ms), self._find_area_kind(press)
+        if kind is not None:
+            self._send(StopKeyPress(kind, number))
+        else:
+            self._last_press = number
+
+    def _find_area_kind(self, press: PointerPress) -> StopKind | None:
         if self._pointer is None or not self._focus.stop_areas:
-            return
+            return None
         found = self._pointer.find_window_at(press.x_px, press.y_px, self._focus.window_ids)
         for area in self._focus.stop_areas:
             if found is not None and area.window_id == found[0] and area.contains(*found[1:]):
-                self._send(StopKeyPress(area.stop_kind, make_press_number(press.press_code, press.time_ms)))
-                return
+                return area.stop_kind
+        return None
 
-    def _kind(self, code: int) -> StopKind | None:
+    def _find_kind(self, code: int) -> StopKind | None:
         if code in STOP_KEY_CODES:
             return STOP_KEY_CODES[code]
         if self._focus.is_esc_stop_key and code == self._keys.find_escape_code():
             return StopKind.ESC
-        return None
+        return STOP_CHARACTERS.get(self._keys.find_character(code)) if self._is_letter_certain() else None
+
+    def _is_letter_certain(self) -> bool:
+        """Return whether a letter cannot be text, because no earlier press can open a text field.
+
+        The screen must have handled every earlier press before it reported that no text field has the
+        keyboard focus. Mouse presses and touches are known only with ``raw_pointer``.
+        """
+        self._handle_pointer_presses()
+        return (
+            self._pointer is not None
+            and self._focus.are_letters_stop_keys
+            and is_press_handled(self._last_press, self._focus.handled_press)
+        )
 
     def _send(self, stop: StopKeyPress) -> None:
         for end in (self._line, self._screen):

@@ -17,7 +17,7 @@ from app.extras.tour.tour_director import TourDirector
 from app.extras.tour.tour_setup import build_tour_desk, save_tour_shown, use_tour_folder
 from app.path.path_aspects import PathViewKind
 from app.programs.atomic_files import FileOperationError
-from app.screen.window.keyboard import find_key_code
+from app.screen.window.key_table import find_key_code
 from app.screen.window.main_window import MainWindow
 from core.extras.tour.tour_script import PALMS_DOWN, PALMS_UP, SOLID_VIEW
 from core.store.store_errors import StoreError

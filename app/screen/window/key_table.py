@@ -6,12 +6,21 @@ Arrow keys without modifiers have no function on the Automatic page, because the
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QKeyEvent
+from PySide6.QtGui import QGuiApplication, QInputEvent, QKeyEvent, QMouseEvent
+
+from app.desk.stop_keys.key_codes import LETTERS_BY_CODE
+from app.desk.stop_keys.stop_records import TOUCH_CODE, make_button_code
 
 Key = Qt.Key
 CTRL_MODIFIER = Qt.KeyboardModifier.ControlModifier
 SHIFT_MODIFIER = Qt.KeyboardModifier.ShiftModifier
 NO_MODIFIER = Qt.KeyboardModifier.NoModifier
+
+_BUTTON_NUMBERS = {
+    Qt.MouseButton.LeftButton: 1,
+    Qt.MouseButton.MiddleButton: 2,
+    Qt.MouseButton.RightButton: 3,
+}
 
 HELP_KEY = "?"  # The key that shows the help, by its character, because its place depends on the layout.
 SEARCH_KEY = "Search"  # Ctrl+F, and the search key that a list draws.
@@ -20,6 +29,7 @@ MODIFIER_KEYS = frozenset(
     {Key.Key_Shift, Key.Key_Control, Key.Key_Alt, Key.Key_AltGr, Key.Key_Meta, Key.Key_Super_L}
     | {Key.Key_Super_R, Key.Key_CapsLock, Key.Key_NumLock, Key.Key_Mode_switch, Key.Key_Hyper_L}
 )
+PC_PLATFORMS = frozenset({"xcb", "wayland"})  # Platforms on which the scan code is an X key code.
 PALM_BUTTON_KEYS = {Key.Key_F11: "left", Key.Key_F12: "right"}
 
 # Name of a key with these modifiers. Keypad and Shift are distinguished only where necessary.
@@ -142,3 +152,40 @@ def find_typed_text(event: QKeyEvent) -> str:
     name = _EDITING_KEYS.get(Key(event.key()), "")
     text = event.text()
     return name or (text if len(text) == 1 and text.isprintable() else "")
+
+
+def find_letter(event: QKeyEvent) -> str:
+    """Return the letter of a key in the current keyboard layout.
+
+    If the layout has no Latin letters, return the letter at the same position of a PC keyboard.
+    """
+    key = event.key()
+    if Key.Key_A <= key <= Key.Key_Z:
+        return chr(key)
+    foreign = key > 0x7F and not Key.Key_Escape <= key <= Key.Key_unknown
+    code = event.nativeScanCode() if QGuiApplication.platformName() in PC_PLATFORMS else 0
+    return LETTERS_BY_CODE.get(code, "") if foreign or key == 0 else ""
+
+
+def find_key_code(event: QKeyEvent) -> int:
+    """Return Qt's code of a key.
+
+    In a layout without Latin letters, this is the code of the Latin letter at the same position.
+    """
+    letter = find_letter(event)
+    return ord(letter) if letter else event.key()
+
+
+def find_scan_code(event: QKeyEvent) -> int:
+    """Return the scan code of a key, which does not depend on modifiers."""
+    return event.nativeScanCode() or event.key()
+
+
+def find_press_code(event: QInputEvent) -> int:
+    """Return the code of a mouse press or touch for press numbers.
+
+    Buttons other than the three of every mouse have the code of button 0.
+    """
+    if isinstance(event, QMouseEvent):
+        return make_button_code(_BUTTON_NUMBERS.get(event.button(), 0))
+    return TOUCH_CODE

@@ -31,6 +31,8 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QApplication, QLineEdit, QWidget
 
 from app.desk.late_presses import BlockedLateAction
+from app.desk.stop_keys.handled_presses import HandledPresses
+from app.desk.stop_keys.key_codes import STOP_KEY_CODES
 from app.desk.stop_keys.key_watcher_client import KeyWatcherClient, OpenStopChannel, ReportEnd
 from app.desk.stop_keys.stop_records import (
     SOURCE_ESC,
@@ -41,17 +43,17 @@ from app.desk.stop_keys.stop_records import (
 )
 from app.screen.text_area.text_area import TextArea
 from app.screen.window.input_times import InputTimes
-from app.screen.window.key_table import MODIFIER_KEYS
+from app.screen.window.key_table import (
+    MODIFIER_KEYS,
+    PC_PLATFORMS,
+    find_letter,
+    find_press_code,
+    find_scan_code,
+)
 from app.screen.window.x_server import XServer, open_x_server
 
 Key = Qt.Key
 REPEAT_TIME_MS = 2  # Milliseconds: a press this soon after the release of the same key is a repeat.
-# X key codes of Pause, Scroll Lock and the letters on a PC keyboard, which do not depend on the layout.
-_STOP_SCAN_CODES = {127: "hold", 78: "estop"}
-_PC_PLATFORMS = frozenset({"xcb", "wayland"})  # Platforms on which the scan code is an X key code.
-_LETTERS_BY_CODE = dict(
-    zip((*range(24, 34), *range(38, 47), *range(52, 59)), "QWERTYUIOPASDFGHJKLZXCVBNM", strict=True)
-)
 _EDITING_KEYS = frozenset(
     {Key.Key_Backspace, Key.Key_Delete, Key.Key_Left, Key.Key_Right, Key.Key_Up, Key.Key_Down}
     | {Key.Key_Home, Key.Key_End, Key.Key_PageUp, Key.Key_PageDown}
@@ -136,28 +138,6 @@ class KeyboardTarget(Protocol):
         ...
 
 
-def find_letter(event: QKeyEvent) -> str:
-    """Return the letter of a key in the current keyboard layout.
-
-    If the layout has no Latin letters, return the letter at the same position of a PC keyboard.
-    """
-    key = event.key()
-    if Key.Key_A <= key <= Key.Key_Z:
-        return chr(key)
-    foreign = key > 0x7F and not Key.Key_Escape <= key <= Key.Key_unknown
-    code = event.nativeScanCode() if QApplication.platformName() in _PC_PLATFORMS else 0
-    return _LETTERS_BY_CODE.get(code, "") if foreign or key == 0 else ""
-
-
-def find_key_code(event: QKeyEvent) -> int:
-    """Return Qt's code of a key.
-
-    In a layout without Latin letters, this is the code of the Latin letter at the same position.
-    """
-    letter = find_letter(event)
-    return ord(letter) if letter else event.key()
-
-
 class KeyboardFilter(QObject):
     """Event filter on the windows of the application, with the rules in the docstring of the module."""
 
@@ -178,6 +158,7 @@ class KeyboardFilter(QObject):
         self._stamp = 0  # Time stamp of the event that is being handled.
         self._whose = ""  # Clock of that time stamp.
         self._late = False  # The event waited during a stall.
+        self._handled = HandledPresses()
 
     def filter_window_events(self, window: QWindow) -> None:
         """Install this filter on a window, so that it receives the events of the window."""
@@ -248,9 +229,7 @@ class KeyboardFilter(QObject):
         windows = QGuiApplication.topLevelWindows()
         if self._watched is not None:
             self._watched.check_process()
-            shown = frozenset(window.winId() for window in windows if window.isVisible())
-            is_esc_stop, areas = self._behind.is_esc_stop_key(), self._behind.find_stop_areas()
-            self._watched.send_focus(FocusRecord(shown, is_esc_stop, areas))
+            self._send_focus(self._watched)
             if any(stop.stop_kind is StopKind.ESTOP for stop in self._watched.read_sent_stops()):
                 self._behind.show_estop_pressed()
         for window in windows if len(windows) > 1 else ():
@@ -263,6 +242,26 @@ class KeyboardFilter(QObject):
             self._known_up[code] = self.input_times.clock()
             if key is not None and not dead:  # Handling a release may call this method again.
                 self._send(QKeyEvent(QEvent.Type.KeyRelease, key, Qt.KeyboardModifier.NoModifier))
+
+    def complete_frame(self) -> None:
+        """Record that a frame is complete, while no event is being handled, and inform the key watcher."""
+        self._stamp = 0
+        self._handled.complete_frame()
+        if self._watched is not None:
+            self._send_focus(self._watched)
+
+    def _send_focus(self, watcher: KeyWatcherClient) -> None:
+        """Send the key watcher which keys and drawn controls stop the machine now."""
+        target, windows = self._behind, QGuiApplication.topLevelWindows()
+        watcher.send_focus(
+            FocusRecord(
+                frozenset(window.winId() for window in windows if window.isVisible()),
+                is_esc_stop_key=target.is_esc_stop_key(),
+                stop_areas=target.find_stop_areas(),
+                are_letters_stop_keys=not target.has_text_field(),
+                handled_press=self._handled.handled_press,
+            )
+        )
 
     def is_mouse_button_held(self) -> bool:
         """Return whether a mouse button is physically still down."""
@@ -297,6 +296,7 @@ class KeyboardFilter(QObject):
 
     def _handle_screen_press(self, event: QInputEvent) -> bool:
         """Handle a mouse press or touch. Return True if the press is discarded."""
+        self._handled.record_press(make_press_number(find_press_code(event), self._stamp))
         if self._behind.is_stop_control_at(event):
             return False
         if self._relies_on_dropped():
@@ -315,6 +315,7 @@ class KeyboardFilter(QObject):
             (self._shifts.discard if event.type() == QEvent.Type.KeyRelease else self._shifts.add)(code)
         if event.type() == QEvent.Type.KeyRelease:
             return self._released(event, code)
+        self._handled.record_press(make_press_number(code, self._stamp))
         stop = self._find_stop(event)
         if stop is not None:
             self._down.setdefault(code, event.key())
@@ -400,16 +401,17 @@ class KeyboardFilter(QObject):
 
     def _find_stop(self, event: QKeyEvent) -> StopFunction | None:
         """Return the stop function of a key, or None if the key does not stop the machine."""
-        place = (
-            _STOP_SCAN_CODES.get(event.nativeScanCode(), "")
-            if QApplication.platformName() in _PC_PLATFORMS
-            else ""
-        )
+        is_pc = QApplication.platformName() in PC_PLATFORMS
+        place = STOP_KEY_CODES.get(event.nativeScanCode()) if is_pc else None
         key, letter = event.key(), find_letter(event)
-        if key == Key.Key_ScrollLock or place == "estop" or self._stops_with(letter == "E"):
+        if (
+            key == Key.Key_ScrollLock
+            or place is StopKind.ESTOP
+            or (letter == "E" and self._is_letter_stop(event))
+        ):
             return self._behind.press_estop
-        holds = key in {Key.Key_Pause, Key.Key_Cancel} or place == "hold"
-        holds = holds or self._stops_with(letter == "H" or key == Key.Key_Space)
+        holds = key in {Key.Key_Pause, Key.Key_Cancel} or place is StopKind.HOLD
+        holds = holds or ((letter == "H" or key == Key.Key_Space) and self._is_letter_stop(event))
         if key == Key.Key_Escape and (self._behind.is_esc_stop_key() or self._was_sent(event)):
             return partial(self._behind.start_feed_hold, SOURCE_ESC)
         return self._behind.start_feed_hold if holds else None
@@ -419,12 +421,13 @@ class KeyboardFilter(QObject):
         press = make_press_number(find_scan_code(event), self._stamp)
         return self._watched is not None and self._watched.was_press_sent(press)
 
-    def _stops_with(self, key_of_stop: bool) -> bool:
+    def _is_letter_stop(self, event: QKeyEvent) -> bool:
         """Return whether a character stops the machine.
 
-        While a caret is visible, no character does, because every character is text.
+        While a caret is visible, no character does, because every character is text. A character does that
+        the key watcher has already sent to the control.
         """
-        return key_of_stop and not self._behind.has_text_field()
+        return not self._behind.has_text_field() or self._was_sent(event)
 
     def _relies_on_dropped(self) -> bool:
         return self.input_times.follows_dropped_answer(self._stamp, self._whose)
@@ -476,11 +479,6 @@ def _copy_event(event: QKeyEvent, *, repeat: bool, shift: bool) -> QKeyEvent:
         modifiers &= ~Qt.KeyboardModifier.ShiftModifier
     codes = (event.nativeScanCode(), event.nativeVirtualKey(), event.nativeModifiers())
     return QKeyEvent(event.type(), event.key(), modifiers, *codes, event.text(), repeat, event.count())
-
-
-def find_scan_code(event: QKeyEvent) -> int:
-    """Return the scan code of a key, which does not depend on modifiers."""
-    return event.nativeScanCode() or event.key()
 
 
 def _find_clock(event: QInputEvent) -> str:

@@ -41,9 +41,10 @@ from app.screen.window.key_table import (
     REPEATING_KEYS,
     ROW_ACTION_KEYS,
     SEARCH_CLOSING_KEYS,
+    find_key_code,
     find_key_name,
 )
-from app.screen.window.keyboard import KeyboardFilter, find_key_code
+from app.screen.window.keyboard import KeyboardFilter
 from app.screen.window.stop_controls import find_stop_areas, is_page_stop_key, is_stop_control_at
 from app.screen.window.typed_keys import TypedKeyHandler
 from app.screen.window.window_frame import ScreenContext, WindowFrame
@@ -140,6 +141,7 @@ class MainWindow(QWidget):
         if not self._faces or self._faces[-1][1] != frame.screen_context:
             self._faces.append((self.input_times.clock(), frame.screen_context))
         makes = self.page_preloader is not None and not self.page_preloader.is_done
+        self.keyboard_filter.complete_frame()
         if self.page_preloader is not None:
             self.page_preloader.continue_loading()
         self._pace(
@@ -268,10 +270,7 @@ class MainWindow(QWidget):
             frame.open_page(AUTOMATIC)
 
     def close_silently(self) -> None:
-        """Stop polling, and delete the window without asking.
-
-        Use this only in scripts that do nothing but read the screen.
-        """
+        """Stop polling, and delete the window without asking, in a script that only reads the screen."""
         self._timer.stop()
         self.hide()
         self.deleteLater()

@@ -17,10 +17,12 @@ from app.screen.window.key_table import (
     SEARCH_KEY,
     STOP_LETTERS,
     YES_KEY,
+    find_key_code,
     find_key_name,
+    find_letter,
     find_typed_text,
 )
-from app.screen.window.keyboard import KeyboardFilter, find_key_code, find_letter
+from app.screen.window.keyboard import KeyboardFilter
 from app.screen.window.window_frame import WindowFrame
 from core.message import Message
 
