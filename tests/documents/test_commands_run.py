@@ -31,6 +31,8 @@ OTHER_PROGRAMS: Mapping[str, str] = {
     "sh tests/run.sh": "would run this test; .ci/run",
     "ip link set can0 up": "needs a CAN interface and the rights of root; tests/drivers/canopen",
     "sudo TURNDESK_OPERATOR=anna apt install": "changes the system; resources/setup/release_check.py",
+    "sudo apt install xserver-xorg": "changes the system; the control file is checked by tests/setup",
+    "sudo systemctl enable turndesk-kiosk@": "changes the system; tests/setup/test_release.py",
     "sudo sh turndesk-….run": "changes the system; resources/setup/release_check.py",
     ".venv/bin/python -m resources.setup.bundle": "needs a network; resources/setup/release.py",
     "groupadd -f machine; usermod": "changes the accounts of the system; resources/setup/debian/postinst",

@@ -8,6 +8,7 @@ import re
 import subprocess
 import tarfile
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
@@ -139,6 +140,39 @@ def test_scripts_are_valid_shell_and_exit_on_error(name: str) -> None:
     assert subprocess.run(["/bin/sh", "-n"], input=text, text=True, check=False).returncode == 0
     assert "set -e" in text or "exec " in text
     assert "/home" not in text
+
+
+def test_kiosk_uses_x11_so_that_stop_keys_act_during_a_stall() -> None:
+    unit = (DEBIAN / "turndesk-kiosk@.service").read_text(encoding="utf-8")
+    script = (DEBIAN / "kiosk").read_text(encoding="utf-8")
+    assert not re.search("wayland|weston", unit + script, re.IGNORECASE)
+    assert "ExecStart=/usr/bin/startx /usr/share/turndesk/kiosk -- " in unit
+    # The limits of a real-time process remain, and only the account's own X clients can connect.
+    assert {"LimitRTPRIO=60", "LimitMEMLOCK=infinity", "Restart=always"} <= set(unit.splitlines())
+    assert "-nolisten tcp" in unit
+
+
+def test_package_suggests_every_program_of_the_kiosk() -> None:
+    control = (DEBIAN / "control").read_text(encoding="utf-8")
+    (suggested,) = re.findall(r"^Suggests: (.*)$", control, re.MULTILINE)
+    assert {"xserver-xorg", "xinit", "openbox", "kbd"} <= set(suggested.split(", "))
+    assert "libxi6" in control  # Without it, the key watcher cannot read stop keys.
+
+
+def test_package_contains_every_file_that_the_kiosk_names() -> None:
+    source = Path(debian_package.__file__).read_text(encoding="utf-8")
+    texts = [(DEBIAN / name).read_text(encoding="utf-8") for name in ("kiosk", "turndesk-kiosk@.service")]
+    named = set(re.findall(r"/(usr/share/turndesk/\S+)", " ".join(texts)))
+    assert named == {"usr/share/turndesk/kiosk", "usr/share/turndesk/kiosk-openbox.xml"}
+    assert [each for each in named if f'"{each}"' not in source] == []
+
+
+def test_window_manager_of_kiosk_binds_no_key_and_opens_no_menu() -> None:
+    root = ElementTree.parse(DEBIAN / "kiosk-openbox.xml").getroot()
+    names = {each.tag.partition("}")[2] for each in root.iter()}
+    assert "keyboard" in names  # Without this element, openbox uses its own key bindings.
+    assert not names & {"keybind", "menu"}
+    assert {each.get("name") for each in root.iter() if each.tag.endswith("}action")} == {"Focus", "Raise"}
 
 
 def test_package_depends_on_system_libraries_of_setup() -> None:

@@ -85,9 +85,9 @@ class Server:
         """For whoever shall show itself here."""
         return os.environ | {"DISPLAY": self.name, "QT_QPA_PLATFORM": "xcb"}
 
-    def manage(self) -> None:
+    def manage(self, *options: str) -> None:
         """Start the window manager, and wait until it manages."""
-        self._begin(["openbox", "--sm-disable"])
+        self._begin(["openbox", "--sm-disable", *options])
         until(
             lambda: "window id" in self.run("xprop", "-root", "_NET_SUPPORTING_WM_CHECK"), lambda: "openbox"
         )

@@ -101,7 +101,7 @@ def _shared_files(root: Path, version: str) -> None:
         ("desktop/turndesk.svg", "usr/share/icons/hicolor/scalable/apps/turndesk.svg"),
         ("desktop/turndesk.xml", "usr/share/mime/packages/turndesk.xml"),
         ("setup/debian/turndesk-kiosk@.service", "usr/lib/systemd/system/turndesk-kiosk@.service"),
-        ("setup/debian/kiosk.ini", "usr/share/turndesk/kiosk.ini"),
+        ("setup/debian/kiosk-openbox.xml", "usr/share/turndesk/kiosk-openbox.xml"),
         ("setup/debian/kiosk", "usr/share/turndesk/kiosk"),
         ("setup/debian/limits.conf", _CONFIGURATION),
         ("setup/debian/lintian-overrides", "usr/share/lintian/overrides/turndesk"),
