@@ -93,6 +93,18 @@ def test_letters_for_field_that_opens_after_the_stall_are_text(story: Story) -> 
     assert operator.state == "READY"
 
 
+def test_text_typed_at_once_after_the_key_that_opens_a_field_stops_nothing(story: Story) -> None:
+    operator = ready(story, in_real_time=True)
+    operator.once = True
+    for _ in range(5):
+        operator.key("F2")
+        operator.writes("eeh e")
+        operator.until(lambda: operator.screen["field"] == "eeh e", "what was typed")
+        operator.key("Escape")
+        operator.until(lambda: operator.screen["field"] == "", "the field closed")
+    assert operator.state == "READY"
+
+
 def test_click_on_program_that_covers_drawn_stop_control_stops_nothing(story: Story) -> None:
     operator = cutting(story)
     operator.points("PAUSE", on="StationDock")
