@@ -19,6 +19,7 @@ from PySide6.QtWidgets import QApplication
 from app.desk.desk import Desk
 from app.desk.programs.first_program import load_first_program
 from app.desk.screen_settings import SYSTEM_THEME
+from app.desk.translation import tr
 from app.screen import accessible
 from app.screen.screen_theme import ScreenTheme, find_palette, load_fonts, style_application
 from app.screen.window.main_window import MainWindow
@@ -150,6 +151,7 @@ class _Startup:
         try:
             desk = self._desk = self._build()
             self._window.show_model(desk)
+            warn_about_delayed_stop_keys(desk)
             if self._starts_with_estop:
                 desk.station_keys.press_estop()
             load_first_program(desk, self._program)
@@ -215,6 +217,16 @@ def _build_model(machine: str | None, offsets: str | None, begun: MachineAndCont
     from app.compose.stored_offsets import make_offsets_reader
 
     return build_desk(machine, make_offsets_reader(offsets), begun)
+
+
+def warn_about_delayed_stop_keys(desk: Desk) -> None:
+    """Show on a real machine that stop keys wait for the screen on Wayland.
+
+    A message that is already visible, for example about a changed machine file, has priority.
+    """
+    is_real = desk.desk_control.station_panel is None
+    if is_real and QApplication.platformName() == "wayland" and not desk.prompt_line.message:
+        desk.say(tr("WAYLAND: STOP KEYS WAIT WHILE THE SCREEN IS FROZEN. USE X11"))
 
 
 def _application(theme: str) -> QApplication:

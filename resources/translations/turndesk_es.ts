@@ -15254,6 +15254,11 @@
       <translation>FALLA DE LA PANTALLA (MÁQUINA OK): {name}: {error}</translation>
     </message>
     <message>
+      <location filename="app/screen/screen_startup.py" />
+      <source>WAYLAND: STOP KEYS WAIT WHILE THE SCREEN IS FROZEN. USE X11</source>
+      <translation>WAYLAND: LAS TECLAS DE PARADA ESPERAN SI LA PANTALLA SE CONGELA. USE X11</translation>
+    </message>
+    <message>
       <location filename="app/screen/screen_theme.py" />
       <source>catalog turndesk_{language}.qm not found in {folder}</source>
       <translation>no se encontró el catálogo turndesk_{language}.qm en {folder}</translation>

@@ -13,7 +13,7 @@ from pytestqt.exceptions import capture_exceptions
 
 from app.desk.desk import Desk
 from app.desk.pages.attached_parts import ClosingSequence, ControlClosing
-from app.screen.screen_startup import run_screen
+from app.screen.screen_startup import run_screen, warn_about_delayed_stop_keys
 from app.screen.window.main_window import MainWindow
 from app.screen.window.window_frame import WindowFrame
 from core.executor.snapshot import MachineState
@@ -64,6 +64,35 @@ def test_computer_shutdown_closes_screen_in_feed_hold(machine: FakeMachine) -> N
     QTimer.singleShot(0, strike)
     assert run_screen(program_file=str(SAMPLES / "pin.nc"), build_model=lambda: desk) == 0
     assert closed == [MachineState.HOLD]
+
+
+@pytest.mark.parametrize(
+    ("platform", "is_real", "is_warned"),
+    [("wayland", True, True), ("wayland", False, False), ("xcb", True, False), ("offscreen", True, False)],
+)
+def test_operator_of_real_machine_is_warned_of_delayed_stop_keys_on_wayland(
+    machine: FakeMachine, monkeypatch: pytest.MonkeyPatch, platform: str, *, is_real: bool, is_warned: bool
+) -> None:
+    desk = desk_on(machine)
+    if is_real:
+        desk.desk_control.station_panel = None
+    monkeypatch.setattr(QApplication, "platformName", lambda: platform)
+    desk.clear_prompt_line()
+    warn_about_delayed_stop_keys(desk)
+    assert shows(desk.prompt_notice, "screen.stop-keys-wait-on-wayland") is is_warned
+    desk.close()
+
+
+def test_warning_about_stop_keys_replaces_no_other_message(
+    machine: FakeMachine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    desk = desk_on(machine)
+    desk.desk_control.station_panel = None
+    monkeypatch.setattr(QApplication, "platformName", lambda: "wayland")
+    desk.say("THE MACHINE FILE HAS CHANGED")
+    warn_about_delayed_stop_keys(desk)
+    assert desk.prompt_notice == "THE MACHINE FILE HAS CHANGED"
+    desk.close()
 
 
 def test_missing_program_is_reported(machine: FakeMachine) -> None:
