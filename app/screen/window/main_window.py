@@ -33,7 +33,6 @@ from app.screen.screen_theme import ScreenTheme, find_palette, set_language, sty
 from app.screen.text_sizes import make_screen_resolution
 from app.screen.window.documentation_browser import DocumentationBrowser
 from app.screen.window.input_times import InputTimes
-from app.screen.window.key_actions import make_key_actions
 from app.screen.window.key_table import (
     HELP_KEY,
     PAGE_FUNCTION_KEYS,
@@ -46,7 +45,7 @@ from app.screen.window.key_table import (
 )
 from app.screen.window.keyboard import KeyboardFilter
 from app.screen.window.stop_controls import find_stop_areas, is_page_stop_key, is_stop_control_at
-from app.screen.window.typed_keys import TypedKeyHandler
+from app.screen.window.typed_keys import TypedKeyHandler, make_key_actions
 from app.screen.window.window_frame import ScreenContext, WindowFrame
 from app.screen.window.window_placement import show_full_screen, show_in_suitable_size
 from app.screen.window_layout import MIN_WINDOW_PX
