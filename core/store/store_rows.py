@@ -1,9 +1,9 @@
 """The row types of the store, and the fields of an offset.
 
-Lengths are in mm with X as a radius. Times are UTC in ISO 8601 format.
+Lengths are in mm with X as a radius. Times are UTC in ISO 8601 format. The fields are declared in
+annotations. This module does not postpone their evaluation, because Python would then compile each of them
+from its text at every start.
 """
-
-from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
