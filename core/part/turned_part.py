@@ -179,7 +179,7 @@ class TurnedPart:
         The result is 0 if there are no columns in this range.
         """
         there = slice(self.columns.find_column(back_z_mm), self.columns.find_column(front_z_mm))
-        return float(self.outer_radii[:, there].max(initial=0.0))
+        return float(np.maximum.reduce(self.outer_radii[:, there], axis=None, initial=0.0))
 
     def _volume(self, there: slice) -> float:
         low, high = self.inner_radii[:, there], self.outer_radii[:, there]

@@ -99,8 +99,9 @@ class EdgeChecks:
         yield from _check_edge_hollow(move, shape, cutter, part, tool)
         yield from check_cut_size(move, cut, shape, cutter, tool, is_stock_specified=self.is_stock_specified)
         yield from self._check_spindle_direction(move, shape, cutter, tool)
-        yield from _check_axis_position(move, shape, tool)
-        yield from _check_speed_limit(move, shape, tool)
+        if shape.kind in _DRILLS:
+            yield from _check_axis_position(move, tool)
+            yield from _check_speed_limit(move, tool)
         if self._solid > _ENTERS and cut.width_mm > _ENTERS:
             words = Message(
                 "{tool} feeds {solid} along Z into solid material.",
@@ -112,7 +113,8 @@ class EdgeChecks:
         yield from self._check_axis_crossing(move, cut, cutter, tool)
         yield from self._past_part_off(move, shape, cutter, tool)
         yield from self._check_contour_past_part_off(move, shape, tool)
-        yield from self._drilled(move, shape, tool)
+        if shape.is_rotating and shape.length:
+            yield from self._drilled(move, shape, tool)
         # otherwise the insert is assumed
         if cutter.has_holder and shape.kind in INSERT_TOOLS and move.block_kind is not BlockKind.THREAD:
             yield from _check_cutting_side(move, cuts, shape, cutter, part, tool)
@@ -153,6 +155,8 @@ class EdgeChecks:
         """Check that an outside tool does not feed through the axis or cut on its other side."""
         face = (self.stock.front_z_mm if self.stock is not None else 0.0) - _FACE_DEPTH_MM
         beyond = max((-r * cutter.x_sign for z, r in move.points[1:] if z < face), default=0.0)
+        if beyond <= _TURNED_AWAY:
+            return
         turns = max(r * cutter.x_sign for _, r in move.points) < 0.0 and cut.width_mm > _ENTERS
         if cutter.side is CutSide.OUTSIDE and beyond > (_TURNED_AWAY if turns else _OVER_AXIS):
             deep = move.modal.format_length(beyond)
@@ -224,7 +228,7 @@ class EdgeChecks:
 
     def _drilled(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
         deep = calculate_depth_from_face(move, self.stock)
-        if shape.is_rotating and shape.length and deep > shape.length:
+        if deep > shape.length:
             text = move.modal.format_length
             yield Found(
                 "drill-too-deep",
@@ -260,10 +264,10 @@ def _is_against_rake(shape: ToolShape, rpm: float) -> bool:
     return shape.kind in INSERT_TOOLS and upright and not shape.is_rear_tool and rpm < 0.0
 
 
-def _check_axis_position(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
+def _check_axis_position(move: TipMove, tool: int) -> Iterator[Found]:
     """Check that a drill or other non-rotating round tool is on the spindle axis when it cuts."""
     off = min(abs(r) for _, r in move.points)
-    if shape.kind in _DRILLS and move.rpm and off > _OFF_AXIS:
+    if move.rpm and off > _OFF_AXIS:
         words = Message(
             "{tool} is {off} off the spindle centerline when it cuts.",
             tool=format_edge_name(tool),
@@ -272,10 +276,10 @@ def _check_axis_position(move: TipMove, shape: ToolShape, tool: int) -> Iterator
         yield Found("drill-off-axis", words)
 
 
-def _check_speed_limit(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
+def _check_speed_limit(move: TipMove, tool: int) -> Iterator[Found]:
     """Check that a round tool on the axis does not cut at constant surface speed without an rpm limit."""
     off = min(abs(r) for _, r in move.points)
-    if shape.kind in _DRILLS and move.modal.css and move.modal.max_css_rpm is None and off < _OFF_AXIS:
+    if move.modal.css and move.modal.max_css_rpm is None and off < _OFF_AXIS:
         words = Message(
             "{tool} cuts on the spindle centerline under G96, so the spindle runs at its maximum speed.",
             tool=format_edge_name(tool),
