@@ -186,7 +186,7 @@ class Cutter:
         if lead_mm <= part.columns.step_mm:
             return self.cut_material(part, start, end)
         count = abs(end[0] - start[0]) / lead_mm
-        met, at = NO_CUT, np.ceil(revolutions - _PHASE) - revolutions
+        met, at = NO_CUT, math.ceil(revolutions - _PHASE) - revolutions
         while at <= count + _PHASE:
             share = min(at / count, 1.0) if count else 0.0
             place = start[0] + (end[0] - start[0]) * share, start[1] + (end[1] - start[1]) * share
@@ -224,6 +224,8 @@ class Cutter:
     def _swept(self, part: TurnedPart, start: Point, end: Point, *, cut: bool) -> Cut:
         met = NO_CUT
         start, end = self._ends_on_working_side(start, end)
+        if self._is_clear(part, self._cutting, start, end):
+            return NO_CUT
         for outline in self._cutting.sides:
             met = met.combine_with(self._take(part, outline, start, end, cut=cut))
         return met
