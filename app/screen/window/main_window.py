@@ -107,10 +107,9 @@ class MainWindow(QWidget):
             self.keyboard_filter.is_stop_key_held,
             lambda: self.input_times.clock() - self.keyboard_filter.event_time_s,
         )
-        watched = self.keyboard_filter.start_key_watcher(
-            desk.desk_control.open_stop_channel, partial(report_watcher_end, desk)
-        )
-        if watched is not None:
+        report_end = partial(report_watcher_end, desk)
+        open_channel = desk.desk_control.open_stop_channel
+        if (watched := self.keyboard_filter.start_key_watcher(open_channel, report_end)) is not None:
             desk.page_registry.attach_model(watched)
         late = desk.window_state.late_presses
         late.report_dropped_names = self._show_dropped
@@ -127,11 +126,10 @@ class MainWindow(QWidget):
 
     def _handle_tick(self) -> None:
         """Refresh the screen at the full rate, or only after a change while the machine is at rest."""
-        known, frame = self.input_times.has_seen_screen, self.frame
+        known = self.input_times.has_seen_screen
         self.input_times.frame()
-        # False if a stall was just detected, or if its changes are not shown yet.
-        known = known and self.input_times.has_seen_screen
-        if frame is None:
+        known = known and self.input_times.has_seen_screen  # False after a stall
+        if (frame := self.frame) is None:
             return
         self.set_event_late(is_late=False)
         changed = not known or self._is_animating(frame) or frame.has_changed_since_refresh()

@@ -38,7 +38,12 @@ def test_only_visible_lines_of_a_long_text_are_laid_out(
 ) -> None:
     read: set[int] = set()
     original = field.find_line_colors
-    monkeypatch.setattr(field, "find_line_colors", lambda line, text: read.add(line) or original(line, text))
+
+    def record_line(line: int, text: str) -> object:
+        read.add(line)
+        return original(line, text)
+
+    monkeypatch.setattr(field, "find_line_colors", record_line)
     field.setPlainText("".join(f"X{n}\n" for n in range(100_000)))
     field.move_cursor_to(50_000, 3)
     field.grab()
