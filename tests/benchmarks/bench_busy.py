@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import os
 import queue
 import signal
@@ -23,6 +24,7 @@ import sys
 import tempfile
 import threading
 import time
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import pairwise
@@ -64,6 +66,7 @@ M30
 """
 THREAD_LINE = next(n for n, line in enumerate(PROGRAM.splitlines(), 1) if line.startswith("G33"))
 HOLDS_EVERY = 20.0  # s
+LEAST_PICTURES = 10  # a second
 PROMPT_HOLD = 0.25  # s from the key to a standstill on a computer that is not late; measured: up to .22 s
 RESUMES_AFTER = 1.0  # s
 PALMS = ("F11", "F12")
@@ -273,13 +276,25 @@ def load(count: int, beside: str, environment: dict[str, str]) -> Iterator[None]
             each.wait()
 
 
-def gaps(paints: list[float]) -> tuple[float, float]:
-    """The longest time without a picture, s, and the share of whole seconds with fewer than ten pictures."""
-    longest = max((b - a for a, b in pairwise(paints)), default=0.0)
-    counts: dict[int, int] = {}
-    for each in paints:
-        counts[int(each)] = counts.get(int(each), 0) + 1
-    return longest, sum(count < 10 for count in counts.values()) / max(len(counts), 1)
+def find_running_periods(states: list[tuple[float, str]]) -> list[tuple[float, float]]:
+    """Return start and end of the periods in which the axes moved by a program, s of the monotonic clock."""
+    return [(t, end) for (t, state), (end, _) in pairwise(states) if state == "RUNNING"]
+
+
+def measure_pictures(paints: list[float], periods: list[tuple[float, float]]) -> tuple[float, float]:
+    """Return the longest time without a picture, s, and the share of seconds with fewer than ten pictures.
+
+    Only the periods count: a screen on which nothing changes is not painted.
+    """
+    longest, few, seconds = 0.0, 0, 0
+    for start, end in periods:
+        times = [start, *(each for each in paints if start < each < end), end]
+        longest = max(longest, *(b - a for a, b in pairwise(times)))
+        whole = range(math.ceil(start), math.floor(end))
+        counts = Counter(math.floor(each) for each in times[1:-1])
+        few += sum(counts[each] < LEAST_PICTURES for each in whole)
+        seconds += len(whole)
+    return longest, few / max(seconds, 1)
 
 
 def main() -> int:
@@ -304,7 +319,8 @@ def main() -> int:
         with Store.open(home / "demo", read_only=True) as store:
             events = store.events.read_events("", 100_000, ())
         switched = sum(event.kind == "switch" and "optional" in event.text.lower() for event in events)
-        held, (longest, few) = told.pop("held"), gaps(robot.paints)
+        periods = find_running_periods(robot.states)
+        held, (longest, few) = told.pop("held"), measure_pictures(robot.paints, periods)
         free = [hold for hold in held if not hold.in_thread]  # the others act at the end of the thread pass
         times = [hold.took for hold in free]
         in_thread = [hold.took for hold in held if hold.in_thread]
