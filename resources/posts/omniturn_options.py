@@ -6,6 +6,7 @@ FreeCAD does not show this file in its list. Copy it together with ``omniturn_po
 from __future__ import annotations
 
 import argparse
+import math
 import re
 import shlex
 from collections.abc import Iterable
@@ -15,6 +16,10 @@ if TYPE_CHECKING or __package__:
     from resources.posts.omniturn_lines import MAX_TOOL_NUMBER, PostError
 else:
     from omniturn_lines import MAX_TOOL_NUMBER, PostError
+
+_LARGEST_NUMBER = 1e6
+_CONTROL_CODES = frozenset({1, 2, 3, 4, 5, 8, 9, 12, 13, 19, 30, 31, 89, *range(91, 100)})
+"""M codes with another meaning on the control, such as the start of the spindle."""
 
 TOOLTIP = """
 Writes programs for OmniTurn-style lathes with TurnDesk. Lengths are in mm. Options:
@@ -43,9 +48,9 @@ def parse_options(argument_text: str) -> argparse.Namespace:
     for name in ("inches", "per-rev", "no-comments", "no-show-editor"):  # FreeCAD adds the last to some jobs
         parser.add_argument(f"--{name}", action="store_true")
     for name, value in (("rapid", 0.0), ("c-rpm", 60.0), ("part-length", 0.0), ("bar-feed", 0.0)):
-        parser.add_argument(f"--{name}", type=float, default=value)
-    parser.add_argument("--facing-stock", type=float, default=0.0)
-    parser.add_argument("--change-z", type=float)
+        parser.add_argument(f"--{name}", type=_read_number, default=value)
+    parser.add_argument("--facing-stock", type=_read_number, default=0.0)
+    parser.add_argument("--change-z", type=_read_number)
     parser.add_argument("--parts", type=int, default=1)
     parser.add_argument("--bar-stop", type=int, default=0)
     parser.add_argument("--face", type=_read_tools, default=())
@@ -95,24 +100,32 @@ def _list_tool_faults(options: argparse.Namespace) -> Iterable[tuple[str, str]]:
         yield "live", "enter the two M codes that start and stop the live tools of this lathe"
 
 
+def _read_number(text: str) -> float:
+    """Return a number; raises ValueError if it is not a number, infinite or too large for a program."""
+    value = float(text)
+    if not math.isfinite(value) or abs(value) > _LARGEST_NUMBER:
+        raise ValueError(text)
+    return value
+
+
 def _read_tools(text: str) -> tuple[int, ...]:
     return tuple(int(each) for each in text.split(","))
 
 
 def _read_codes(text: str) -> tuple[int, int]:
     start, stop = (int(each) for each in text.split(","))
-    if not (0 < start < 100 and 0 < stop < 100 and start != stop):
+    if not (0 < start < 100 and 0 < stop < 100 and start != stop) or _CONTROL_CODES & {start, stop}:
         raise ValueError(text)
     return start, stop
 
 
 def _read_tool_value(text: str) -> tuple[int, float]:
     tool, value = text.split("=")
-    return int(tool), float(value)
+    return int(tool), _read_number(value)
 
 
 def _read_shift(text: str) -> tuple[str, tuple[float, float]]:
     found = re.fullmatch(r"(G5[5-9])=([^,]+),([^,]+)", text)
     if found is None:
         raise ValueError(text)
-    return found[1], (float(found[2]), float(found[3]))
+    return found[1], (_read_number(found[2]), _read_number(found[3]))

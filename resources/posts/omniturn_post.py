@@ -263,7 +263,9 @@ def post(objects: Iterable[Any], argument_text: str = "") -> str:
     if options.side and options.change_z is None and not heights.clear_z:
         raise PostError("all paths are on the side; enter the Z of the tool change with --change-z")
     highest_shift = max([0.0, *(z for _, z in options.shift.values())])
-    clear_z = heights.clear_z + highest_shift if options.change_z is None else options.change_z
+    clear_z = max(heights.clear_z + highest_shift, 0.0) if options.change_z is None else options.change_z
+    if clear_z < 0.0 or (options.bar_stop and clear_z <= options.facing_stock):
+        raise PostError("--change-z: the tool change must be in front of the part and of the facing stock")
     writer = Writer(options, heights._replace(clear_z=clear_z))
     coolant = False
     for each in operations:

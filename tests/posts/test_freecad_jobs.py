@@ -151,6 +151,13 @@ def test_loop_takes_the_last_work_shift_back_before_the_next_part() -> None:
         ("--shift G60=0,1", "invalid option"),
         ("--shift G54=0,1", "invalid option"),
         ("--shift G55=1", "invalid option"),
+        ("--shift G55=nan,1", "invalid option"),
+        ("--pitch 4=inf", "invalid option"),
+        ("--change-z nan", "invalid option"),
+        ("--rapid 1e9", "invalid option"),
+        ("--parts 2 --part-length nan", "invalid option"),
+        ("--change-z -5", "--change-z"),
+        ("--parts 2 --part-length 12 --bar-stop 9 --facing-stock 2", "--change-z"),
     ],
 )
 def test_invalid_options_of_several_parts_are_rejected(options: str, reason: str) -> None:

@@ -286,6 +286,9 @@ def test_job_with_paths_only_on_the_side_needs_the_z_of_the_tool_change() -> Non
         ("--side 7 --live 15,16", "invalid option"),
         ("--face 5 --live 15,15", "invalid option"),
         ("--face 5 --live 15", "invalid option"),
+        ("--face 5 --live 3,5", "invalid option"),
+        ("--face 5 --live 15,12", "invalid option"),
+        ("--face 5 --live 15,16 --c-rpm nan", "invalid option"),
         ("--face 5 --live 15,16 --c-rpm 0", "--c-rpm"),
     ],
 )
