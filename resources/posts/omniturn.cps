@@ -590,8 +590,8 @@ function formatFeed(feed) {
 }
 
 function moveRapid(x, z) {
-  if (needsBoth && getProperty("workShiftZ") && z < getClearZ()) {
-    // the line to the next part could cross the part before it
+  if (needsBoth && z < getClearZ() && (getProperty("workShiftZ") || (lastX === undefined && z < 0))) {
+    // the line from an unknown position could cross a part
     writeLine("G00" + formatWord("X", x) + formatWord("Z", getClearZ()));
     isRapid = true;
     needsBoth = false;

@@ -125,8 +125,9 @@ class LineWriter:
         if x is None or z is None:
             self.x, self.z = x, z
             return
-        if self.needs_both and self.has_shifts and z < self.get_clear_z():
-            z, last_z = self.get_clear_z(), z  # the line to the next part could cross the part before it
+        is_unknown = self.x is None or self.z is None
+        if self.needs_both and z < self.get_clear_z() and (self.has_shifts or (is_unknown and z < 0.0)):
+            z, last_z = self.get_clear_z(), z  # the line from an unknown position could cross a part
             self.add("G00" + self.word("X", x) + self.word("Z", z))
             self.is_rapid, self.needs_both = True, False
             self.x, self.z, z = x, z, last_z

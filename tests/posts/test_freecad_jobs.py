@@ -66,6 +66,16 @@ def test_taps_that_cannot_be_written_are_rejected(command: Command, options: str
         omniturn_post.post(tap_job(command), options)
 
 
+def test_first_rapid_behind_the_face_moves_x_in_front_of_the_part() -> None:
+    """From a drill on the axis, a line to X8 Z-6 would cross the part. The highest Z of the job is 6."""
+    groove = operation(("G0", {"X": 8.0, "Z": -6.0}), ("G1", {"X": 5.0, "F": 1.0}), ("G0", {"X": 8.0}))
+    lines = omniturn_post.post(
+        [*tap_job(TAP), controller(2), groove], "--pitch 4=1 --no-comments"
+    ).splitlines()
+    start = lines.index("T2")
+    assert lines[start + 2 : start + 5] == ["G00X16Z6", "Z-6", "G94F60X10"]
+
+
 def fixture(name: str) -> SimpleNamespace:
     return operation((name, {}), ("G0", {"Z": 2.0}), label=name)
 

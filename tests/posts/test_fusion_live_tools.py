@@ -178,6 +178,13 @@ def test_work_offset_becomes_a_work_shift_before_t(tmp_path: Path) -> None:
     ]
 
 
+def test_first_rapid_behind_the_face_moves_x_in_front_of_the_part(tmp_path: Path) -> None:
+    """The highest Z of the section is .1; a line from an unknown X to Z-.4 could cross the part."""
+    calls: list[Call] = [["onRapid", 1.2, 0, -0.4], ["onLinear", 1.0, 0, -0.4, 0.005]]
+    lines = run_post(tmp_path, section(*calls)).stdout.splitlines()
+    assert lines[3:6] == ["G00X2.4Z.1", "Z-.4", "G95F.005X2"]
+
+
 def test_loops_for_several_parts(tmp_path: Path) -> None:
     loop = {"parts": 4, "partLength": 0.6}
     lines = run_post(tmp_path, section(*CUT), properties=loop).stdout.splitlines()
