@@ -131,7 +131,26 @@ function checkY(y) {
 
 // --- program
 
+/** Rejects numbers that would turn C or feed the bar in the wrong direction, or start the spindle as a live tool. */
+function checkProperties() {
+  var positive = ["rapidRate", "changeZ", "cSpeed", "parts", "partLength", "barFeed", "facingStock"];
+  for (var i = 0; i < positive.length; ++i) {
+    var value = getProperty(positive[i]);
+    if (value && !(value > 0 && value <= 1e6)) {
+      error("The property " + properties[positive[i]].title + " must be 0 or a positive number.");
+    }
+  }
+  var used = " 1 2 3 4 5 8 9 12 13 19 30 31 89 91 92 93 94 95 96 97 98 99 ";
+  var start = getProperty("liveStart");
+  var stop = getProperty("liveStop");
+  if ((start || stop) && (start === stop || start % 1 !== 0 || stop % 1 !== 0 ||
+      used.indexOf(" " + start + " ") >= 0 || used.indexOf(" " + stop + " ") >= 0)) {
+    error("The M codes of the live tools must be two whole numbers that the control does not use.");
+  }
+}
+
 function onOpen() {
+  checkProperties();
   var rate = getProperty("rapidRate") || (unit === IN ? 300 : 7620);
   var highestShift = 0;
   for (var i = 0; i < getNumberOfSections(); ++i) {
@@ -148,6 +167,9 @@ function onOpen() {
   clearZ = getProperty("changeZ") || clearZ + highestShift;
   if (programComment) {
     setComment(programComment);
+  }
+  if (getProperty("parts") > 1 && getProperty("barStop") && clearZ <= getProperty("facingStock")) {
+    error("The Z of the tool change must be in front of the facing stock.");
   }
   writeLine("G90G94F" + formatNumber(rate, 3) + (unit === IN ? "G70" : "G71") + "G72");
   writeLoop();

@@ -278,9 +278,16 @@ def test_live_operations_that_cannot_be_written_are_rejected(
         ({"parts": 2.5, "partLength": 1}, "whole number"),
         ({"parts": 3, "partLength": 0.1, "facingStock": 0.1}, "facing stock"),
         ({"parts": 3, "partLength": 0.5, "barStop": 33}, "T33"),
+        ({"parts": 3, "partLength": 0.5, "barStop": 9, "facingStock": 0.3}, "in front of the facing stock"),
+        ({"parts": 3, "partLength": 0.5, "barStop": 9, "barFeed": -20}, "Feed of the bar"),
+        ({"cSpeed": -60}, "Speed of C"),
+        ({"changeZ": -1}, "Z of the tool change"),
+        ({"rapidRate": 1e9}, "Rapid rate"),
+        ({"liveStart": 3, "liveStop": 5}, "two whole numbers"),
+        ({"liveStart": 15, "liveStop": 15}, "two whole numbers"),
     ],
 )
-def test_loops_that_cannot_be_written_are_rejected(
+def test_properties_that_cannot_be_used_are_rejected(
     tmp_path: Path, properties: dict[str, object], reason: str
 ) -> None:
     assert reason in run_post(tmp_path, section(*CUT), properties=properties).stderr
