@@ -91,6 +91,7 @@ class CycleWriter(LineWriter):
 
     def cycle(self, name: str, words: str) -> None:
         """Write a line with a drilling cycle, after which the tool is at the start point again."""
+        self.check_spindle(name)
         feed = self.feed(name, self.cycle_feed)
         self.add(words if not feed else feed + words)
 
@@ -103,6 +104,7 @@ class CycleWriter(LineWriter):
         missing = [letter for letter in "PIJK" if not values.get(letter)] + ([] if "Z" in values else ["Z"])
         if self.x is None or self.z is None or self.needs_both or missing:
             self.reject(name, f"the thread needs a known position and {' '.join(missing) or 'X Z'}")
+        self.check_spindle(name)
         line_x, line_z, inward = self.x, self.z, -1.0 if values["I"] < 0.0 else 1.0
         first, depth = values["J"], values["K"]
         if not 0.0 < first <= depth or values.get("Q", 0.0) > MAX_INFEED_ANGLE_DEG:

@@ -53,7 +53,7 @@ class LineWriter:
         self.z: float | None = None
         self.tool = 0
         self.speed = 0.0
-        self.spindle_code = ""  # M3 or M4 of the last start
+        self.spindle_code = ""  # M3 or M4; empty while the spindle is stopped
         self.is_rapid = False
         self.feed_words = ""
         self.is_live = False  # the active tool is a live tool
@@ -141,6 +141,7 @@ class LineWriter:
         """Write a straight cut, or an arc with the words ``arc``."""
         if x is None or z is None or self.x is None or self.z is None or self.needs_both:
             self.reject(name, "the position before this cut is unknown; begin with a rapid in X and Z")
+        self.check_spindle(name)
         words = self.word("X", x) + self.word("Z", z) if arc else self.position(x, z)
         if words:
             self.add(self.feed(name, feed) + arc[:3] + words + arc[3:])
@@ -235,6 +236,16 @@ class LineWriter:
             self.reject(name, "the spindle speed is 0; enter it in the tool controller")
         self.speed, self.spindle_code = speed, name
         self.add(f"G97{'M03' if name == 'M3' else 'M04'}S{number(speed, 1)}")
+
+    def stop_spindle(self) -> None:
+        """Write M05."""
+        self.add("M05")
+        self.spindle_code = ""
+
+    def check_spindle(self, name: str) -> None:
+        """Reject a cut of a turning tool while the spindle is stopped."""
+        if not self.is_live and not self.spindle_code:
+            self.reject(name, "the spindle is stopped; start it in the tool controller")
 
     def dwell(self, seconds: float) -> None:
         """Write a dwell; the control needs at least 0.1 s."""

@@ -67,7 +67,7 @@ class Writer(CycleWriter):
         is_side = self.tool in self.options.side
         self.is_live = is_side or self.tool in self.options.face
         if self.live or self.is_live:
-            self.add("M05")
+            self.stop_spindle()
         self.live = None
         if self.is_live:
             self.live = LiveTool(self, self.options.side.get(self.tool, 0.0), self.heights.side)
@@ -163,7 +163,9 @@ class Writer(CycleWriter):
             self.change_tool(name, values.get("T", 0.0))
         elif name in {"M3", "M4"}:
             self.spindle(name, values.get("S", self.speed))
-        elif name in {"M0", "M1", "M5", "M8", "M9"}:
+        elif name == "M5":
+            self.stop_spindle()
+        elif name in {"M0", "M1", "M8", "M9"}:
             self.add(f"M{int(name[1:]):02d}")
         elif name == "M7":
             self.add("M08")

@@ -76,6 +76,20 @@ def test_first_rapid_behind_the_face_moves_x_in_front_of_the_part() -> None:
     assert lines[start + 2 : start + 5] == ["G00X16Z6", "Z-6", "G94F60X10"]
 
 
+@pytest.mark.parametrize(
+    ("command", "options"),
+    [
+        (("G1", {"X": 0.0, "Z": -2.0, "F": 1.0}), ""),
+        (("G81", {"X": 0.0, "Y": 0.0, "Z": -8.0, "R": 5.0, "F": 1.0}), ""),
+        (TAP, "--pitch 4=1"),
+    ],
+)
+def test_cuts_after_a_spindle_stop_are_rejected(command: Command, options: str) -> None:
+    job = tap_job(("G0", {"X": 0.0}), ("M5", {}), command)
+    with pytest.raises(omniturn_post.PostError, match="spindle"):
+        omniturn_post.post(job, options)
+
+
 def fixture(name: str) -> SimpleNamespace:
     return operation((name, {}), ("G0", {"Z": 2.0}), label=name)
 
