@@ -673,6 +673,9 @@ function onCircular(clockwise, cx, cy, cz, x, y, z, feed) {
     error("The arc is not in the XZ plane.");
     return;
   }
+  if (roundLength(x) === roundLength(lastX) && roundLength(z) === roundLength(lastZ)) {
+    return; // the control would cut a full circle
+  }
   var side = (lastZ - cz) * (x - cx) - (lastX - cx) * (z - cz); // > 0: counterclockwise with X+ up
   var center = formatWord("I", cx - lastX) + formatWord("K", cz - lastZ);
   moveFeed(x, z, feed, side > 0 ? "G02" : "G03", center);
@@ -685,6 +688,10 @@ function millArc(center, end, feed) {
   }
   if (!isInPlane) {
     enterPlane(mill);
+  }
+  if (roundLength(end.x) === roundLength(mill.x) && roundLength(end.y) === roundLength(mill.y)) {
+    mill = end;
+    return; // the control would cut a full circle
   }
   var side = (mill.x - center.x) * (end.y - center.y) - (mill.y - center.y) * (end.x - center.x);
   writeln("(" + (side > 0 ? "G03" : "G02") + formatPlane("X", end.x) + formatPlane("Y", end.y) +

@@ -194,12 +194,15 @@ class LiveTool:
         is_helix = abs(z - z0) > NEAR_MM
         most = 2.0 * math.acos(max(1.0 - _TOLERANCE_MM / radius, 0.0)) if is_helix else math.pi + 1e-9
         count = math.ceil(sweep / most)
+        from_words = self.xy_words(x0, y0)
         for part in range(1, count + 1):
             at, share = begin + sign * sweep * part / count, part / count
             to_x, to_y = cx + radius * math.cos(at), cy + radius * math.sin(at)
             if part == count:
                 to_x, to_y = x, y
-            if is_helix:
+            is_short = self.xy_words(to_x, to_y) == from_words  # an arc to its start is a full circle
+            from_words = self.xy_words(to_x, to_y)
+            if is_helix or is_short:
                 self.add_move(to_x, to_y, z0 + share * (z - z0), feed)
             else:
                 code, center = ("G03" if name == "G3" else "G02"), self.xy_words(cx, cy, "IJ")

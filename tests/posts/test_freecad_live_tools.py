@@ -61,6 +61,18 @@ def test_arc_of_more_than_half_a_turn_is_divided_on_the_face() -> None:
     assert lines[6:] == ["(G02X6Y0I9J0F60)", "(X6Y0Z5F1270)", "(END)"]
 
 
+def test_arc_that_rounds_to_its_start_is_not_a_full_circle() -> None:
+    """Y .00004 mm is 0 with four decimals, and G03X5Y0 from X5 Y0 would be a full circle."""
+    arc: Command = ("G3", {"X": 5.0, "Y": 0.00004, "I": -5.0, "J": 0.0, "F": 2.0})
+    lines = body(
+        5,
+        "--face 5 --live 15,16 --no-comments",
+        *(("G0", {"X": 5.0, "Y": 0.0, "Z": 2.0}), ("G1", {"Z": -1.0, "F": 2.0}), arc),
+    )
+    assert "(X5Y0Z-1F120)" in lines
+    assert not any("G03" in line for line in lines)
+
+
 def test_next_operation_begins_at_c0() -> None:
     """The plane starts at the C of its first line, so C turns back to 0 before the second operation."""
     cut: tuple[Command, ...] = (

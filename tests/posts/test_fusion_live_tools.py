@@ -52,6 +52,19 @@ def test_face_is_milled_in_the_plane_xc(tmp_path: Path) -> None:
     ]
 
 
+def test_arc_that_rounds_to_its_start_is_not_a_full_circle(tmp_path: Path) -> None:
+    """Y .00002 is 0 at the resolution of .00005 in."""
+    lines = body(
+        tmp_path,
+        milling(
+            *(["onRapid", 0.5, 0, 0.2], ["onLinear", 0.5, 0, -0.1, 5]),
+            ["onCircular", False, 0, 0, -0.1, 0.5, 0.00002, -0.1, 10],
+            plane="PLANE_XY",
+        ),
+    )
+    assert lines[-3:] == ["(X.5Y0Z-.1F5)", "(X.5Y0Z.2F50)", "(END)"]
+
+
 def test_work_plane_that_is_turned_around_the_axis_is_turned_back(tmp_path: Path) -> None:
     """X of the plane points along Y of the part, so X .5 of the plane is Y .5 of the part."""
     plane = [[0, 1, 0], [-1, 0, 0], [0, 0, 1]]
