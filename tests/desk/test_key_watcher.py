@@ -207,13 +207,14 @@ def test_no_press_is_sent_while_no_stop_control_is_drawn(bench: Bench) -> None:
     assert bench.sent() == []
 
 
-F2 = 68
+F2, ENTER = 68, 36
 LETTERS = FocusRecord(frozenset({OURS}), is_esc_stop_key=False, are_letters_stop_keys=True)
 
 
 def handled(code: int, time_ms: int) -> FocusRecord:
     """No text field has the keyboard, and the screen has handled this press."""
-    return LETTERS._replace(handled_press=make_press_number(code, time_ms))
+    number = make_press_number(code, time_ms)
+    return LETTERS._replace(handled_press=number, received_press=number)
 
 
 def press(bench: Bench, *presses: tuple[int, int]) -> list[StopKind]:
@@ -275,6 +276,40 @@ def test_letter_is_not_sent_before_the_watcher_has_seen_another_press(bench: Ben
     assert press(bench, (H, 5000)) == []
 
 
+@pytest.mark.parametrize("received", [(E, 5000), (ENTER, 5040)])
+def test_letter_that_the_screen_has_already_received_is_not_sent_by_a_late_watcher(
+    bench: Bench, received: tuple[int, int]
+) -> None:
+    # E entered text and Enter closed the field before the watcher read these presses.
+    press(bench, (F2, 4000))
+    closed = handled(F2, 4000)._replace(received_press=make_press_number(*received))
+    bench.show(closed)
+    assert press(bench, (E, 5000)) == []
+    assert press(bench, (ENTER, 5040)) == []
+    bench.show(handled(ENTER, 5040))
+    assert press(bench, (E, 6000)) == [StopKind.ESTOP]
+
+
+def test_esc_that_the_screen_received_before_motion_is_not_sent_by_a_late_watcher(bench: Bench) -> None:
+    bench.show(MOVING._replace(received_press=make_press_number(ESC, 5000)))
+    assert press(bench, (ESC, 5000)) == []
+    assert press(bench, (ESC, 6000)) == [StopKind.ESC]
+
+
+@pytest.mark.parametrize(("code", "kind"), [(PAUSE, StopKind.HOLD), (SCROLL_LOCK, StopKind.ESTOP)])
+def test_stop_key_is_sent_although_the_screen_has_received_it(
+    bench: Bench, code: int, kind: StopKind
+) -> None:
+    bench.show(HERE._replace(received_press=make_press_number(code, 5000)))
+    assert press(bench, (code, 5000)) == [kind]
+
+
+def test_letter_is_sent_if_the_screen_has_received_only_an_earlier_press(bench: Bench) -> None:
+    press(bench, (F2, 4000))
+    bench.show(handled(F2, 4000)._replace(received_press=make_press_number(H, 4900)))
+    assert press(bench, (E, 5000)) == [StopKind.ESTOP]
+
+
 def test_letter_is_not_sent_without_reader_of_mouse_and_touch(bench: Bench) -> None:
     press(bench, (F2, 4000))
     bench.show(handled(F2, 4000))
@@ -314,6 +349,7 @@ def test_unknown_press_is_not_handled() -> None:
 def test_press_counts_as_handled_after_two_frames() -> None:
     record = HandledPresses()
     record.record_press(7)
+    assert record.received_press == 7
     record.complete_frame()
     assert record.handled_press == 0
     record.record_press(0)  # An event without a time stamp.
@@ -361,7 +397,10 @@ def test_records_are_decoded_as_they_were_encoded() -> None:
         StopKeyPress(StopKind.ESC, make_press_number(9, 2**32 - 1)),
     )
     assert FocusRecord.from_bytes(focus.to_bytes()) == focus
-    for record in (DRAWN, DRAWN._replace(are_letters_stop_keys=True, handled_press=2**41 + 5)):
+    for record in (
+        DRAWN,
+        DRAWN._replace(are_letters_stop_keys=True, handled_press=2**41 + 5, received_press=2**41 + 6),
+    ):
         assert FocusRecord.from_bytes(record.to_bytes()) == record
     assert StopKeyPress.from_bytes(stop.to_bytes()) == stop
 

@@ -25,12 +25,13 @@ class HandledPresses:
 
     def __init__(self) -> None:
         self.handled_press = 0  # Press number, or 0 if no press was handled.
-        self._seen = self._waiting = 0
+        self.received_press = 0  # Number of the last press whose event has arrived, or 0.
+        self._waiting = 0
 
     def record_press(self, press: int) -> None:
         """Record that the event of a press has arrived."""
-        self._seen = press or self._seen
+        self.received_press = press or self.received_press
 
     def complete_frame(self) -> None:
         """Record that a frame is complete."""
-        self.handled_press, self._waiting = self._waiting, self._seen
+        self.handled_press, self._waiting = self._waiting, self.received_press

@@ -83,7 +83,7 @@ class KeyWatcher:
         The X server does not send raw events for key repeats.
         """
         press = make_press_number(key.key_code, key.time_ms)
-        kind = self._find_kind(key.key_code)
+        kind = self._find_kind(key.key_code, press)
         if kind is not None and self._keys.find_focus_window() in self._focus.window_ids:
             self._send(StopKeyPress(kind, press))
         else:
@@ -106,12 +106,16 @@ class KeyWatcher:
                 return area.stop_kind
         return None
 
-    def _find_kind(self, code: int) -> StopKind | None:
+    def _find_kind(self, code: int, press: int) -> StopKind | None:
         if code in STOP_KEY_CODES:
             return STOP_KEY_CODES[code]
+        if is_press_handled(press, self._focus.received_press):
+            return None  # The screen has received the press, perhaps before the key became a stop key.
         if self._focus.is_esc_stop_key and code == self._keys.find_escape_code():
             return StopKind.ESC
-        return STOP_CHARACTERS.get(self._keys.find_character(code)) if self._is_letter_certain() else None
+        if not self._is_letter_certain():
+            return None
+        return STOP_CHARACTERS.get(self._keys.find_character(code))
 
     def _is_letter_certain(self) -> bool:
         """Return whether a letter cannot be text, because no earlier press can open a text field.

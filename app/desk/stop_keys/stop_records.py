@@ -13,7 +13,7 @@ from typing import NamedTuple
 SOURCE_SCREEN = "a key or a touch on the screen"
 SOURCE_ESC = "Esc key at the screen"
 _STOP = struct.Struct("=BQ")
-_FOCUS, _AREA = struct.Struct("=??QHH"), struct.Struct("=IiiiiB")
+_FOCUS, _AREA = struct.Struct("=??QQHH"), struct.Struct("=IiiiiB")
 MAX_RECORD_BYTES = 4096  # Maximum size of a record in bytes.
 _MAX_WINDOWS, _MAX_AREAS = 500, 64  # Number of windows and areas in a record: 3 400 bytes.
 # Code of mouse button 0 in press numbers. X key codes are less than 256.
@@ -89,7 +89,8 @@ class FocusRecord(NamedTuple):
 
     ``is_esc_stop_key`` is whether Esc currently starts feed hold. ``are_letters_stop_keys`` is whether H, E
     and Space stop the machine, because no text field has the keyboard focus. ``handled_press`` is the number
-    of the last press that the screen has handled before it made the record.
+    of the last press that the screen has handled before it made the record, and ``received_press`` that of
+    the last press that it has received.
     """
 
     window_ids: frozenset[int]
@@ -97,19 +98,21 @@ class FocusRecord(NamedTuple):
     stop_areas: tuple[StopArea, ...] = ()
     are_letters_stop_keys: bool = False
     handled_press: int = 0
+    received_press: int = 0
 
     def to_bytes(self) -> bytes:
         """Return the focus record in binary form, with at most 500 windows and 64 areas."""
         windows, areas = sorted(self.window_ids)[:_MAX_WINDOWS], self.stop_areas[:_MAX_AREAS]
         flags = (self.is_esc_stop_key, self.are_letters_stop_keys)
-        head = _FOCUS.pack(*flags, self.handled_press, len(windows), len(areas))
+        presses = (self.handled_press, self.received_press)
+        head = _FOCUS.pack(*flags, *presses, len(windows), len(areas))
         return b"".join((head, struct.pack(f"={len(windows)}I", *windows), *(_AREA.pack(*a) for a in areas)))
 
     @classmethod
     def from_bytes(cls, record: bytes) -> FocusRecord:
         """Return the focus record from its binary form. Raises ValueError if the data is invalid."""
         try:
-            esc_holds, letters_stop, handled, windows, areas = _FOCUS.unpack_from(record)
+            esc_holds, letters_stop, handled, received, windows, areas = _FOCUS.unpack_from(record)
         except struct.error:
             windows = areas = -1
         start = _FOCUS.size + 4 * windows
@@ -124,6 +127,7 @@ class FocusRecord(NamedTuple):
             ),
             letters_stop,
             handled,
+            received,
         )
 
 

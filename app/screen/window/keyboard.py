@@ -155,8 +155,7 @@ class KeyboardFilter(QObject):
         # Time when the X server reported a key as up before its release event arrived.
         self._known_up: dict[int, float] = {}
         self._sending = False
-        self._stamp = 0  # Time stamp of the event that is being handled.
-        self._whose = ""  # Clock of that time stamp.
+        self._stamp, self._whose = 0, ""  # Time stamp of the event that is being handled, and its clock.
         self._late = False  # The event waited during a stall.
         self._handled = HandledPresses()
 
@@ -260,6 +259,7 @@ class KeyboardFilter(QObject):
                 stop_areas=target.find_stop_areas(),
                 are_letters_stop_keys=not target.has_text_field(),
                 handled_press=self._handled.handled_press,
+                received_press=self._handled.received_press,
             )
         )
 

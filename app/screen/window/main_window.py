@@ -9,15 +9,7 @@ from functools import partial
 from importlib.resources import files
 
 from PySide6.QtCore import QEvent, Qt, QTimer, Signal
-from PySide6.QtGui import (
-    QCloseEvent,
-    QIcon,
-    QInputEvent,
-    QKeyEvent,
-    QResizeEvent,
-    QScreen,
-    QShowEvent,
-)
+from PySide6.QtGui import QCloseEvent, QIcon, QInputEvent, QKeyEvent, QResizeEvent, QScreen, QShowEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
 from app.desk.desk import Desk
