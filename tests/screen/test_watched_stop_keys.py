@@ -220,6 +220,25 @@ def test_watcher_is_informed_of_text_field_and_of_handled_press(watched: tuple[H
     assert not made.shown[-1].are_letters_stop_keys
 
 
+def test_letters_are_not_reported_as_stop_keys_while_another_program_has_the_keyboard(
+    watched: tuple[Hands, Watched], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Qt then names no field with the keyboard, although the field gets it back with the window.
+    hands, made = watched
+    hands.window.keyboard_filter.complete_frame()
+    assert made.shown[-1].are_letters_stop_keys
+    monkeypatch.setattr(QGuiApplication, "focusWindow", lambda: None)
+    hands.window.keyboard_filter.complete_frame()
+    assert not made.shown[-1].are_letters_stop_keys
+
+
+def test_watcher_is_informed_of_received_press(watched: tuple[Hands, Watched]) -> None:
+    hands, made = watched
+    send(hands, Key.Key_F2, at=AT)
+    hands.window.keyboard_filter.complete_frame()
+    assert made.shown[-1].received_press == make_press_number(Key.Key_F2, AT)
+
+
 def test_watcher_is_not_started_without_x_server(hands: Hands) -> None:
     def never() -> None:
         raise AssertionError

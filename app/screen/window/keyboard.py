@@ -257,7 +257,7 @@ class KeyboardFilter(QObject):
                 frozenset(window.winId() for window in windows if window.isVisible()),
                 is_esc_stop_key=target.is_esc_stop_key(),
                 stop_areas=target.find_stop_areas(),
-                are_letters_stop_keys=not target.has_text_field(),
+                are_letters_stop_keys=bool(QGuiApplication.focusWindow()) and not target.has_text_field(),
                 handled_press=self._handled.handled_press,
                 received_press=self._handled.received_press,
             )
