@@ -357,6 +357,26 @@ def test_press_counts_as_handled_after_two_frames() -> None:
     assert record.handled_press == 7
 
 
+def test_press_is_not_handled_while_the_pointer_is_down() -> None:
+    record = HandledPresses()
+    record.record_press(7)
+    record.is_pointer_down = True
+    for _frame in range(3):
+        record.complete_frame()
+        assert record.handled_press == 0
+    record.is_pointer_down = False
+    record.complete_frame()
+    record.complete_frame()
+    assert record.handled_press == 7
+
+
+def test_click_that_the_screen_has_received_is_not_sent_by_a_late_watcher(bench: Bench) -> None:
+    # The pointer may have moved to the stop control after the click elsewhere.
+    bench.show(DRAWN._replace(received_press=make_press_number(make_button_code(1), 5000)))
+    bench.click(130, 80)
+    assert bench.sent() == []
+
+
 def test_key_watcher_ends_when_the_screen_closes(bench: Bench) -> None:
     bench.screen.close()
     assert not bench.watcher.read_focus_records()

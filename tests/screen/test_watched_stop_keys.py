@@ -9,12 +9,19 @@ from functools import partial
 from typing import cast
 
 import pytest
-from PySide6.QtGui import QGuiApplication
+from PySide6.QtCore import QEvent, QPointF, Qt
+from PySide6.QtGui import QGuiApplication, QMouseEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
 from app.desk.stop_keys.key_watcher_client import KeyWatcherClient
 from app.desk.stop_keys.key_watcher_notice import report_watcher_end
-from app.desk.stop_keys.stop_records import FocusRecord, StopKeyPress, StopKind, make_press_number
+from app.desk.stop_keys.stop_records import (
+    FocusRecord,
+    StopKeyPress,
+    StopKind,
+    make_button_code,
+    make_press_number,
+)
 from app.screen import page_table
 from core.executor.commands import FeedHold
 from core.executor.snapshot import MachineState
@@ -230,6 +237,24 @@ def test_letters_are_not_reported_as_stop_keys_while_another_program_has_the_key
     monkeypatch.setattr(QGuiApplication, "focusWindow", lambda: None)
     hands.window.keyboard_filter.complete_frame()
     assert not made.shown[-1].are_letters_stop_keys
+
+
+def test_mouse_press_is_handled_two_frames_after_its_release(watched: tuple[Hands, Watched]) -> None:
+    # A list row opens when the button is released, so that a letter can be text afterwards.
+    hands, made = watched
+    keyboard, window = hands.window.keyboard_filter, window_of(hands)
+    at, left, none = QPointF(5, 5), Qt.MouseButton.LeftButton, Qt.MouseButton.NoButton
+    number = make_press_number(make_button_code(1), AT)
+    for kind, buttons, expected in (
+        (QEvent.Type.MouseButtonPress, left, [0, 0, 0]),
+        (QEvent.Type.MouseButtonRelease, none, [0, number, number]),
+    ):
+        event = QMouseEvent(kind, at, at, at, left, buttons, Qt.KeyboardModifier.NoModifier)
+        event.setTimestamp(AT)
+        keyboard.eventFilter(window, event)
+        for handled in expected:
+            keyboard.complete_frame()
+            assert made.shown[-1].handled_press == handled
 
 
 def test_watcher_is_informed_of_received_press(watched: tuple[Hands, Watched]) -> None:

@@ -20,12 +20,14 @@ class HandledPresses:
     """Record of the last press whose effects the screen has completed.
 
     An effect can be completed shortly after the event, for example when a field opens. A press therefore
-    counts as handled after two frames.
+    counts as handled after two frames. A mouse press or touch can also have an effect when it is released.
+    Therefore, frames while ``is_pointer_down`` is set do not count.
     """
 
     def __init__(self) -> None:
         self.handled_press = 0  # Press number, or 0 if no press was handled.
         self.received_press = 0  # Number of the last press whose event has arrived, or 0.
+        self.is_pointer_down = False  # A mouse button or a touch is down, according to the events.
         self._waiting = 0
 
     def record_press(self, press: int) -> None:
@@ -34,4 +36,6 @@ class HandledPresses:
 
     def complete_frame(self) -> None:
         """Record that a frame is complete."""
+        if self.is_pointer_down:
+            return
         self.handled_press, self._waiting = self._waiting, self.received_press

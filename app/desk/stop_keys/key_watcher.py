@@ -98,8 +98,9 @@ class KeyWatcher:
             self._last_press = number
 
     def _find_area_kind(self, press: PointerPress) -> StopKind | None:
-        if self._pointer is None or not self._focus.stop_areas:
-            return None
+        number = make_press_number(press.press_code, press.time_ms)
+        if self._pointer is None or is_press_handled(number, self._focus.received_press):
+            return None  # The screen has received the press, and knows where the pointer was.
         found = self._pointer.find_window_at(press.x_px, press.y_px, self._focus.window_ids)
         for area in self._focus.stop_areas:
             if found is not None and area.window_id == found[0] and area.contains(*found[1:]):

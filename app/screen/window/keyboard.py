@@ -25,6 +25,7 @@ from PySide6.QtGui import (
     QInputDevice,
     QInputEvent,
     QKeyEvent,
+    QMouseEvent,
     QTouchEvent,
     QWindow,
 )
@@ -34,13 +35,7 @@ from app.desk.late_presses import BlockedLateAction
 from app.desk.stop_keys.handled_presses import HandledPresses
 from app.desk.stop_keys.key_codes import STOP_KEY_CODES
 from app.desk.stop_keys.key_watcher_client import KeyWatcherClient, OpenStopChannel, ReportEnd
-from app.desk.stop_keys.stop_records import (
-    SOURCE_ESC,
-    FocusRecord,
-    StopArea,
-    StopKind,
-    make_press_number,
-)
+from app.desk.stop_keys.stop_records import SOURCE_ESC, FocusRecord, StopArea, StopKind, make_press_number
 from app.screen.text_area.text_area import TextArea
 from app.screen.window.input_times import InputTimes
 from app.screen.window.key_table import (
@@ -61,6 +56,7 @@ _EDITING_KEYS = frozenset(
 _PRESS_EVENTS = frozenset(
     {QEvent.Type.MouseButtonPress, QEvent.Type.MouseButtonDblClick, QEvent.Type.TouchBegin, QEvent.Type.Wheel}
 )
+_TOUCH_END_EVENTS = frozenset({QEvent.Type.TouchEnd, QEvent.Type.TouchCancel})
 _SHIFT_CODES = frozenset({50, 62})  # Key codes of both Shift keys.
 _KEY_EVENTS = frozenset({QEvent.Type.KeyPress, QEvent.Type.KeyRelease})
 
@@ -281,6 +277,10 @@ class KeyboardFilter(QObject):
         if not isinstance(event, QInputEvent):
             return False
         self._read_event_time(event)
+        if isinstance(event, QTouchEvent):
+            self._handled.is_pointer_down = kind not in _TOUCH_END_EVENTS
+        elif isinstance(event, QMouseEvent):
+            self._handled.is_pointer_down = event.buttons() is not Qt.MouseButton.NoButton
         pressed = kind in _PRESS_EVENTS or (
             isinstance(event, QTouchEvent)
             and any(point.state() == QEventPoint.State.Pressed for point in event.points())
