@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import socket
+import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import closing
@@ -68,6 +69,19 @@ def test_watcher_that_cannot_start_is_restarted_once_and_then_reported(bench: Be
 def test_watcher_is_not_restarted_without_a_control(bench: Bench) -> None:
     with closing(bench.start()) as client:
         bench.has_control = False
+        bench.wait(client, 1)
+        assert bench.reports == [(1, False)]
+
+
+def test_watcher_that_the_system_does_not_restart_is_reported(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with closing(bench.start()) as client:
+
+        def refuse(*_arguments: object, **_options: object) -> None:
+            raise OSError
+
+        monkeypatch.setattr(subprocess, "Popen", refuse)
         bench.wait(client, 1)
         assert bench.reports == [(1, False)]
 

@@ -64,12 +64,18 @@ class KeyWatcherClient:
             return
         self._read()
         restarts, self._can_restart = self._can_restart, False
-        channel = self._open_stop_channel() if restarts else None
-        self._is_watched = channel is not None
-        if channel is not None:
-            self._screen.close()
-            self._start_process(channel)
+        self._is_watched = restarts and self._restart_process()
         self._report_end(status, self._is_watched)
+
+    def _restart_process(self) -> bool:
+        """Start another watcher, and return whether this was possible."""
+        with suppress(OSError):  # The system may have no memory or file descriptor left.
+            channel = self._open_stop_channel()
+            if channel is not None:
+                self._screen.close()
+                self._start_process(channel)
+                return True
+        return False
 
     def send_focus(self, focus: FocusRecord) -> None:
         """Send the focus record to the watcher if it has changed.
