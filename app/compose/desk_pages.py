@@ -272,7 +272,7 @@ def register_extras(setup: PageSetup) -> None:
 
 
 def _register_busy_notice(setup: PageSetup) -> None:
-    setup.desk.page_registry.add_frame_watcher(BusyNotice(setup.desk.show_warning).check_snapshot)
+    setup.desk.page_registry.add_frame_watcher(BusyNotice(setup.desk.say).check_snapshot)
 
 
 def register_scope_page(setup: PageSetup) -> None:

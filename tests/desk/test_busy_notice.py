@@ -1,4 +1,4 @@
-"""COMPUTER BUSY: when the operator reads it, and that no key removes it."""
+"""COMPUTER BUSY: when the operator reads it, and that it hides no other message."""
 
 from __future__ import annotations
 
@@ -33,17 +33,22 @@ def late(desk: Desk, seconds: float) -> None:
     desk.page_registry.notify_frame_watchers(replace(desk.read_snapshot(), hold_delay_s=seconds))
 
 
-def test_delay_is_shown_and_no_key_removes_it(desk: Desk) -> None:
+def test_delay_is_shown_and_hides_no_later_message(desk: Desk) -> None:
     late(desk, 0.3)
     assert desk.prompt_line.message == text("desk.hold-reacts-later", seconds="0.3")
-    desk.clear_prompt_line()  # as each key does
-    desk.say("the reply to a key")
-    assert desk.prompt_line.message == text("desk.hold-reacts-later", seconds="0.3")
+    desk.say("the part is not counted")
+    assert desk.prompt_line.message == "the part is not counted"
 
 
-def test_delay_is_shown_although_another_warning_is_shown(desk: Desk) -> None:
+def test_delay_is_shown_after_another_warning(desk: Desk) -> None:
+    seconds = iter([0.0, 0.0, 1.0, 5.0, 5.0])
+    desk.prompt_line.read_time_s = lambda: next(seconds)
     desk.show_warning("another warning")
     late(desk, 0.3)
+    assert desk.prompt_line.message == "another warning"
+    desk.prompt_line.remove_expired_texts(desk.read_snapshot())  # after 1 s
+    assert desk.prompt_line.message == "another warning"
+    desk.prompt_line.remove_expired_texts(desk.read_snapshot())  # after 5 s: longer than a warning is shown
     assert desk.prompt_line.message == text("desk.hold-reacts-later", seconds="0.3")
 
 

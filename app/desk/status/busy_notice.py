@@ -12,12 +12,12 @@ from core.message import Message
 class BusyNotice:
     """Notice to the operator that feed hold reacts late because the computer is busy.
 
-    The notice appears once in each busy period, and again if the delay has doubled. ``show_warning``
-    shows a text on the prompt line that no key removes.
+    The notice appears once in each busy period, and again if the delay has doubled. ``show_message`` shows
+    a text on the prompt line.
     """
 
-    def __init__(self, show_warning: Callable[[str], None]) -> None:
-        self._warn = show_warning
+    def __init__(self, show_message: Callable[[str], None]) -> None:
+        self._say = show_message
         self._told = 0.0  # s
 
     def check_snapshot(self, snapshot: Snapshot) -> None:
@@ -31,4 +31,4 @@ class BusyNotice:
         elif self._told == 0.0 or later >= 2.0 * self._told:
             self._told = later
             words = tr("COMPUTER BUSY: HOLD REACTS {seconds} S LATER")
-            self._warn(tr(Message(words, seconds=f"{later:.1f}")))
+            self._say(tr(Message(words, seconds=f"{later:.1f}")))

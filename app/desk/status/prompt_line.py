@@ -280,6 +280,7 @@ class PromptLine:
     key: str = YES_KEY  # Key that means yes.
     is_success_message: bool = False  # The message reports a success.
     is_lasting_message: bool = False  # No key removes the message before its time is over.
+    _waiting: tuple[str, bool] = ("", False)  # Text that waits for a lasting message; whether a success.
     _said_at: float = 0.0
     _since: float = 0.0
     _in: MachineState | None = None
@@ -303,7 +304,7 @@ class PromptLine:
         """Show a message. ``is_success`` marks it as a success message.
 
         A key press does not remove a message with ``is_lasting``. Until its time ends, only another lasting
-        message replaces it.
+        message replaces it, and the latest other message waits.
         """
         if (
             self.is_lasting_message
@@ -311,7 +312,9 @@ class PromptLine:
             and not is_lasting
             and self.read_time_s() - self._said_at < MESSAGE_TIME_S
         ):
+            self._waiting = (text, is_success)
             return
+        self._waiting = ("", False)
         self.message, self.is_success_message, self.is_lasting_message, self._said_at = (
             text,
             is_success,
@@ -357,13 +360,16 @@ class PromptLine:
 
     def clear_message(self) -> None:
         """Remove the message for the previous key, but keep an open question."""
+        self._waiting = ("", False)
         if not self.is_lasting_message:
             self.message = ""
 
     def remove_expired_texts(self, snapshot: Snapshot) -> None:
         """Remove an expired message, and a question that was asked in a different machine state."""
         if self.message and self.read_time_s() - self._said_at >= MESSAGE_TIME_S:
-            self.message, self.is_lasting_message = "", False
+            text, is_success = self._waiting
+            self.is_lasting_message = False
+            self.say(text, is_success=is_success)
         if self.on_confirmed is not None and snapshot.state is not self._in:
             self.question_text, self.on_confirmed = "", None
 
