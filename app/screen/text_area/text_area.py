@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from PySide6.QtCore import QEvent, Qt, QTimer
 from PySide6.QtGui import (
@@ -21,6 +21,11 @@ from app.screen.text_area.pointer_input import PointerInput
 from app.screen.text_area.text_buffer import TextSelection
 
 Keys = QKeySequence.StandardKey
+# An arrow key without Shift moves the cursor to this end of a selection.
+_ARROW_ENDS: Mapping[QKeySequence.StandardKey, Callable[[TextSelection], int]] = {
+    Keys.MoveToNextChar: lambda selection: selection.end,
+    Keys.MoveToPreviousChar: lambda selection: selection.start,
+}
 _WORD = re.compile(r"\w+|[^\w\s]+")
 _LINE_BREAKS = re.compile("\r\n|\r|\u2028|\u2029")
 
@@ -220,7 +225,11 @@ class TextArea(PointerInput, LineView):
             bar.setValue(bar.value() + count)
         if target != line:
             position = self.find_position_in_line(target, self._wanted_x)
-            self._set_selection(self.selection.anchor if is_selecting else position, position)
+        elif is_selecting:  # The first or last line is selected up to its end.
+            position = self._find_line_start() if count < 0 else self._find_line_end()
+        else:
+            return
+        self._set_selection(self.selection.anchor if is_selecting else position, position)
 
     # --- Qt's calls ----------------------------------------------------------------------------------
 
@@ -249,7 +258,10 @@ class TextArea(PointerInput, LineView):
                 return True
         for key, (find, is_selecting) in self._moves.items():
             if event.matches(key):
-                position = find()
+                has_selection = self.selection.start != self.selection.end
+                position = (
+                    _ARROW_ENDS[key](self.selection) if has_selection and key in _ARROW_ENDS else find()
+                )
                 self.select(self.selection.anchor if is_selecting else position, position)
                 return True
         return False
