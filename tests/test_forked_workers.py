@@ -53,7 +53,7 @@ def run(folder: Path, text: str, *options: str) -> subprocess.CompletedProcess[s
     """Run pytest with forked workers on one file of tests."""
     (folder / "test_ten.py").write_text(text)
     words = [sys.executable, "-m", "pytest", "-p", "tests.forked_workers", "-p", "no:cacheprovider", *options]
-    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    environment = os.environ | {"PYTHONPATH": str(ROOT), "PYTEST_ADDOPTS": ""}
     return subprocess.run(words, cwd=folder, env=environment, capture_output=True, text=True, check=False)
 
 
