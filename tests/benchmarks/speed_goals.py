@@ -60,7 +60,8 @@ GOALS: Mapping[str, Goal] = {
         peer=0.35,
     ),
     "prove 60,000 lines with the part": Goal(
-        2.5, "each short line is cut from the part and checked by itself, half of the time for each"
+        2.5,
+        "each short line is cut from the part and checked separately, and each of the two takes half of the time",
     ),
     "prove 2,282 thread passes with the part": Goal(
         0.3,
