@@ -61,7 +61,7 @@ GOALS: Mapping[str, Goal] = {
     ),
     "prove 60,000 lines with the part": Goal(
         2.5,
-        "each short line is cut from the part and checked separately, and each of the two takes half of the time",
+        "each short line is cut from the part and checked separately, half of the time for each",
     ),
     "prove 2,282 thread passes with the part": Goal(
         0.3,
