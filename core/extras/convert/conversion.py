@@ -106,7 +106,7 @@ def find_deletable_lines(texts: Sequence[str], options: ConversionOptions) -> fr
     OmniTurn has only one switch for block delete.
     """
     lines = [each for each in split_lines(texts, options.control) if each.has_block_delete]
-    switches = {_SWITCH.match(each.code.strip())[0] for each in lines}  # type: ignore[index]
+    switches = {found[0] for each in lines if (found := _SWITCH.match(each.code.strip())) is not None}
     return frozenset(each.line_number for each in lines) if len(switches) == 1 else frozenset()
 
 
