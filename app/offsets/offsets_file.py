@@ -192,7 +192,7 @@ def _shape_mistakes(number: int, row: ToolShapeRow, tool: ToolOffsetRow) -> Iter
 def _table(
     data: dict[str, object], kind: OffsetKind, mistakes: list[CodedError]
 ) -> Iterator[tuple[int, dict[str, FieldValue]]]:
-    """Yield the rows of one kind with their numbers, and append the mistakes of the table."""
+    """Yield number and values of each row of a kind of offset, and append errors to ``mistakes``."""
     table, (numbers, those) = data.get(kind.value, {}), _NUMBER_RANGES[kind]
     if not isinstance(table, dict):
         text = "{kind} must contain tables such as [{kind2}.{numbers}]"

@@ -50,12 +50,12 @@ class _Lines(NamedTuple):
 
     @property
     def z(self) -> Float32Array:
-        """Return the Z of each line at a depth of 0."""
+        """Return the Z coordinate of each line of sight at a depth of 0."""
         return self.right * self.cos
 
     @property
     def near(self) -> Float32Array:
-        """Return the distance of each line from the axis toward the viewer at a depth of 0."""
+        """Return the distance of each line of sight from the axis, toward the viewer, at a depth of 0."""
         return -self.right * self.sin
 
 

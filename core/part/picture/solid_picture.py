@@ -126,7 +126,7 @@ class SolidPicture:
         scene: PartScene = PartScene(),  # noqa: B008 - it is a tuple
         check_canceled: CheckCanceled | None = None,
     ) -> Iterator[PartImage]:
-        """Yield the picture with softened edges, and then better pictures up to one with smooth edges.
+        """Yield pictures of rising quality, from one with softened edges to one with smooth edges.
 
         The later pictures are the mean of several samples, each displaced by a fraction of a pixel. All
         colors are premultiplied by their opacity.
